@@ -1,8 +1,9 @@
-//! Standard works, timed: what a step costs, where it goes, and what each law, body and probe adds.
+//! Standard benchmark cases: the cost of a step, the distribution of its time, and the cost added by each law, body and
+//! probe.
 //!
-//! The work is a scene: a dam break in a closed box, two long, one across and 1.2 high with water 0.8 long and 0.6 deep,
-//! in boxes of any number of particles. Processor time is counted beside wall time, as a shared machine moves the latter, and
-//! what is compared is measured in turns within one run.
+//! The case is a dam break in a closed box, two long, one across and 1.2 high with water 0.8 long and 0.6 deep, with
+//! any number of particles. Processor time is measured beside wall time, because other load on a shared machine changes
+//! the wall time. Cases to be compared are measured in turns within one run.
 
 use std::{
     path::{Path, PathBuf},
@@ -21,74 +22,74 @@ use crate::{
     solid::Dim,
 };
 
-/// How long one timing lasts at least, s.
+/// Least duration of one timing, s.
 const LASTS: f64 = 0.5;
 
 /// Depth of the water, m.
 const DEPTH: f64 = 0.6;
 
-/// One work: so many particles of water, and what else the scene says.
+/// A benchmark case: its number of water particles and its changes of the scene.
 #[derive(Clone, Debug)]
 pub struct BenchCase {
-    /// What it is called.
+    /// Name of the case.
     pub name: String,
-    /// 2 or 3.
+    /// Dimension, 2 or 3.
     pub dimension: usize,
-    /// Water particles, about.
+    /// Approximate number of water particles.
     pub water: usize,
-    /// Keys of the scene that differ from the standard model.
+    /// Scene keys that differ from the standard model, and their values.
     pub overrides: Vec<(&'static str, &'static str)>,
-    /// Whether a box floats in it.
+    /// Whether a box floats in the water.
     pub with_body: bool,
-    /// What watches it: entries of a scene.
+    /// The probes, as TOML entries of a scene.
     pub probes_toml: String,
-    /// How much longer the tank is than the standard one, all of it dry: 1 or more.
+    /// Length of the tank relative to the standard tank, 1 or more; the additional length is dry.
     pub dry: f64,
-    /// Simulated before the timing, in units of √(depth/g).
+    /// Simulated time before the timing, in units of √(depth/g).
     pub spin_up: f64,
 }
 
-/// What a timing gave.
+/// The result of a timing.
 #[derive(Clone, Debug, Serialize)]
 pub struct BenchTiming {
-    /// Name of the work.
+    /// Name of the case.
     pub work: String,
-    /// Dimensions.
+    /// Dimension.
     pub dimension: usize,
-    /// Threads.
+    /// Number of threads.
     pub threads: usize,
-    /// Water particles.
+    /// Number of water particles.
     pub water: usize,
-    /// Boundary particles with water near them.
+    /// Number of boundary particles near water.
     pub wet: usize,
-    /// Boundary particles without.
+    /// Number of boundary particles without water near them.
     pub dry: usize,
-    /// Steps timed.
+    /// Number of timed steps.
     pub steps: usize,
-    /// Wall time of a step, s.
+    /// Wall time per step, s.
     pub step_s: f64,
-    /// Water and wet boundary particles moved on by a step in a second, 1/s.
+    /// Water and wet boundary particles times steps per second of wall time, 1/s.
     pub particle_steps_per_s: f64,
     /// Processor time per particle and step, ns.
     pub cpu_ns: f64,
-    /// Pairs within the support, each from both sides, per particle.
+    /// Interacting pairs per particle; each pair is counted from both sides.
     pub pairs: f64,
-    /// Time of the pair sweep (all threads) per such pair, ns.
+    /// Time of the pair sweep, summed over all threads, per pair as counted in `pairs`, ns.
     pub pair_ns: f64,
-    /// LoadBreakdown of the step, %: lists and sorting, pairs, bodies; the rest moves and packs particles.
+    /// Share of the step's time for lists and sorting, %. The remaining time moves and packs particles.
     pub lists_percent: f64,
-    /// See above.
+    /// Share of the step's time for the pairs, %.
     pub pairs_percent: f64,
-    /// See above.
+    /// Share of the step's time for the bodies, %.
     pub bodies_percent: f64,
-    /// Making the first particles and lists, on as many threads as any timing of the work has, s.
+    /// Time to create the first particles and lists, s, with the largest number of threads of any timing of the case.
     pub setup_s: f64,
-    /// Largest memory of the program since it began with this work, over the work's particles, B.
+    /// Peak memory of the program since it began this case, divided by the number of particles of the case, B.
     pub peak_bytes: f64,
 }
 
 impl BenchCase {
-    /// The standard work with the standard model.
+    /// Returns the standard case with the standard model.
     pub fn standard(dimension: usize, water: usize) -> Self {
         let (sets, watched) = (Vec::new(), String::new());
         Self {
@@ -103,17 +104,17 @@ impl BenchCase {
         }
     }
 
-    /// The same under another name with other keys of the scene.
+    /// Returns the same case under another name with other scene keys.
     pub fn with_overrides(&self, name: &str, sets: &[(&'static str, &'static str)]) -> Self {
         Self { name: name.into(), overrides: sets.to_vec(), ..self.clone() }
     }
 
-    /// Particle spacing, m: a whole number of them in a metre.
+    /// Returns the particle spacing, m; its inverse is a whole number per metre.
     fn dp(&self) -> f64 {
         1.0 / (1.0 / (0.8 * DEPTH / self.water as f64).powf(1.0 / self.dimension as f64)).round().max(10.0)
     }
 
-    /// The work as a scene.
+    /// Returns the scene of the case.
     fn scene(&self) -> Result<Scene> {
         let dp = self.dp();
         let cells = |x: f64| (x / dp).round() * dp;
@@ -148,11 +149,11 @@ impl BenchCase {
     }
 }
 
-/// Makes every work ready and times them in turns, `rounds` times on each number of `threads`; gives for each number and
-/// each work the round of least processor time.
+/// Prepares every case and times the cases in turns, `rounds` times on each number of `threads`. Returns the round of
+/// least processor time for each number of threads and each case.
 ///
 /// # Errors
-/// Whatever stops a simulation, and `Usage` if threads cannot be had.
+/// Any error of a simulation, and `Usage` if the threads cannot be created.
 pub fn time(works: &[BenchCase], threads: &[usize], rounds: usize) -> Result<Vec<BenchTiming>> {
     let pools = threads.iter().map(|&n| Ok((n, thread_pool(Some(n))?))).collect::<Result<Vec<_>>>()?;
     let Some((_, largest)) = pools.iter().max_by_key(|(n, _)| n) else { return Ok(Vec::new()) };
@@ -175,7 +176,7 @@ pub fn time(works: &[BenchCase], threads: &[usize], rounds: usize) -> Result<Vec
     Ok(timings)
 }
 
-/// A work made ready, whatever its dimension.
+/// A prepared case of either dimension.
 trait TimedCase: Send {
     fn step(&mut self) -> Result<()>;
     fn time(&mut self, threads: usize) -> Result<BenchTiming>;
@@ -193,7 +194,7 @@ fn prepare(work: &BenchCase) -> Result<Box<dyn TimedCase>> {
 
 struct PreparedCase<const D: usize> {
     sim: Simulation<D>,
-    /// What is watched, and the folder for it.
+    /// The outputs and their folder.
     outputs: Option<(outputs::Outputs<D>, TemporaryFolder)>,
     name: String,
     setup_s: f64,
@@ -201,12 +202,12 @@ struct PreparedCase<const D: usize> {
     pairs: f64,
 }
 
-/// A folder that goes when it is dropped.
+/// A folder that is removed when the value is dropped.
 struct TemporaryFolder(PathBuf);
 
 impl Drop for TemporaryFolder {
     fn drop(&mut self) {
-        // What stays lies among temporary files: the system's business.
+        // A folder that cannot be removed stays among the temporary files, which the operating system removes.
         let _ = std::fs::remove_dir_all(&self.0);
     }
 }
@@ -244,7 +245,7 @@ where
         let mut pairs = 0usize;
         for (i, r) in system.fluid().r.iter().enumerate() {
             system.visit_fluid_near(r, &mut |j, _, _| pairs += usize::from(j != i));
-            // A pair with a boundary particle is seen from it as well.
+            // The boundary particle counts the same pair as well.
             system.visit_boundary_near(r, &mut |_, _, _| pairs += 2);
         }
         let pairs = pairs as f64 / (system.fluid().len() + system.boundary_near_fluid_count()) as f64;
@@ -300,7 +301,7 @@ impl<const D: usize> TimedCase for PreparedCase<D> {
     }
 }
 
-/// The laws and other things that a scene may name, each against the standard work (the first).
+/// Returns the cases that each add a law or another option of a scene to the standard case, which is the first entry.
 pub fn term_cases(dimension: usize, water: usize) -> Vec<BenchCase> {
     let base = BenchCase::standard(dimension, water);
     let mut works = vec![
@@ -332,17 +333,17 @@ pub fn term_cases(dimension: usize, water: usize) -> Vec<BenchCase> {
         probes_toml: format!("[[probe]]\n{kind} = {what}\nevery = 1e-9\n"),
         ..named(&format!("{kind} at every step"))
     }));
-    // As many steps, if the speed of sound alone limits them.
+    // This time gives the same number of steps if the speed of sound alone limits them.
     let steps = 20.0 * 0.2 * 3f64.sqrt() * base.dp() / (20.0 * (9.81 * DEPTH).sqrt());
     works.push(BenchCase { probes_toml: format!("[frames]\nevery = {steps:?}\n"), ..named("a frame every 20 steps") });
     works
 }
 
-/// A small work for counting instructions: so many steps of the work `name` of [`term_cases`] in 2-D and in 3-D on one
-/// thread, of 3,000 water particles each.
+/// Makes `steps` steps of the case `name` of [`term_cases`] in 2-D and in 3-D on one thread, with 3,000 water particles
+/// each. This small case is meant for counting instructions.
 ///
 /// # Errors
-/// `Usage` if there is no such work, and whatever stops a simulation.
+/// `Usage` if no case has this name, and any error of a simulation.
 pub fn run_fixed_steps(steps: usize, name: &str) -> Result<()> {
     let work = |dimension| term_cases(dimension, 3000).into_iter().find(|w| w.name == name);
     let (Some(plane), Some(space)) = (work(2), work(3)) else {
@@ -359,14 +360,14 @@ pub fn run_fixed_steps(steps: usize, name: &str) -> Result<()> {
     })
 }
 
-/// Largest memory of the program since [`reset_peak_memory`], B, where the system tells.
+/// Returns the peak memory of the program since [`reset_peak_memory`], B, if the operating system reports it.
 fn peak_memory() -> f64 {
     let text = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = text.lines().find_map(|line| line.strip_prefix("VmHWM:"));
     line.and_then(|l| l.split_whitespace().next()?.parse::<f64>().ok()).map_or(f64::NAN, |kib| kib * 1024.0)
 }
 
-/// Lets the largest memory begin anew, where the system can: elsewhere it is that of the whole program.
+/// Resets the peak memory if the operating system can do so; otherwise the peak is that of the whole program.
 fn reset_peak_memory() {
     let _ = std::fs::write("/proc/self/clear_refs", "5");
 }

@@ -1,7 +1,7 @@
-//! What the user types, and what the program answers.
+//! The command line: arguments, output and exit codes.
 //!
-//! Exit codes: 0 all well; 1 the computation could not go on; 2 something in the command, the scene or a file
-//! is wrong; 3 a check misses its bound; 130 interrupted.
+//! Exit codes: 0 success; 1 the computation could not continue; 2 an error in the command, the scene or a file; 3 a
+//! check exceeds its bound; 130 interrupted.
 
 mod bench;
 mod export;
@@ -211,7 +211,7 @@ struct SceneArgs {
 }
 
 impl SceneArgs {
-    /// The scene keys that the arguments change.
+    /// Returns the scene keys that the arguments change.
     fn overrides(&self) -> Vec<(String, String)> {
         let mut sets = self.set.clone();
         sets.extend(self.dp.map(|dp| ("dp".into(), format!("{dp:?}"))));
@@ -221,7 +221,7 @@ impl SceneArgs {
     }
 }
 
-/// `key=value` as a pair.
+/// Parses `key=value` as a pair.
 fn key_value(text: &str) -> std::result::Result<(String, String), String> {
     match text.split_once('=') {
         Some((key, value)) if !key.trim().is_empty() => Ok((key.trim().into(), value.trim().into())),
@@ -229,7 +229,7 @@ fn key_value(text: &str) -> std::result::Result<(String, String), String> {
     }
 }
 
-/// Parses, obeys, and says how it went.
+/// Parses the command line, runs the command, prints its result and returns the exit code.
 pub fn main() -> ExitCode {
     match dispatch(Cli::parse().command) {
         Ok(code) => ExitCode::from(code),
@@ -240,7 +240,7 @@ pub fn main() -> ExitCode {
     }
 }
 
-/// The exit code of an error.
+/// Returns the exit code of an error.
 fn exit_code(error: &Error) -> u8 {
     if error.kind == ErrorKind::Fault { 1 } else { 2 }
 }
@@ -288,19 +288,19 @@ fn dispatch(command: Command) -> Result<u8> {
     }
 }
 
-/// What the user typed, for records.
+/// Returns the command line as typed, for records.
 fn command_line() -> String {
     let quoted = |word: String| if word.contains([' ', '{', '"', '*']) { format!("'{word}'") } else { word };
     let words: Vec<String> = std::env::args().skip(1).map(quoted).collect();
     format!("pontoon {}", words.join(" "))
 }
 
-/// A flag that Ctrl-C raises; a second Ctrl-C ends the program at once.
+/// Returns a flag that Ctrl-C sets; a second Ctrl-C ends the program immediately.
 fn interrupt_flag() -> Result<Arc<AtomicBool>> {
     interrupt_flag_with_message("\nstopping after this step, with a checkpoint; Ctrl-C again stops at once, without\n")
 }
 
-/// As [`interrupt_flag`], in these words.
+/// Returns the flag of [`interrupt_flag`] and prints `words` at the first Ctrl-C.
 fn interrupt_flag_with_message(words: &'static str) -> Result<Arc<AtomicBool>> {
     let flag = Arc::new(AtomicBool::new(false));
     let raised = flag.clone();
@@ -315,12 +315,12 @@ fn interrupt_flag_with_message(words: &'static str) -> Result<Arc<AtomicBool>> {
     Ok(flag)
 }
 
-/// Prints results. A reader who has gone, as `head` does, is no reason to fail.
+/// Prints results. A closed output, as after `head`, is no error.
 fn print_output(text: &str) {
     let _ = std::io::stdout().write_all(text.as_bytes());
 }
 
-/// Prints what is not a result: progress, warnings, errors.
+/// Prints text other than results: progress, warnings, errors.
 fn print_error(text: &str) {
     let _ = std::io::stderr().write_all(text.as_bytes());
 }

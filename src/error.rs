@@ -1,25 +1,25 @@
-//! Errors as help: what is wrong, where, the nearest valid name, what to do. Nothing here prints.
+//! Errors that name the fault, its location, the nearest valid name and the remedy. This module prints nothing.
 
 use std::{fmt, io, path::Path};
 
 use serde::{Serialize, Serializer};
 
-/// Result with this crate's [`Error`].
+/// A result with this crate's [`Error`].
 pub type Result<T> = std::result::Result<T, Error>;
 
-/// What sort of trouble it is; decides the exit code and which report is written.
+/// The kind of an error. It determines the exit code and the report that the program writes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum ErrorKind {
-    /// The scene, or a file that it names, says something that cannot be meant.
+    /// The scene, or a file that it names, has invalid content.
     Scene,
-    /// A command line or call asks for something that is not there.
+    /// A command line or call asks for an object that does not exist.
     Usage,
     /// A file or folder cannot be read or written.
     File,
-    /// The computation left the valid range: see [`Error::fault`].
+    /// The computation left the valid range; see [`Error::fault`].
     Fault,
-    /// A checkpoint is damaged, or of another version or scene.
+    /// A checkpoint is damaged, or belongs to another version or scene.
     Restart,
 }
 
@@ -97,7 +97,7 @@ error_codes! {
 }
 
 impl ErrorCode {
-    /// The code of an error of `kind` whose family is not known.
+    /// Returns the general code of errors of `kind`.
     const fn of_kind(kind: ErrorKind) -> Self {
         match kind {
             ErrorKind::Scene => Self::InvalidScene,
@@ -121,12 +121,12 @@ impl Serialize for ErrorCode {
     }
 }
 
-/// Where in a text file the trouble lies.
+/// The position of an error in a text file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SourceLocation {
-    /// The file, as the user named it; empty where only the key is known yet.
+    /// The file name as given by the user; empty while only the key is known.
     pub file: String,
-    /// Line and column, both from 1, if known.
+    /// Line and column, both counted from 1, if they are known.
     pub line_column: Option<(usize, usize)>,
     /// The key, as in `model.viscosity`; may be empty.
     pub key: String,
@@ -135,13 +135,13 @@ pub struct SourceLocation {
 /// The particle or body with which a run failed.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Fault {
-    /// The identifier of its family.
+    /// The code of this error.
     pub code: ErrorCode,
-    /// What was seen, in words: "speed above the speed of sound".
+    /// The observation, for example "speed above the speed of sound".
     pub reason: String,
-    /// "fluid particle 1234", "body \"buoy\"".
+    /// The particle or body, for example "fluid particle 1234" or "body \"buoy\"".
     pub who: String,
-    /// Steps done before the failed one.
+    /// Number of steps completed before the failed step.
     pub step: u64,
     /// Simulated time, s.
     pub time: f64,
@@ -149,45 +149,45 @@ pub struct Fault {
     pub position: Vec<f64>,
     /// Velocity, m/s.
     pub velocity: Vec<f64>,
-    /// Density, kg/m³, of a particle.
+    /// Density, kg/m³; absent for a body.
     pub density: Option<f64>,
-    /// What usually causes this, and what to try.
+    /// The usual cause and the remedy to try.
     pub cause: String,
 }
 
-/// An error that says what, where, and what to do.
+/// An error with its message, its location and its remedy.
 #[derive(Clone, PartialEq)]
 pub struct Error {
-    /// Sort of trouble.
+    /// Kind of the error.
     pub kind: ErrorKind,
     pub(crate) code: ErrorCode,
-    /// One sentence: what is wrong.
+    /// One sentence that describes the fault.
     pub message: String,
-    /// Where it is wrong, if in a file.
+    /// Location of the fault, if the fault lies in a file.
     pub location: Option<Box<SourceLocation>>,
-    /// What to do about it.
+    /// The remedy, if one is known.
     pub help: Option<String>,
     /// The failed particle or body, for [`ErrorKind::Fault`].
     pub fault: Option<Box<Fault>>,
 }
 
 impl Error {
-    /// An error of `kind` saying `what`, with the general code of that kind.
+    /// Creates an error of `kind` with the message `what` and the general code of `kind`.
     pub fn new(kind: ErrorKind, what: impl Into<String>) -> Self {
         Self { kind, code: ErrorCode::of_kind(kind), message: what.into(), location: None, help: None, fault: None }
     }
 
-    /// A [`ErrorKind::Scene`] error.
+    /// Creates a [`ErrorKind::Scene`] error.
     pub fn scene(what: impl Into<String>) -> Self {
         Self::new(ErrorKind::Scene, what)
     }
 
-    /// A [`ErrorKind::File`] error about the content of `path`.
+    /// Creates a [`ErrorKind::File`] error about the content of `path`.
     pub fn file(path: &Path, why: impl fmt::Display) -> Self {
         Self::new(ErrorKind::File, format!("{}: {why}", path.display()))
     }
 
-    /// A [`ErrorKind::File`] error: `path` cannot be read.
+    /// Creates a [`ErrorKind::File`] error for a `path` that cannot be read.
     pub fn read(path: &Path, why: &io::Error) -> Self {
         Self::file(path, why).with_code(match why.kind() {
             io::ErrorKind::NotFound => ErrorCode::FileNotFound,
@@ -195,7 +195,8 @@ impl Error {
         })
     }
 
-    /// A [`ErrorKind::File`] error: `path` cannot be changed; `verb` completes "cannot be", as in "written" or "made".
+    /// Creates a [`ErrorKind::File`] error for a `path` that cannot be changed; `verb` completes "cannot be", as in
+    /// "written" or "made".
     pub fn write(path: &Path, verb: &str, why: &io::Error) -> Self {
         Self::file(path, format!("cannot be {verb}: {why}")).with_code(match why.kind() {
             io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => ErrorCode::DiskFull,
@@ -203,7 +204,7 @@ impl Error {
         })
     }
 
-    /// A [`ErrorKind::File`] error: the table at `path` cannot be read.
+    /// Creates a [`ErrorKind::File`] error for a table at `path` that cannot be read.
     pub(crate) fn table(path: &Path, why: &csv::Error) -> Self {
         match why.kind() {
             csv::ErrorKind::Io(io) => Self::read(path, io),
@@ -211,7 +212,7 @@ impl Error {
         }
     }
 
-    /// The stable identifier of its family, for programs.
+    /// Returns the stable identifier of the error's family, for programs.
     ///
     /// ```
     /// use pontoon::{error::ErrorCode, scene::Scene};
@@ -225,13 +226,13 @@ impl Error {
         self.code
     }
 
-    /// The same error with another code.
+    /// Returns the same error with another code.
     pub fn with_code(mut self, code: ErrorCode) -> Self {
         self.code = code;
         self
     }
 
-    /// A [`ErrorKind::Fault`] error: a run that cannot go on.
+    /// Creates a [`ErrorKind::Fault`] error for a run that cannot continue.
     pub fn fault(fault: Fault) -> Self {
         let at: Vec<String> = fault.position.iter().map(|x| format!("{x:.6}")).collect();
         let what = format!(
@@ -246,13 +247,13 @@ impl Error {
         Self { fault: Some(Box::new(fault)), ..error }
     }
 
-    /// The same error with advice on what to do.
+    /// Returns the same error with advice for the user.
     pub fn help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(help.into());
         self
     }
 
-    /// The same error with its place; a place that is already known is kept.
+    /// Returns the same error with this location; a location that is already known is kept.
     pub fn at(mut self, file: impl Into<String>, line_column: Option<(usize, usize)>, key: impl Into<String>) -> Self {
         self.location
             .get_or_insert_with(|| Box::new(SourceLocation { file: file.into(), line_column, key: key.into() }));
@@ -281,7 +282,7 @@ impl fmt::Display for Error {
     }
 }
 
-/// The same words: a program whose `main` returns an error prints them so.
+/// Prints the same text as `Display`, because a program whose `main` returns an error prints its `Debug` form.
 impl fmt::Debug for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         fmt::Display::fmt(self, f)
@@ -290,15 +291,15 @@ impl fmt::Debug for Error {
 
 impl std::error::Error for Error {}
 
-/// The end of an error message that names the entry of `known` nearest to `word`: `; did you mean "x"?`, or nothing.
+/// Returns the end of an error message that names the entry of `known` nearest to `word`: `; did you mean "x"?`, or nothing.
 pub(crate) fn suggestion<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> String {
     nearest_name(word, known).map_or(String::new(), |name| format!("; did you mean \"{name}\"?"))
 }
 
-/// Words longer than this are no slips of the pen, and would take long to compare.
+/// Longest name, in bytes, that is compared: longer names are no typing errors, and the comparison would be slow.
 const LONG: usize = 100;
 
-/// The entry of `known` nearest to `word`, if it is near enough to be what was meant.
+/// Returns the entry of `known` nearest to `word`, if it is near enough to be the intended name.
 pub fn nearest_name<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     known
         .into_iter()

@@ -1,4 +1,4 @@
-//! What is to be watched, kept and judged in a run, every default filled in: plain data, no files open.
+//! The outputs and checks of a run, with every default filled in. A plan is plain data and opens no files.
 
 use std::path::PathBuf;
 
@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::probe::{ContactListPlan, ProbePlan};
 
-/// What a run does besides stepping.
+/// The outputs, checks and end time of a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Plan {
@@ -15,63 +15,63 @@ pub struct Plan {
     pub title: String,
     /// Simulated time at which the run ends, s.
     pub until: f64,
-    /// What is watched.
+    /// The probes.
     pub probes: Vec<ProbePlan>,
-    /// Lists of all contacts.
+    /// The lists of all contacts.
     pub contacts: Vec<ContactListPlan>,
-    /// Frames for ParaView, if any.
+    /// The frames for ParaView, if the scene asks for frames.
     pub frames: Option<FramesPlan>,
-    /// Simulated time from one checkpoint to the next, s; none if not asked for.
+    /// Simulated interval between checkpoints, s; absent if the scene sets no interval.
     pub checkpoint_every: Option<f64>,
-    /// Wall time from one checkpoint to the next, s.
+    /// Wall time between checkpoints, s.
     pub checkpoint_wall: f64,
-    /// What the run is held against.
+    /// The comparisons with references.
     pub checks: Vec<CheckPlan>,
-    /// What is said of its series besides what is said of all.
+    /// The statistics that the scene declares, in addition to the statistics of every series.
     pub statistics: Vec<StatisticPlan>,
-    /// Folder of the scene file: where the tables it names lie.
+    /// Folder of the scene file, which also holds the tables that the scene names.
     pub folder: PathBuf,
 }
 
-/// When frames are written, and with which fields.
+/// The interval and the fields of the frames.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct FramesPlan {
-    /// Simulated time from one frame to the next, s.
+    /// Simulated time between frames, s.
     pub every: f64,
-    /// Fields of the particles, by name.
+    /// Names of the particle fields.
     pub fields: Vec<String>,
-    /// Lowest and highest corner (m) of the box whose water is kept; all if none.
+    /// Lowest and highest corner (m) of the box whose water is written; without a box, all water is written.
     pub crop: Option<[Vec<f64>; 2]>,
 }
 
-/// What is said of series of the run.
+/// A statistic of one or several series of the run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct StatisticPlan {
-    /// Its name.
+    /// Name of the statistic.
     pub name: String,
-    /// What it is.
+    /// Kind of the statistic.
     pub what: StatisticKind,
-    /// First time of the run that counts, s.
+    /// First time of the run that is evaluated, s.
     pub from: Option<f64>,
-    /// Last time of the run that counts, s.
+    /// Last time of the run that is evaluated, s.
     pub until: Option<f64>,
 }
 
-/// What is said of series. A series is `probe.column`, as in `box.heave_m`.
+/// The kind of a statistic. A series is named `probe.column`, as in `box.heave_m`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum StatisticKind {
-    /// Extremes, means, waves and spectrum.
+    /// Extremes, means, waves and spectrum of each series.
     Waves {
-        /// Of these.
+        /// The series.
         series: Vec<String>,
     },
-    /// What comes and what goes back, from gauges in a row.
+    /// Incident and reflected waves, from a row of gauges.
     Reflection {
-        /// Elevations, and how far along the way of the waves that come, m.
+        /// Elevation series and the position of each gauge in the direction of the incident waves, m.
         gauges: Vec<(String, f64)>,
         /// Depth of the water, m.
         depth: f64,
@@ -80,11 +80,11 @@ pub enum StatisticKind {
         /// Period of regular waves, s.
         period: Option<f64>,
     },
-    /// How motions answer a wave.
+    /// Response amplitude operators (RAOs) of motions in a wave.
     Rao {
-        /// The motions.
+        /// Series of the motions.
         motions: Vec<String>,
-        /// The wave.
+        /// Series of the wave.
         wave: String,
         /// Period of regular waves, s.
         period: Option<f64>,
@@ -92,7 +92,7 @@ pub enum StatisticKind {
 }
 
 impl StatisticKind {
-    /// The series that it is about.
+    /// Returns the names of the series that the statistic evaluates.
     pub(crate) fn series(&self) -> Vec<&str> {
         match self {
             Self::Waves { series } => series.iter().map(String::as_str).collect(),
@@ -102,32 +102,32 @@ impl StatisticKind {
     }
 }
 
-/// A series of the run held against a reference.
+/// A comparison of a series of the run with a reference.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct CheckPlan {
     /// `probe.column`, as in `box.heave_m`.
     pub series: String,
-    /// What it is held against.
+    /// The reference.
     pub reference: Reference,
-    /// First time of the run that counts, s.
+    /// First time of the run that is compared, s.
     pub from: Option<f64>,
-    /// Last time of the run that counts, s.
+    /// Last time of the run that is compared, s.
     pub until: Option<f64>,
     /// Time of the run at which the instrument was set to zero, s.
     pub zero: Option<f64>,
-    /// Time over which the instrument takes its mean, s.
+    /// Length of the interval over which the instrument averages, s.
     pub mean: Option<f64>,
-    /// How the run is moved in time to lie on the reference.
+    /// Method by which the run is shifted in time to match the reference.
     pub align: Option<Align>,
-    /// What the paper reached.
+    /// The scores that the paper reports.
     pub paper: Option<Score>,
-    /// What the run must reach.
+    /// The bounds that the run must satisfy.
     pub bound: Option<Score>,
 }
 
 impl CheckPlan {
-    /// The whole of `series`, named as in `box.heave_m`, against `reference`, without a bound.
+    /// Creates a check of the whole of `series`, named as in `box.heave_m`, against `reference`, without a bound.
     pub fn new(series: impl Into<String>, reference: Reference) -> Self {
         Self {
             series: series.into(),
@@ -142,43 +142,43 @@ impl CheckPlan {
         }
     }
 
-    /// The same check from this time (s) of the run on.
+    /// Returns the same check, starting at the time `from` (s) of the run.
     pub fn from(self, from: f64) -> Self {
         Self { from: Some(from), ..self }
     }
 
-    /// The same check up to this time (s) of the run.
+    /// Returns the same check, ending at the time `until` (s) of the run.
     pub fn until(self, until: f64) -> Self {
         Self { until: Some(until), ..self }
     }
 
-    /// The same check of an instrument that was set to zero at this time (s) of the run.
+    /// Returns the same check for an instrument that was set to zero at the time `zero` (s) of the run.
     pub fn zero(self, zero: f64) -> Self {
         Self { zero: Some(zero), ..self }
     }
 
-    /// The same check of an instrument that takes its mean over this time (s).
+    /// Returns the same check for an instrument that averages over the time `mean` (s).
     pub fn mean(self, mean: f64) -> Self {
         Self { mean: Some(mean), ..self }
     }
 
-    /// The same check of a run that is moved in time.
+    /// Returns the same check with the run shifted in time by the method `align`.
     pub fn align(self, align: Align) -> Self {
         Self { align: Some(align), ..self }
     }
 
-    /// The same check with this bound.
+    /// Returns the same check with this bound.
     pub fn bound(self, bound: Score) -> Self {
         Self { bound: Some(bound), ..self }
     }
 
-    /// The series in words, with when it was set to zero.
+    /// Returns a label with the name of the series and the time at which the instrument was set to zero.
     pub(crate) fn label(&self) -> String {
         self.zero.map_or(self.series.clone(), |at| format!("{}, 0 at {at} s", self.series))
     }
 }
 
-/// What a series is held against.
+/// The reference of a check.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
@@ -191,7 +191,7 @@ pub enum Reference {
         time: String,
         /// Its column of values.
         column: String,
-        /// Time added to the table's, s: what it calls 0 happens `delay` into the run.
+        /// Delay added to the times of the table, s: time 0 of the table is the time `delay` of the run.
         delay: f64,
     },
     /// A formula in the run's time t (s).

@@ -1,5 +1,5 @@
-//! The commands `run`, `resume` and `inspect` as functions: read the scene, choose the dimension, build,
-//! step, record, check.
+//! The commands `run`, `resume` and `inspect` as functions. They read the scene, select the dimension, build the
+//! simulation, step it, record its outputs and evaluate its checks.
 //!
 //! ```no_run
 //! use pontoon::run::{RunOptions, Progress, run};
@@ -43,29 +43,30 @@ use crate::{
     solid::Dim,
 };
 
-/// What a run is asked for beside its scene.
+/// The options of a run in addition to its scene.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RunOptions {
-    /// Folder for the results, new or empty. By default `runs/<scene>`, with a number if that is taken.
+    /// Folder for the results, new or empty. The default is `runs/<scene>`, with a number appended if that folder
+    /// exists.
     pub out: Option<PathBuf>,
-    /// Keys of the scene and the values that replace the scene's own, as in `("dp", "0.02")`.
+    /// Scene keys and the values that replace the values of the scene, as in `("dp", "0.02")`.
     pub overrides: Vec<(String, String)>,
-    /// Threads; by default one for each processor. They change the speed, never the result.
+    /// Number of threads; the default is one for each processor. It changes the speed but never the result.
     pub threads: Option<usize>,
 }
 
-/// What is known when a run begins.
+/// The data that are known when a run begins.
 #[derive(Clone, Copy, Debug)]
 pub struct RunStart<'a> {
     /// The run's folder.
     pub folder: &'a Path,
-    /// What the manifest says at the start: caption, particles, threads, warnings.
+    /// The manifest at the start: caption, particles, threads, warnings.
     pub manifest: &'a Manifest,
-    /// The keys and values that the scene writes with an old name.
+    /// The keys and values that the scene writes with a former name.
     pub renamed: &'a [RenamedName],
 }
 
-/// How far a run is.
+/// The progress of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Progress {
     /// Simulated time, s.
@@ -74,29 +75,31 @@ pub struct Progress {
     pub until: f64,
     /// Last time step, s.
     pub dt: f64,
-    /// Steps done.
+    /// Number of completed steps.
     pub steps: u64,
-    /// Wall time so far, s, that before an interruption included.
+    /// Wall time so far, s, including the time before an interruption.
     pub wall: f64,
-    /// Water and boundary particles beside it × force passes ÷ wall time of stepping, 1/s.
+    /// Water particles and boundary particles near water, times force passes, divided by the wall time of stepping,
+    /// 1/s.
     pub rate: f64,
-    /// What became of the energy, if a probe watches it.
+    /// The energy drift, if a probe measures it.
     pub energy: Option<EnergyDrift>,
 }
 
-/// Someone who follows a run. Any `FnMut(&Progress) -> bool` does.
+/// An observer of a run. Every `FnMut(&Progress) -> bool` implements this trait.
 pub trait RunObserver: Send {
-    /// Told once, before the first step.
+    /// Receives the start of the run, once, before the first step.
     fn start(&mut self, start: &RunStart) {
         let _ = start;
     }
 
-    /// Told when the run goes back to a good state after an alarm.
+    /// Receives a rollback, when the run returns to an earlier valid state after an alarm.
     fn rolled_back(&mut self, how: &Rollback) {
         let _ = how;
     }
 
-    /// Told before the first step and after each; `false` asks the run to stop now, with a checkpoint.
+    /// Receives the progress before the first step and after each step. If it returns `false`, the run writes a
+    /// checkpoint and stops.
     fn step(&mut self, now: &Progress) -> bool;
 }
 
@@ -106,7 +109,7 @@ impl<F: FnMut(&Progress) -> bool + Send> RunObserver for F {
     }
 }
 
-/// Where a free body is at the end.
+/// The state of a free body at the end.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FinalBodyState {
     /// Its name.
@@ -115,7 +118,7 @@ pub struct FinalBodyState {
     pub position: Vec<f64>,
     /// Speed of its centre of mass, m/s.
     pub speed: f64,
-    /// Axial angles of its frame, deg: one in 2-D, a rotation vector in 3-D.
+    /// Rotation of its frame, deg: one angle in 2-D, a rotation vector in 3-D.
     pub rotation_deg: Vec<f64>,
 }
 
@@ -124,26 +127,26 @@ pub struct FinalBodyState {
 pub struct RunOutcome {
     /// The run's folder.
     pub folder: PathBuf,
-    /// The manifest as written there.
+    /// The manifest as it is written in the folder.
     pub manifest: Manifest,
-    /// The free bodies.
+    /// The final states of the free bodies.
     pub bodies: Vec<FinalBodyState>,
-    /// The last of the manifest's warnings: those that only the end could tell.
+    /// The last warnings of the manifest, which only the end of the run could determine.
     pub end_warnings: Vec<String>,
 }
 
 impl RunOutcome {
-    /// Whether a check misses its bound.
+    /// Returns whether any check exceeds its bound.
     pub fn has_failed_checks(&self) -> bool {
         self.manifest.checks.iter().any(|verdict| verdict.passed == Some(false))
     }
 }
 
-/// Runs the scene at `path`, a folder with a `scene.toml` or such a file.
+/// Runs the scene at `path`, which is a scene file or a folder with a `scene.toml`.
 ///
 /// # Errors
-/// `Scene`, `Usage`, `File` before anything is written or when a file cannot be written; `Fault` when the
-/// computation cannot go on: then the run's folder holds everything up to then and `failure.json`.
+/// `Scene`, `Usage` or `File` before anything is written; `File` when a file cannot be written; `Fault` when the
+/// computation cannot continue. After a `Fault` the run's folder holds all output up to the fault and `failure.json`.
 pub fn run(path: &Path, options: &RunOptions, watch: &mut dyn RunObserver) -> Result<RunOutcome> {
     let file = run_folder::scene_file(path);
     let scene = Scene::read(&file, &options.overrides)?;
@@ -151,13 +154,14 @@ pub fn run(path: &Path, options: &RunOptions, watch: &mut dyn RunObserver) -> Re
     with_threads(options.threads, || by_dimension(&scene, origin, watch))
 }
 
-/// Goes on with the interrupted run in `folder`, to the same bits as if it had not been interrupted: from its last
-/// checkpoint, or the one before where that is missing or damaged; a warning in the manifest says so. `guards` are
-/// keys of the scene's `[guard]` and their new values: a run that a guard stopped may go on with another.
+/// Continues the interrupted run in `folder`; the results are bitwise identical to an uninterrupted run. The run
+/// continues from its last checkpoint. If that checkpoint is missing or damaged, it continues from the previous
+/// checkpoint, and the manifest records a warning. `guards` holds keys of the scene's `[guard]` and their new values: a
+/// run that a guard stopped can continue with another guard.
 ///
 /// # Errors
-/// `Restart` if it has finished or still goes on, holds no whole checkpoint, or its scene has changed since;
-/// `Usage` if `guards` names any other key; else as [`run`].
+/// `Restart` if the run has finished or is still in progress, holds no complete checkpoint, or its scene has changed
+/// since; `Usage` if `guards` names any other key; otherwise as [`run`].
 pub fn resume(
     folder: &Path,
     guards: &[(String, String)],
@@ -166,7 +170,7 @@ pub fn resume(
 ) -> Result<RunOutcome> {
     Manifest::read(folder)?;
     let lock = Lock::acquire(folder)?;
-    // Read again under the lock: a run that was still going on may have finished since.
+    // The manifest is read again under the lock, because a run in progress may have finished since.
     if Manifest::read(folder)?.status == RunStatus::Finished {
         let what = format!("the run in {} has finished: there is nothing to go on with", folder.display());
         return Err(
@@ -179,15 +183,15 @@ pub fn resume(
     with_threads(threads, || by_dimension(&scene, origin, watch))
 }
 
-/// Where a run comes from.
+/// The origin of a run.
 enum RunOrigin<'a> {
-    /// A scene file, for the folder `out` or one of our choice.
+    /// A scene file, for the folder `out` or a folder that the program chooses.
     Fresh { file: &'a Path, out: Option<&'a Path>, overrides: &'a [(String, String)] },
     /// A checkpoint in the run's folder.
     Resumed { folder: &'a Path, checkpoint: Box<Checkpoint>, warning: Option<String>, lock: Lock },
 }
 
-/// Chooses the dimension: the one place.
+/// Selects the dimension; no other function does.
 fn by_dimension(scene: &Scene, origin: RunOrigin, watch: &mut dyn RunObserver) -> Result<RunOutcome> {
     match scene.dimension {
         #[cfg(feature = "dim2")]
@@ -205,18 +209,18 @@ where
     runner::Runner::<D>::new(scene, origin)?.run(scene.renamed_names(), watch)
 }
 
-/// The error of a scene in a dimension that this program was built without.
+/// Returns the error for a scene whose dimension is not compiled into this program.
 pub(crate) fn missing_dimension(dimension: usize) -> Error {
     Error::new(ErrorKind::Usage, format!("this program was built without the {dimension}-D engine"))
         .help(format!("build it with the feature dim{dimension}: cargo build --release --features dim{dimension}"))
 }
 
-/// Runs `work` in a pool of `threads` threads.
+/// Runs `work` in a pool of `threads` threads and returns its result.
 fn with_threads<T: Send>(threads: Option<usize>, work: impl FnOnce() -> Result<T> + Send) -> Result<T> {
     thread_pool(threads)?.install(work)
 }
 
-/// A pool of `threads` threads, by default one for each processor.
+/// Creates a pool of `threads` threads, by default one for each processor.
 pub(crate) fn thread_pool(threads: Option<usize>) -> Result<rayon::ThreadPool> {
     if threads == Some(0) {
         return Err(

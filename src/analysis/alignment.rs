@@ -1,44 +1,45 @@
-//! One constant delay between a run and its reference: clocks that differ, a gate that took time to open.
+//! Removal of one constant delay between a run and its reference, for example from different clocks or the opening time
+//! of a gate.
 
 use serde::{Deserialize, Serialize};
 
 use super::error_metrics::{amplitude_ratio, relative_l2};
 use crate::{math::time_series::TimeSeries, plan::Align};
 
-/// The largest delay of either sign that [`best_delay`] looks at, s.
+/// Largest magnitude of the delays that [`best_delay`] tries, s.
 const MAX_DELAY: f64 = 0.3;
 
-/// From one delay that is tried to the next, s: a hundredth of the period of the shortest waves in a tank.
+/// Interval between the delays that [`best_delay`] tries, s: a hundredth of the period of the shortest waves in a tank.
 const STEP: f64 = 0.002;
 
-/// Share of the reference that must lie within the run for a delay to count, –: else the best would be that
-/// which moves the difficult part out of sight.
+/// Smallest share of the reference that must lie within the run for a valid delay, –. Otherwise the best delay could
+/// exclude the difficult part of the reference.
 const MIN_OVERLAP: f64 = 0.9;
 
-/// A run against its reference once one constant delay is taken out.
+/// Metrics of a run and its reference after removal of one constant delay.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AlignedMetrics {
-    /// By how much the run is late, s; negative where it leads.
+    /// Delay of the run, s; negative where the run leads.
     pub delay: f64,
-    /// Relative deviation then, –.
+    /// Relative deviation after removal of the delay, –.
     #[serde(rename = "N")]
     pub relative_l2: f64,
-    /// Amplitude ratio then, –.
+    /// Amplitude ratio after removal of the delay, –.
     #[serde(rename = "M")]
     pub amplitude_ratio: f64,
 }
 
-/// When both series first pass a threshold, s; none if they never do.
+/// Times at which both series first pass a threshold, s; `None` if a series never passes it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ArrivalTimes {
-    /// The run.
+    /// Arrival time in the run.
     pub run: Option<f64>,
-    /// Its reference; 0 where its clock starts then.
+    /// Arrival time in the reference; 0 where the reference's clock starts at the arrival.
     pub reference: Option<f64>,
 }
 
-/// The two once the delay is taken out that `align` means, and when they arrive if it says so; `sim` may
-/// reach further than `window`, in which arrivals count.
+/// Returns the metrics after removal of the delay that `align` defines, and the arrival times if `align` sets a
+/// threshold. `sim` may extend beyond `window`, which limits the arrivals.
 pub(crate) fn align(
     sim: &TimeSeries,
     reference: &TimeSeries,
@@ -65,10 +66,11 @@ pub(crate) fn align(
     (aligned, arrival)
 }
 
-/// The delay (s) within ±0.3 s by which `sim` is late for the least N against `reference`; none if there is
-/// no such delay, as where the reference is zero.
+/// Returns the delay (s) of `sim` within ±0.3 s for which N against `reference` is least, or `None` if no such delay
+/// exists, for example where the reference is zero.
 ///
-/// Every 2 ms is tried, the smallest first, and the best is refined by golden sections to a microsecond.
+/// The function tries every 2 ms, in order of magnitude, and refines the best delay by golden-section search to a
+/// microsecond.
 /// ```
 /// # use pontoon::{analysis::best_delay, math::time_series::TimeSeries};
 /// let t: Vec<f64> = (0..400).map(|i| 0.01 * i as f64).collect();
@@ -101,7 +103,8 @@ pub fn best_delay(sim: &TimeSeries, reference: &TimeSeries) -> Option<f64> {
     Some(if n(fine).is_some_and(|n| n < least) { fine } else { middle })
 }
 
-/// `reference` as much later as the run is late, where the run covers it; none if it covers too little.
+/// Returns `reference` shifted by the delay of the run, over the times of the run, or `None` if the run covers too
+/// little of it.
 fn shifted_reference(sim: &TimeSeries, reference: &TimeSeries, delay: f64) -> Option<TimeSeries> {
     let (first, last) = sim.span();
     let moved = reference.shifted(delay).window(first, last).ok()?;

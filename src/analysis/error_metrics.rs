@@ -1,20 +1,22 @@
-//! Measures of the difference between two series: deviation N, amplitude M, first peak, largest distance.
+//! Measures of the difference between two series: deviation N, amplitude M, first peak, largest difference.
 
 use crate::{
     error::{Error, Result},
     math::time_series::TimeSeries,
 };
 
-/// Relative deviation of a simulated series from a measured one: 0 is perfect.
+/// Returns the relative deviation of a simulated series from a measured series: 0 is perfect.
 ///
 ///   N = √( Σ (sim_i − ref_i)² / Σ ref_i² )
 ///
-/// `sim`, `reference`: values over time (s), same unit, any lengths ≥ 2: `sim` is interpolated
-/// linearly to the reference's times. Returns N (–). Its companion [`amplitude_ratio`] judges size alone.
+/// `sim` and `reference` are values over time (s) in the same unit, with at least two samples each. The function
+/// interpolates `sim` linearly to the reference's times. Returns N (–). Use [`amplitude_ratio`] to compare the
+/// magnitudes alone.
 ///
 /// # Errors
-/// `Scene` if the reference leaves the simulated span (names both spans; shorten the reference or lengthen
-/// the run), or is zero throughout (use [`amplitude_ratio`] of the two the other way round).
+/// `Scene` if the reference extends beyond the simulated span (the error names both spans; shorten the reference or
+/// lengthen the run). `Scene` also if the reference is zero throughout (use [`amplitude_ratio`] with both series
+/// exchanged).
 ///
 /// Source: @pirkhalili2023, eq. (26).
 /// ```
@@ -28,7 +30,7 @@ pub fn relative_l2(sim: &TimeSeries, reference: &TimeSeries) -> Result<f64> {
     relative_norm(sim, reference, |s, r| (s - r) * (s - r))
 }
 
-/// Size of a simulated series relative to a measured one: 1 is perfect.
+/// Returns the amplitude of a simulated series relative to a measured series: 1 is perfect.
 ///
 ///   M = √( Σ sim_i² / Σ ref_i² )
 ///
@@ -46,12 +48,12 @@ pub fn amplitude_ratio(sim: &TimeSeries, reference: &TimeSeries) -> Result<f64> 
     relative_norm(sim, reference, |s, _| s * s)
 }
 
-/// Relative error of the first peak, as of the first impact on a wall: 0 is perfect.
+/// Returns the relative error of the first peak, for example of the first impact on a wall: 0 is perfect.
 ///
 ///   |peak_sim − peak_ref| / |peak_ref|
 ///
-/// The first peak is the largest |x| of the first stretch in which |x| stays above half of the series'
-/// largest, so that ripples on the way up do not count. Each series has its own; their times may differ.
+/// The first peak is the largest |x| of the first interval in which |x| stays above half of the series' maximum.
+/// Ripples before the peak therefore do not count. Each series has its own first peak, and their times may differ.
 /// Returns the error (–).
 ///
 /// # Errors
@@ -72,15 +74,15 @@ pub fn first_peak_error(sim: &TimeSeries, reference: &TimeSeries) -> Result<f64>
     Ok((first_peak(sim.values()) - expected).abs() / expected.abs())
 }
 
-/// Largest distance of a simulated series from its reference: 0 is perfect. It says something where the
-/// reference is zero too.
+/// Returns the largest absolute difference of a simulated series from its reference: 0 is perfect. The measure is also
+/// defined where the reference is zero.
 ///
 ///   max |sim_i − ref_i|
 ///
-/// Arguments as for [`relative_l2`]. Returns the distance, in the unit of the series.
+/// Arguments as for [`relative_l2`]. Returns the difference, in the unit of the series.
 ///
 /// # Errors
-/// `Scene` if the reference leaves the simulated span.
+/// `Scene` if the reference extends beyond the simulated span.
 /// ```
 /// # use pontoon::{analysis::max_abs, math::time_series::TimeSeries};
 /// let still = TimeSeries::new([0.0, 1.0, 2.0], [0.0, 0.0, 0.0])?;
@@ -94,14 +96,14 @@ pub fn max_abs(sim: &TimeSeries, reference: &TimeSeries) -> Result<f64> {
     Ok(pairs.map(|(&t, &r)| (sim.value_at(t) - r).abs()).fold(0.0, f64::max))
 }
 
-/// The value of the first peak, with its sign.
+/// Returns the value of the first peak, with its sign.
 fn first_peak(x: &[f64]) -> f64 {
     let half = 0.5 * x.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
     let stretch = x.iter().skip_while(|x| x.abs() < half).take_while(|x| x.abs() >= half);
     stretch.fold(0.0, |peak: f64, &x| if x.abs() > peak.abs() { x } else { peak })
 }
 
-/// √( Σ term(sim_i, ref_i) / Σ ref_i² ) over the reference's times.
+/// Returns √( Σ term(sim_i, ref_i) / Σ ref_i² ) over the reference's times.
 fn relative_norm(sim: &TimeSeries, reference: &TimeSeries, term: impl Fn(f64, f64) -> f64) -> Result<f64> {
     require_coverage(sim, reference)?;
     let size: f64 = reference.values().iter().map(|r| r * r).sum();
@@ -113,7 +115,7 @@ fn relative_norm(sim: &TimeSeries, reference: &TimeSeries, term: impl Fn(f64, f6
     Ok((sum / size).sqrt())
 }
 
-/// Refuses a reference that leaves the simulated span.
+/// Refuses a reference that extends beyond the simulated span.
 fn require_coverage(sim: &TimeSeries, reference: &TimeSeries) -> Result<()> {
     let (inner, outer) = (reference.span(), sim.span());
     if inner.0 < outer.0 || inner.1 > outer.1 {

@@ -1,24 +1,25 @@
-//! Verdicts in words: a row for each, and only columns that one of them uses. For terminals and pages alike.
+//! Verdicts as text: one row for each verdict, with only the columns that at least one verdict uses. Terminals and web
+//! pages show these rows.
 
 use super::Verdict;
 use crate::{math::format, plan::Score};
 
-/// A figure with three decimals, or a dash.
+/// Returns a metric with three decimals, or a dash.
 pub(crate) fn format_metric(x: Option<f64>) -> String {
     x.map_or("–".into(), |x| format!("{x:.3}"))
 }
 
-/// A figure in the unit of its series: three digits that count.
+/// Returns a value in the unit of its series, with three significant digits.
 pub(crate) fn format_value(x: Option<f64>) -> String {
     x.map_or("–".into(), |x| format::significant_digits(x, 3, 0.0..f64::INFINITY))
 }
 
-/// A delay in ms, with its sign.
+/// Returns a delay in ms, with its sign.
 pub(crate) fn format_delay(seconds: f64) -> String {
     format!("{:+.0} ms", seconds * 1e3)
 }
 
-/// The bound in words.
+/// Returns the bound as text.
 pub(crate) fn format_bound(bound: Option<Score>) -> String {
     let Some(b) = bound else { return String::new() };
     let said = [
@@ -33,7 +34,7 @@ pub(crate) fn format_bound(bound: Option<Score>) -> String {
     words.join(", ")
 }
 
-/// Whether the bound is kept, or why nobody knows.
+/// Returns whether the run meets the bound, or the reason for an unknown result.
 pub(crate) fn format_outcome(verdict: &Verdict) -> String {
     match (verdict.passed, &verdict.note) {
         (Some(true), _) => "kept".into(),
@@ -43,10 +44,12 @@ pub(crate) fn format_outcome(verdict: &Verdict) -> String {
     }
 }
 
-/// A column of the table: its head, and its text for a verdict; an empty one says that it has none.
+/// A column of the table: its head, and the function that returns its text for a verdict. The text is empty if the
+/// verdict has no such value.
 type VerdictColumn = (&'static str, fn(&Verdict) -> String);
 
-/// Columns before the bound. Those after the first three stand only if some check has something to say there.
+/// Columns before the bound. The table shows those after the first three only if at least one verdict has a value for
+/// them.
 const COLUMNS: [VerdictColumn; 13] = [
     ("check", |v| v.series.clone()),
     ("N", |v| format_metric(v.metrics.relative_l2)),
@@ -70,20 +73,21 @@ const COLUMNS: [VerdictColumn; 13] = [
     }),
 ];
 
-/// Whether the series is a load as an instrument takes it: its first peak is the first impact.
+/// Returns whether the series is a load with a running mean of an instrument, so that its first peak is the first
+/// impact.
 fn is_impact_load(verdict: &Verdict) -> bool {
-    // A second check of a series is told as "force.fx_N (2)".
+    // The name of a second check of a series has a suffix, as in "force.fx_N (2)".
     let column = verdict.series.split(" (").next().unwrap_or_default();
     verdict.meaned.is_some() && ["N", "N/m", "Pa"].contains(&format::unit(column))
 }
 
-/// Whether the bound or the paper names a figure.
+/// Returns whether the bound or the paper has a value for the metric that `which` selects.
 fn has_limit(verdict: &Verdict, which: fn(&Score) -> Option<f64>) -> bool {
     [&verdict.bound, &verdict.paper].into_iter().flatten().any(|score| which(score).is_some())
 }
 
-/// The table of `verdicts`, the first row its head; before each stand the cells that it comes with, under
-/// `heads`.
+/// Returns the table of `verdicts`; the first row is the head. The leading cells of each verdict precede its columns,
+/// under the headings `heads`.
 pub fn verdict_rows(verdicts: &[(&[String], &Verdict)], heads: &[&str]) -> Vec<Vec<String>> {
     let used = |(i, (_, text)): &(usize, &VerdictColumn)| *i < 3 || verdicts.iter().any(|(_, v)| !text(v).is_empty());
     let columns: Vec<&VerdictColumn> = COLUMNS.iter().enumerate().filter(used).map(|(_, column)| column).collect();

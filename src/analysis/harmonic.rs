@@ -1,10 +1,10 @@
-//! The part of a series that swings with a known period.
+//! The harmonic component of a series at a known period.
 
 use nalgebra::{Matrix3, Vector3};
 
 use crate::math::time_series::TimeSeries;
 
-/// What swings in a series: x(t) ≈ mean + amplitude · cos(ωt + phase).
+/// Harmonic component of a series: x(t) ≈ mean + amplitude · cos(ωt + phase).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Harmonic {
     /// Mean, in the unit of the series.
@@ -15,8 +15,9 @@ pub struct Harmonic {
     pub phase: f64,
 }
 
-/// The harmonic of angular frequency `omega` (1/s) in `series`, by least squares over the samples: exact for one that has no
-/// other, whatever the samples' times. None if the samples do not tell it, as less than a few of them.
+/// Returns the harmonic of angular frequency `omega` (1/s) in `series`, by least squares over the samples. The fit is
+/// exact for a series without other components, whatever the sample times. Returns `None` if the samples do not
+/// determine the harmonic, for example if they are too few.
 pub fn harmonic(series: &TimeSeries, omega: f64) -> Option<Harmonic> {
     let (mut normal, mut right) = (Matrix3::zeros(), Vector3::zeros());
     for (&t, &x) in series.times().iter().zip(series.values()) {

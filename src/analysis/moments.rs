@@ -2,7 +2,7 @@
 
 use crate::math::time_series::TimeSeries;
 
-/// Figures of a series.
+/// Statistics of a series.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Moments {
     /// Least value and its time, s.
@@ -17,11 +17,11 @@ pub(crate) struct Moments {
     pub last: f64,
 }
 
-/// The figures of `series`:
+/// Returns the statistics of `series`:
 ///
 ///   x̄ = 1/T ∫ x dt,   σ² = 1/T ∫ (x − x̄)² dt
 ///
-/// by the trapezoid over the samples, in the unit of the series.
+/// The function integrates by the trapezoidal rule over the samples; results are in the unit of the series.
 pub(crate) fn moments(series: &TimeSeries) -> Moments {
     let (t, x) = (series.times(), series.values());
     let (first, last) = series.span();

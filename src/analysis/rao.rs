@@ -1,4 +1,4 @@
-//! How a motion answers a wave: the response amplitude operator, RAO = X/A at a frequency.
+//! Response of a motion to a wave: the response amplitude operator, RAO = X/A at a frequency.
 
 use std::f64::consts::TAU;
 
@@ -11,28 +11,29 @@ use super::{
 };
 use crate::math::time_series::TimeSeries;
 
-/// How far about the peak of the waves lines count, over its frequency.
+/// Half width of the frequency range about the peak of the waves, relative to the peak frequency.
 const PEAK_HALF_WIDTH: f64 = 0.1;
 
-/// Waves of a record at least of which the answer is told over frequency: eight in each quarter.
+/// Smallest number of waves in a record with an RAO over frequency: eight in each quarter.
 pub(crate) const MIN_WAVES_FOR_RAO: usize = 8 * SEGMENTS;
 
-/// Least density of the waves at a frequency at which they are answered, over that at their peak, –.
+/// Smallest spectral density of the waves at a frequency with an RAO, relative to the density at their peak, –.
 const MIN_WAVE_DENSITY: f64 = 0.02;
 
-/// An answer.
+/// A response amplitude operator.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Rao {
     /// Amplitude of the motion over that of the wave, in the units of both.
     pub ratio: f64,
     /// Phase of the motion less that of the wave, rad, −π to π: positive if the motion is ahead.
     pub phase: f64,
-    /// At which period, s.
+    /// Period of the response, s.
     pub period: f64,
 }
 
-/// How `motion` answers `wave`: by a fit of both harmonics of this `period` (s), or else within a tenth about the peak of the
-/// waves, as the cross spectrum over that of the waves. None if there is no such wave, or the series are too short.
+/// Returns the RAO of `motion` to `wave`. With a `period` (s), the function fits the harmonics of both series. Without
+/// a period, it divides the cross spectrum by the wave spectrum within a tenth of the peak frequency on both sides of
+/// the peak. Returns `None` if the wave has no such component, or the series are too short.
 pub(crate) fn rao(motion: &TimeSeries, wave: &TimeSeries, period: Option<f64>) -> Option<Rao> {
     let (ratio, period) = match period {
         Some(period) => {
@@ -53,25 +54,26 @@ pub(crate) fn rao(motion: &TimeSeries, wave: &TimeSeries, period: Option<f64>) -
     ratio.norm().is_finite().then(|| Rao { ratio: ratio.norm(), phase: ratio.arg(), period })
 }
 
-/// An answer at one frequency of irregular waves.
+/// An RAO at one frequency of irregular waves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RaoPoint {
-    /// Hz.
+    /// Frequency, Hz.
     pub frequency: f64,
     /// Amplitude of the motion over that of the wave, in the units of both.
     pub ratio: f64,
     /// Phase of the motion less that of the wave, rad, −π to π: positive if the motion is ahead.
     pub phase: f64,
-    /// Coherence γ², 0 to 1: the share of the motion's variance here that answers the wave.
+    /// Coherence γ², 0 to 1: the share of the motion's variance at this frequency that is linearly related to the wave.
     pub coherence: f64,
 }
 
-/// How `motion` answers the irregular `wave` over frequency:
+/// Returns the RAO of `motion` to the irregular `wave` over frequency:
 ///
 ///   H₁ = S_ax/S_aa,   γ² = |S_ax|²/(S_aa S_xx)
 ///
-/// by means over seven parts, quarters of the record and those that lie half over two (@bendat2010, @welch1967). Only where
-/// the waves have a fiftieth of the density at their peak or more. None of fewer than 32 waves, or where nothing moves.
+/// The spectra are means over seven segments: quarters of the record, and the segments that overlap them by half
+/// (@bendat2010, @welch1967). The list contains only frequencies at which the waves have at least a fiftieth of their
+/// peak density. The list is empty if there are fewer than 32 waves or the motion is zero.
 pub(crate) fn rao_over_frequency(motion: &TimeSeries, wave: &TimeSeries) -> Vec<RaoPoint> {
     let swings = zero_crossing_waves(motion).is_some()
         && zero_crossing_waves(wave).is_some_and(|waves| waves.count >= MIN_WAVES_FOR_RAO);

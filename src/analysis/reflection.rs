@@ -1,9 +1,9 @@
-//! What comes and what goes back, from gauges in a row.
+//! Incident and reflected waves from wave gauges in a row.
 //!
 //!   η(x, t) = Re [ I e^{i(ωt − kx)} + R e^{i(ωt + kx)} ],   ω² = g k tanh kd
 //!
-//! I and R by least squares over the gauges, of three or more (@mansard1980; two will do where they are not half a wave
-//! length apart).
+//! I and R result from least squares over three or more gauges (@mansard1980). Two gauges suffice where their distance
+//! is not half a wavelength.
 
 use std::f64::consts::TAU;
 
@@ -12,36 +12,36 @@ use realfft::num_complex::Complex;
 use super::{complex_amplitudes, harmonic, spectrum};
 use crate::{math::time_series::TimeSeries, wavemaker::wave_number};
 
-/// Least determinant of the least squares over the square of the number of gauges, –: below, the gauges stand so that
-/// both waves look alike.
+/// Smallest determinant of the least squares, divided by the square of the number of gauges, –. Below this value, the
+/// gauge positions do not separate the two waves.
 const LEAST: f64 = 0.05;
 
-/// Frequencies that count, over the peak's.
+/// Range of the frequencies in the analysis, relative to the peak frequency.
 const BAND: [f64; 2] = [0.5, 2.0];
 
-/// Waves to and fro.
+/// Incident and reflected waves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Reflection {
-    /// Height of the waves that come, in the unit of the series: H of regular waves, H_m0 of irregular ones.
+    /// Height of the incident waves, in the unit of the series: H of regular waves, H_m0 of irregular waves.
     pub incident: f64,
-    /// Height of those that go back.
+    /// Height of the reflected waves, in the unit of the series.
     pub reflected: f64,
 }
 
 impl Reflection {
-    /// Reflection coefficient, –.
+    /// Returns the reflection coefficient, –.
     pub(crate) fn coefficient(&self) -> f64 {
         self.reflected / self.incident
     }
 }
 
-/// The waves at `gauges`, each its place (m) along the way of the waves that come and its elevation, in water `depth` (m) deep
-/// under `g` (m/s²).
+/// Returns the incident and reflected waves at `gauges`, in water of depth `depth` (m) under `g` (m/s²). Each gauge has
+/// a position (m) in the direction of the incident waves, and an elevation series.
 ///
-/// With a `period` (s) those of this period, by a fit of the harmonic at each gauge; without one all from half to twice the
-/// peak frequency, line by line of the spectra, but for lines to which the gauges are blind.
+/// With a `period` (s), the function fits the harmonic of this period at each gauge. Without a period, it analyses all
+/// spectral lines from half to twice the peak frequency, except lines at which the gauges do not separate the waves.
 ///
-/// None if there are fewer than two gauges, they cannot tell the two apart, or the series are too short.
+/// Returns `None` if there are fewer than two gauges, they cannot separate the two waves, or the series are too short.
 pub(crate) fn reflection(gauges: &[(f64, &TimeSeries)], depth: f64, g: f64, period: Option<f64>) -> Option<Reflection> {
     let places: Vec<f64> = gauges.iter().map(|(x, _)| *x).collect();
     if places.len() < 2 {
@@ -74,12 +74,13 @@ fn irregular_reflection(gauges: &[(f64, &TimeSeries)], places: &[f64], depth: f6
             seen += lines[0][j].norm_sqr();
         }
     }
-    // The lines have a common factor, which the variance at the first gauge gives.
+    // The amplitudes of all lines have a common factor; the variance at the first gauge determines it.
     let scale = first.moment(0, from, until) / seen;
     (seen > 0.0).then(|| Reflection { incident: 4.0 * (comes * scale).sqrt(), reflected: 4.0 * (goes * scale).sqrt() })
 }
 
-/// Amplitudes of the waves of number `k` (1/m) that come and that go back, from those at `places` (m).
+/// Returns the amplitudes of the incident and reflected waves with wave number `k` (1/m), from the amplitudes at
+/// `places` (m).
 fn separate_waves(places: &[f64], amplitudes: &[Complex<f64>], k: f64) -> Option<(Complex<f64>, Complex<f64>)> {
     let n = places.len() as f64;
     let turn = |x: &f64| Complex::from_polar(1.0, k * x);

@@ -1,56 +1,58 @@
-//! Spectra by Welch's method: means of Hann-windowed periodograms of half-overlapping parts of a record. @welch1967
+//! Spectra by Welch's method: each is the mean of Hann-windowed periodograms of half-overlapping segments of a record.
+//! @welch1967
 
 use realfft::{RealFftPlanner, num_complex::Complex};
 
 use super::{moments, zero_crossing_waves};
 use crate::math::time_series::TimeSeries;
 
-/// Fewest samples of a record.
+/// Smallest number of samples of a record.
 const LEAST: usize = 16;
 
-/// Waves that a part of a record holds at least, where the record is cut at all.
+/// Smallest number of waves in a segment of a record, where the record is divided.
 const WAVES_A_PART: usize = 16;
 
-/// Into how many quarters a long record is cut; with those that lie half over two there are seven.
+/// Number of quarters into which a long record is divided; together with the half-overlapping segments there are seven.
 pub(super) const SEGMENTS: usize = 4;
 
-/// Waves that a series has at least whose spectrum is shown: fewer lines than that a wave's width are no spectrum.
+/// Smallest number of waves in a series with a displayed spectrum: with fewer waves the frequency resolution is too
+/// coarse.
 const SHOWN_WAVES: usize = 8;
 
-/// How much of a spectrum's variance is shown, –; what is faster is noise.
+/// Share of the variance that a displayed spectrum contains, –; the highest frequencies are noise.
 const DISPLAYED_VARIANCE: f64 = 0.999;
 
-/// Complex amplitudes, from frequency 0 up.
+/// Complex amplitudes, from frequency 0 upwards.
 pub(crate) type ComplexAmplitudes = Vec<Complex<f64>>;
 
-/// A one-sided spectrum, its integral the variance of the record.
+/// A one-sided spectrum; its integral is the variance of the record.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct WelchSpectrum {
-    /// From one frequency to the next, Hz; the first is 0.
+    /// Interval between frequencies, Hz; the first frequency is 0.
     pub frequency_step: f64,
-    /// Density, in the squared unit of the series a Hz.
+    /// Spectral density, in the squared unit of the series per Hz.
     pub density: Vec<f64>,
 }
 
 impl WelchSpectrum {
-    /// Frequencies, Hz.
+    /// Returns the frequencies, Hz.
     pub(crate) fn frequencies(&self) -> impl Iterator<Item = f64> + '_ {
         (0..self.density.len()).map(|i| i as f64 * self.frequency_step)
     }
 
-    /// ∫ fⁿ S df from `from` to `until` (Hz).
+    /// Returns ∫ fⁿ S df from `from` to `until` (Hz).
     pub(crate) fn moment(&self, n: i32, from: f64, until: f64) -> f64 {
         let inside = self.frequencies().zip(&self.density).filter(|(f, _)| (from..=until).contains(f));
         inside.map(|(f, s)| f.powi(n) * s).sum::<f64>() * self.frequency_step
     }
 
-    /// Significant height H_m0 = 4 √m₀, in the unit of the series.
+    /// Returns the significant height H_m0 = 4 √m₀, in the unit of the series.
     pub(crate) fn significant_height(&self) -> f64 {
         4.0 * self.moment(0, 0.0, f64::INFINITY).sqrt()
     }
 
-    /// Peak frequency, Hz: the centroid of the highest line and two on either side, over which a Hann window spreads what
-    /// swings with one period.
+    /// Returns the peak frequency, Hz: the centroid of the highest line and two lines on either side. A Hann window
+    /// spreads a harmonic component over these lines.
     pub(crate) fn peak_frequency(&self) -> f64 {
         let lines = 0..self.density.len();
         let top = lines.max_by(|a, b| self.density[*a].total_cmp(&self.density[*b])).unwrap_or(0);
@@ -58,21 +60,22 @@ impl WelchSpectrum {
         near().map(|(f, s)| f * s).sum::<f64>() / near().map(|(_, s)| s).sum::<f64>()
     }
 
-    /// Peak period T_p, s.
+    /// Returns the peak period T_p, s.
     pub(crate) fn peak_period(&self) -> f64 {
         1.0 / self.peak_frequency()
     }
 
-    /// Mean period T_m02 = √(m₀/m₂), s.
+    /// Returns the mean period T_m02 = √(m₀/m₂), s.
     pub(crate) fn mean_period(&self) -> f64 {
         (self.moment(0, 0.0, f64::INFINITY) / self.moment(2, 0.0, f64::INFINITY)).sqrt()
     }
 }
 
-/// The spectrum of `series`; none if it is constant or has fewer than 16 samples.
+/// Returns the spectrum of `series`, or `None` if the series is constant or has fewer than 16 samples.
 ///
-/// Samples are taken evenly from the smooth curve through the series, less their mean. A record of 64 waves or more is cut
-/// into quarters that overlap by half; a shorter one is taken whole.
+/// The function takes evenly spaced samples of the smooth curve through the series, and subtracts their mean. It
+/// divides a record of 64 waves or more into quarters, with further segments that overlap them by half. It uses a
+/// shorter record as a single segment.
 pub(crate) fn spectrum(series: &TimeSeries) -> Option<WelchSpectrum> {
     let of = moments(series);
     if of.min.0 == of.max.0 {
@@ -94,7 +97,8 @@ pub(crate) fn spectrum(series: &TimeSeries) -> Option<WelchSpectrum> {
     Some(WelchSpectrum { frequency_step: step, density })
 }
 
-/// The spectrum of `series` as it is shown: of eight waves or more, up to the frequency below which 99.9 % of the variance lies.
+/// Returns the displayed spectrum of `series`, up to the frequency below which 99.9 % of the variance lies, or `None`
+/// if the series has fewer than eight waves.
 pub(crate) fn displayed_spectrum(series: &TimeSeries) -> Option<WelchSpectrum> {
     zero_crossing_waves(series).filter(|waves| waves.count >= SHOWN_WAVES)?;
     let mut all = spectrum(series)?;
@@ -109,15 +113,16 @@ pub(crate) fn displayed_spectrum(series: &TimeSeries) -> Option<WelchSpectrum> {
     Some(all)
 }
 
-/// Amplitudes of several series at common frequencies: from one frequency to the next (Hz), and for each series
-/// its amplitudes of cos(2πft + phase) as `amplitude · e^{i phase}`, but for a factor common to all. None as for [`spectrum`].
+/// Returns the interval (Hz) between the common frequencies of several series, and the complex amplitudes of each
+/// series. The amplitude of cos(2πft + phase) is `amplitude · e^{i phase}`, except for a factor common to all series.
+/// Returns `None` if a series has fewer than 16 samples, or the series have no time in common.
 pub(crate) fn complex_amplitudes(series: &[&TimeSeries]) -> Option<(f64, Vec<ComplexAmplitudes>)> {
     let (step, parts) = segment_transforms(series, 1)?;
     Some((step, parts.into_iter().map(|mut of| of.swap_remove(0)).collect()))
 }
 
-/// From one frequency to the next (Hz), and for each series the transforms of its windowed parts, over the time that all
-/// cover: `cut` into so many, and those that lie half over two.
+/// Returns the interval between frequencies (Hz), and for each series the transforms of its windowed segments. The
+/// segments lie in the time that all series cover: `cut` equal segments, and those that overlap two of them by half.
 pub(super) fn segment_transforms(series: &[&TimeSeries], cut: usize) -> Option<(f64, Vec<Vec<ComplexAmplitudes>>)> {
     let spans = series.iter().map(|s| s.span());
     let (from, until) = spans.fold((f64::NEG_INFINITY, f64::INFINITY), |(a, b), (x, y)| (a.max(x), b.min(y)));

@@ -1,4 +1,4 @@
-//! Verdicts: a column of the run's own CSV against a column of a reference CSV, or against a formula.
+//! Verdicts: the module compares a column of the run's own CSV with a column of a reference CSV, or with a formula.
 
 use std::path::{Path, PathBuf};
 
@@ -14,36 +14,36 @@ use crate::{
     plan::{Align, CheckPlan, Reference, Score},
 };
 
-/// A reference that a run is to be held against.
+/// A reference for a comparison with a run.
 #[derive(Clone, Debug)]
 pub struct ReferenceCheck {
     plan: CheckPlan,
     reference: KnownReference,
 }
 
-/// What is known of a series.
+/// The data of a reference.
 #[derive(Clone, Debug)]
 enum KnownReference {
-    /// Samples, their delay added, in the window.
+    /// Samples in the window, with their delay added.
     Table(TimeSeries),
-    /// A value at any time.
+    /// A formula, which has a value at any time.
     Formula(Formula),
 }
 
-/// A run and what it is held against, as lines.
+/// The curves of a run and its reference.
 #[derive(Clone, Debug)]
 pub struct CheckCurves {
     /// The run, from its start to its end.
     pub sim: TimeSeries,
-    /// The same as the check's instrument shows it, if it has one.
+    /// The run after the running mean of the check's instrument, if the check defines an instrument.
     pub running_mean: Option<TimeSeries>,
-    /// The reference, where both the window and the run cover it.
+    /// The reference, over the times that both the window and the run cover.
     pub reference: TimeSeries,
     /// Whether the reference is a formula.
     pub exact: bool,
 }
 
-/// Figures of a comparison; one is none where it cannot be formed.
+/// Metrics of a comparison; a metric is `None` where it is not defined.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ErrorMetrics {
     /// Relative deviation, –.
@@ -58,48 +58,48 @@ pub struct ErrorMetrics {
     pub off: Option<f64>,
 }
 
-/// The figures of the run as an instrument shows it that takes a running mean.
+/// Metrics of the run after the running mean of an instrument.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RunningMeanMetrics {
-    /// Over how long, s.
+    /// Averaging time of the running mean, s.
     pub seconds: f64,
-    /// The figures.
+    /// Metrics of the running mean.
     #[serde(flatten)]
     pub metrics: ErrorMetrics,
 }
 
-/// How a run did against a reference.
+/// Result of the comparison of a run with a reference.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Verdict {
-    /// Which series, as `probe.column`.
+    /// Name of the series, as `probe.column`.
     pub series: String,
-    /// The figures of the run as it is.
+    /// Metrics of the run without a running mean.
     #[serde(flatten)]
     pub metrics: ErrorMetrics,
-    /// The figures of its running mean, if the check asks for one.
+    /// Metrics of the running mean, if the check asks for a running mean.
     pub meaned: Option<RunningMeanMetrics>,
-    /// N and M with one delay taken out, of the running mean if there is one.
+    /// N and M after removal of one constant delay; they refer to the running mean if the check has one.
     pub aligned: Option<AlignedMetrics>,
-    /// When run and reference first pass the threshold of the check, if it has one.
+    /// Times at which run and reference first pass the threshold of the check, if it has a threshold.
     pub arrival: Option<ArrivalTimes>,
-    /// What the paper reached.
+    /// Metrics that the paper reports.
     pub paper: Option<Score>,
-    /// What the run must reach.
+    /// Metrics that the run must reach.
     pub bound: Option<Score>,
     /// Share of the reference that lies within the simulated time, –.
     pub covered: f64,
-    /// Whether the bound is kept; none if there is no bound or too little to judge by.
+    /// Whether the run meets the bound; `None` if there is no bound or the data do not suffice.
     pub passed: Option<bool>,
-    /// Why a figure is missing.
+    /// Reason for a missing metric.
     pub note: Option<String>,
 }
 
 impl ReferenceCheck {
-    /// The check of a run that `words` mean; the tables that they name lie in `folder`.
+    /// Makes the check of a run from its plan `words`; relative table paths refer to `folder`.
     ///
     /// # Errors
-    /// `File` if the table cannot be read; `Scene` if it lacks a column, has fewer than two samples in the
-    /// window, or the formula is none.
+    /// `File` if the table cannot be read. `Scene` if the table lacks a column or has fewer than two samples in the
+    /// window, or if the formula is invalid.
     pub fn new(words: &CheckPlan, folder: &Path) -> Result<Self> {
         let reference = match &words.reference {
             Reference::Formula(text) => KnownReference::Formula(Formula::parse(text)?),
@@ -115,16 +115,16 @@ impl ReferenceCheck {
         Ok(Self { plan: words.clone(), reference })
     }
 
-    /// What it looks at and what for.
+    /// Returns the plan of the check.
     pub fn plan(&self) -> &CheckPlan {
         &self.plan
     }
 
-    /// The run whose tables lie in `folder`, and its reference.
+    /// Returns the curves of the run with tables in `folder`, and of its reference.
     ///
     /// # Errors
-    /// `File` if the run's table cannot be read; `Scene` if it has no such column, or the run and the
-    /// reference have no time in common.
+    /// `File` if the run's table cannot be read; `Scene` if the table lacks the column, or the run and the reference
+    /// have no time in common.
     pub fn curves(&self, folder: &Path) -> Result<CheckCurves> {
         let (sim, meaned) = self.run_series(folder)?;
         let (reference, ..) = self.overlap(&sim)?;
@@ -132,8 +132,9 @@ impl ReferenceCheck {
         Ok(CheckCurves { sim, running_mean: meaned, reference, exact })
     }
 
-    /// The verdict on the run whose tables lie in `folder`, over the times that both cover. Never fails: a
-    /// comparison that cannot be made says so in its note, and misses its bound unless the run is too short.
+    /// Returns the verdict on the run with tables in `folder`, over the times that run and reference both cover. The
+    /// function never fails. If a comparison is impossible, the note of the verdict states the reason. The run then
+    /// misses its bound, if the check has a bound, unless the run is too short.
     pub fn verdict(&self, folder: &Path) -> Verdict {
         let mut verdict = self.empty_verdict();
         let (sim, meaned) = match self.run_series(folder) {
@@ -146,7 +147,8 @@ impl ReferenceCheck {
         let (reference, covered, start) = match self.overlap(&sim) {
             Ok(common) => common,
             Err(why) => {
-                // A run that ends before its reference begins, or before it is set to zero, is too short, no failure.
+                // A run that ends before its reference begins, or before its zero time, is too short; it is not a
+                // failure.
                 let (from, until) = window(&self.plan, 0.0);
                 let set = self.plan.zero.is_none_or(|at| at <= sim.span().1);
                 let reaches =
@@ -194,7 +196,7 @@ impl ReferenceCheck {
         }
     }
 
-    /// The run's series, and what the instrument shows of it.
+    /// Returns the series of the run, and its running mean if the check has an instrument.
     fn run_series(&self, folder: &Path) -> Result<(TimeSeries, Option<TimeSeries>)> {
         let (probe, column) = self.plan.series.split_once('.').unwrap_or((&self.plan.series, ""));
         let path: PathBuf = folder.join(format!("{probe}.csv"));
@@ -206,7 +208,7 @@ impl ReferenceCheck {
         Ok((sim, meaned))
     }
 
-    /// When the reference's clock starts, s of the run's: 0 unless it has one of its own.
+    /// Returns the time of the run at which the reference's clock starts, s: 0 unless the reference has its own clock.
     fn reference_start(&self, sim: &TimeSeries) -> Result<f64> {
         let Some(Align::Start(threshold)) = self.plan.align else { return Ok(0.0) };
         sim.first_crossing(threshold).ok_or_else(|| {
@@ -214,7 +216,8 @@ impl ReferenceCheck {
         })
     }
 
-    /// The reference where the run covers it, which share of it that is, and when its clock starts.
+    /// Returns the reference over the times of the run, the share of the reference that they cover, and the start of
+    /// its clock.
     fn overlap(&self, sim: &TimeSeries) -> Result<(TimeSeries, f64, f64)> {
         let (first, last) = sim.span();
         if let Some(at) = self.plan.zero.filter(|at| *at > last) {
@@ -263,7 +266,7 @@ impl ReferenceCheck {
 }
 
 impl Verdict {
-    /// Whether every figure that `bound` names is there and within it.
+    /// Returns whether every metric that `bound` names exists and is within the bound.
     pub(crate) fn meets(&self, bound: &Score) -> bool {
         let within =
             |limit: Option<f64>, figure: Option<f64>| limit.is_none_or(|most| figure.is_some_and(|x| x <= most));
@@ -276,7 +279,7 @@ impl Verdict {
     }
 }
 
-/// First and last time of the run that count, s, where the reference's clock starts at `start` (s).
+/// Returns the first and last time of the run in the comparison, s, if the reference's clock starts at `start` (s).
 fn window(words: &CheckPlan, start: f64) -> (f64, f64) {
     let from = match words.align {
         Some(Align::Start(_)) => 0.0,
@@ -285,8 +288,8 @@ fn window(words: &CheckPlan, start: f64) -> (f64, f64) {
     (words.from.unwrap_or(from) + start, words.until.unwrap_or(f64::INFINITY) + start)
 }
 
-/// The series of `column` over `time` of the table at `path`, its times moved by `delay` (s), in any order. Several values at one
-/// time, as digitised figures have them, count as their mean.
+/// Returns the series of `column` over `time` of the table at `path`, shifted by `delay` (s). Rows may be in any order.
+/// Digitised figures can have several values at the same time; the function uses their mean.
 fn read_series(path: &Path, time: &str, column: &str, delay: f64) -> Result<TimeSeries> {
     let [t, x] = TableReader::open(path)?.columns([time, column])?;
     let mut rows: Vec<(f64, f64)> = t.into_iter().zip(x).collect();

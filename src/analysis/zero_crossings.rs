@@ -1,35 +1,36 @@
-//! Waves of a series, one by one: from one crossing of the mean upwards to the next. @goda2010, ch. 10.
+//! Individual waves of a series, each between two successive upward crossings of the mean. @goda2010, ch. 10.
 
 use super::moments;
 use crate::math::time_series::TimeSeries;
 
-/// How far a wave must go to both sides of the mean to be one, over the standard deviation: what trembles about the mean
-/// is none.
+/// Smallest excursion of a wave to both sides of the mean, relative to the standard deviation: smaller oscillations do
+/// not count as waves.
 const BAND: f64 = 0.1;
 
-/// Least range of a series that has waves, over its largest magnitude and in its unit: below, it is round-off.
+/// Smallest range of a series with waves, relative to its largest magnitude and in its unit: a smaller range is
+/// round-off.
 const ROUND_OFF: [f64; 2] = [1e-9, 1e-12];
 
-/// Waves of a series. Heights are from trough to crest, in the unit of the series.
+/// Statistics of the waves of a series. Heights are from trough to crest, in the unit of the series.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ZeroCrossingWaves {
-    /// How many.
+    /// Number of waves.
     pub count: usize,
-    /// Mean height.
+    /// Mean height of the waves.
     pub mean_height: f64,
-    /// Mean height of the highest third, H₁/₃: the significant height.
+    /// Mean height of the highest third of the waves, H₁/₃: the significant height.
     pub significant_height: f64,
-    /// Height of the highest.
+    /// Height of the highest wave.
     pub max_height: f64,
     /// Mean period T_z, s.
     pub mean_period: f64,
-    /// Mean period of the highest third, T₁/₃, s.
+    /// Mean period of the highest third of the waves, T₁/₃, s.
     pub significant_period: f64,
 }
 
-/// The waves of `series`; none if there are fewer than two. Crossings are linear between samples; a wave goes a tenth of
-/// the standard deviation to both sides of the mean. Round-off has none: a range below 1e-9 of the largest magnitude, or below
-/// 1e-12 in the unit of the series.
+/// Returns the zero-crossing waves of `series`, or `None` if it has fewer than two waves. The function interpolates
+/// crossings linearly between samples. A wave exceeds a tenth of the standard deviation on both sides of the mean. A
+/// series has no waves if its range is round-off: below 1e-9 of its largest magnitude, or below 1e-12 in its unit.
 pub(crate) fn zero_crossing_waves(series: &TimeSeries) -> Option<ZeroCrossingWaves> {
     let of = moments(series);
     let (least, largest) = (of.min.0, of.max.0);
@@ -50,7 +51,7 @@ pub(crate) fn zero_crossing_waves(series: &TimeSeries) -> Option<ZeroCrossingWav
             below = false;
         }
     }
-    // Height and period of each.
+    // Height and period of each wave.
     let mut all: Vec<(f64, f64)> = ups
         .windows(2)
         .map(|w| {
@@ -66,7 +67,7 @@ pub(crate) fn zero_crossing_waves(series: &TimeSeries) -> Option<ZeroCrossingWav
     all.sort_by(|a, b| b.0.total_cmp(&a.0));
     let mean =
         |waves: &[(f64, f64)], of: fn(&(f64, f64)) -> f64| waves.iter().map(of).sum::<f64>() / waves.len() as f64;
-    // A third to the nearest whole number, of two waves one.
+    // The highest third has the number of waves rounded to the nearest integer; of two waves it has one wave.
     let highest = &all[..(all.len() + 1) / 3];
     Some(ZeroCrossingWaves {
         count: all.len(),

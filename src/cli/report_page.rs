@@ -72,7 +72,7 @@ enum ColourBy {
     Speed,
 }
 
-/// Two numbers that rise, separated by a comma.
+/// Parses two increasing numbers, separated by a comma.
 fn number_pair(text: &str) -> std::result::Result<[f64; 2], String> {
     let numbers: Option<Vec<f64>> = text.split(',').map(|word| word.trim().parse().ok()).collect();
     match numbers.as_deref() {
@@ -81,7 +81,7 @@ fn number_pair(text: &str) -> std::result::Result<[f64; 2], String> {
     }
 }
 
-/// `pontoon report`.
+/// Runs the command `pontoon report` and returns its exit code.
 ///
 /// # Errors
 /// As [`report::write`].
@@ -93,7 +93,7 @@ pub fn report(args: &ReportArgs) -> Result<u8> {
     Ok(0)
 }
 
-/// `pontoon compare`.
+/// Runs the command `pontoon compare` and returns its exit code.
 ///
 /// # Errors
 /// As [`report::compare`].
@@ -106,10 +106,10 @@ pub fn compare(args: &CompareArgs) -> Result<u8> {
 }
 
 impl PictureStyleArgs {
-    /// The picture that is asked for, with the runs' names over its columns.
+    /// Returns the options of the picture, with the names of the runs above its columns.
     ///
     /// # Errors
-    /// `Usage` if a time is none.
+    /// `Usage` if a time is not a number.
     pub fn picture_options(&self) -> Result<PictureOptions> {
         if let Some(t) = self.time.iter().find(|t| !t.is_finite()) {
             let help = "give seconds, as in --time 0.5,1";
@@ -130,7 +130,7 @@ impl PictureStyleArgs {
     }
 }
 
-/// Draws the runs in `folders` to `out`, and says so.
+/// Draws the runs in `folders` to `out` and prints the path.
 ///
 /// # Errors
 /// As [`report::picture`].
@@ -140,7 +140,7 @@ pub fn draw_picture(folders: &[PathBuf], shot: &PictureOptions, out: &Path) -> R
     Ok(())
 }
 
-/// Says where a page is and what is not on it.
+/// Prints the path of a page and the items that the page omits.
 fn print_page(page: &Page) {
     for remark in &page.remarks {
         print_error(&format!("warning: {remark}\n"));
@@ -153,8 +153,8 @@ fn page_line(page: &Page) -> String {
     format!("page: {} ({size}, written in {})\n", page.path.display(), duration(page.seconds))
 }
 
-/// Writes the page of the run in `folder` at its end. The run is what it is, with a page or without: what hinders the
-/// page is `told`.
+/// Writes the page of the run in `folder` at its end. An error of the page does not change the outcome of the run; it
+/// is passed to `told`.
 pub fn write_after_run(folder: &Path, quiet: bool, told: impl Fn(&Error)) {
     match report::write(folder) {
         Ok(_) if quiet => {}

@@ -1,4 +1,4 @@
-//! Acoustic added mass: the inertia of the water that sound sets in motion with a light body.
+//! Acoustic added mass: the inertia of the water that acoustic waves accelerate together with a light body.
 //!
 //! A boundary particle of the outer layer near water acts as a spring of stiffness k = ρ₀ c₀² dpᴰ⁻² along its normal n: a column
 //! of water dp long on a face dpᴰ⁻¹. All of them give the stiffness K = Σ k J Jᵀ with J = (n, arm ∧ n). A body of mass matrix M
@@ -29,13 +29,14 @@ use crate::{
     system::System,
 };
 
-/// Λ, the largest (ω_b h/c₀)² of a body without added mass, –: that of the fastest sound that particles carry.
+/// Λ, the largest (ω_b h/c₀)² of a body without added mass, –. At this value ω_b is the highest frequency of sound that
+/// the particles can carry.
 const STIFFEST: f64 = 1.3;
 
 /// τ over h/c₀, –.
 const TIME: f64 = 10.0;
 
-/// Σ V_f W from which a boundary particle counts as fully wet, –: a submerged face has more.
+/// Least Σ V_f W of a boundary particle that counts as fully wet, –. On a submerged face the sum is larger.
 const FULL: f64 = 0.25;
 
 /// Translations along the axes, then turns about them; the last three stay 0 in 2-D.
@@ -44,16 +45,17 @@ type Square = SMatrix<f64, 6, 6>;
 
 /// The acoustic added mass of a free body.
 pub(crate) struct AcousticAddedMass<const D: usize> {
-    /// Its number among the solids.
+    /// Index of the body among the solids.
     pub(super) solid: usize,
-    /// Its outer boundary particles, in order, and their normals in its frame.
+    /// Indices of the outer boundary particles of the body, in ascending order, and their normals in the frame of the
+    /// body.
     outer: Vec<(u32, Vector<D>)>,
     state: AddedMassState,
-    /// Load (N, N m) of the present step but for contacts and joints.
+    /// Load (N, N m) of the present step, without contacts and joints.
     given: Six,
 }
 
-/// Its state in a checkpoint.
+/// The state of an [`AcousticAddedMass`] in a checkpoint.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct AddedMassState {
     /// Pending impulse, S (N s, N m s).
@@ -65,12 +67,13 @@ pub(crate) struct AddedMassState {
 }
 
 impl<const D: usize> AcousticAddedMass<D> {
-    /// Those of the free solids that need one when they are submerged.
+    /// Returns the added masses of all free solids that need an added mass when they are submerged.
     pub(crate) fn find_all(system: &mut System<D>) -> Vec<Self> {
         (0..system.solids().len()).filter_map(|i| Self::for_solid(system, i)).collect()
     }
 
-    /// That of free solid number `i`, if it needs one when it is submerged.
+    /// Returns the added mass of free solid number `i`, or `None` if the solid needs no added mass when it is
+    /// submerged.
     pub(crate) fn for_solid(system: &mut System<D>, i: usize) -> Option<Self> {
         let found = Self::if_light(system, i);
         if found.is_some() {
@@ -94,29 +97,29 @@ impl<const D: usize> AcousticAddedMass<D> {
         Some(Self { solid: i, outer, state, given: Six::zeros() })
     }
 
-    /// Renumbers the boundary particles after `gone` of them, of solid number `solid`, were removed.
+    /// Renumbers the boundary particles after solid number `solid` and its `gone` boundary particles were removed.
     pub(super) fn renumber(&mut self, solid: usize, gone: u32) {
         if self.solid > solid {
             self.outer.iter_mut().for_each(|(i, _)| *i -= gone);
         }
     }
 
-    /// The state in a checkpoint.
+    /// Returns the state for a checkpoint.
     pub(crate) fn state(&self) -> AddedMassState {
         self.state
     }
 
-    /// Impulse not yet applied, N s.
+    /// Returns the linear part of the pending impulse S, N s.
     pub(super) fn pending_impulse(&self) -> Vector<D> {
         linear(&self.state.pending)
     }
 
-    /// Returns to a saved state.
+    /// Restores a saved state.
     pub(crate) fn restore(&mut self, state: AddedMassState) {
         self.state = state;
     }
 
-    /// Removes the share of the pending impulse that belongs to water that the body has left; returns it, N s.
+    /// Removes the share of the pending impulse that belongs to water that the body has left. Returns this share, N s.
     fn release(&mut self, stiffness_sum: f64) -> Vector<D> {
         let stays =
             if stiffness_sum < self.state.stiffness_sum { stiffness_sum / self.state.stiffness_sum } else { 1.0 };
@@ -184,7 +187,7 @@ impl<const D: usize> AcousticAddedMass<D> {
         self.state.contacts += (contacts - self.state.contacts) * applied_share(system, dt);
     }
 
-    /// K of the present wet springs, N/m, N and N m.
+    /// Returns the stiffness K of the springs that are wet at present, N/m, N and N m.
     fn springs(&self, system: &System<D>, body: &FreeBody<D>) -> Square {
         let mut sum = Square::zeros();
         self.for_each_wet(system, |part, _, _, along| sum += along * along.transpose() * part);
@@ -195,7 +198,7 @@ impl<const D: usize> AcousticAddedMass<D> {
         sum * stiffness(system)
     }
 
-    /// K v_w of the present wet springs, N/s and N m/s.
+    /// Returns K v_w of the springs that are wet at present, N/s and N m/s.
     fn flow(&self, system: &System<D>, body: &FreeBody<D>) -> Six {
         let mut sum = Six::zeros();
         self.for_each_wet(system, |part, x, normal, along| {
@@ -227,26 +230,26 @@ impl<const D: usize> AcousticAddedMass<D> {
     }
 }
 
-/// k of one spring, N/m.
+/// Returns the stiffness k of one spring, N/m.
 fn stiffness<const D: usize>(system: &System<D>) -> f64 {
     let medium = system.properties();
     medium.rho0 * medium.c0 * medium.c0 * medium.dp.powi(D as i32 - 2)
 }
 
-/// θ: the share of the water's inertia T² K that is added to a mass matrix M, –.
+/// Returns θ, the share of the water's inertia T² K that is added to a mass matrix M, –.
 fn theta(mass: &Square, water: &Square) -> f64 {
     let Some(root) = mass.cholesky().and_then(|c| c.l().try_inverse()) else { return 0.0 };
     let stiffest = (root * water * root.transpose()).symmetric_eigenvalues().max();
     if stiffest > STIFFEST { 1.0 / STIFFEST - 1.0 / stiffest } else { 0.0 }
 }
 
-/// The share (–) of the pending impulse that a step `dt` (s) applies.
+/// Returns the share (–) of the pending impulse that a step of length `dt` (s) applies.
 fn applied_share<const D: usize>(system: &System<D>, dt: f64) -> f64 {
     let medium = system.properties();
     1.0 - (-dt * medium.c0 / (TIME * medium.h)).exp()
 }
 
-/// Mass and inertia in the world's axes.
+/// Returns the mass matrix of `body`: mass and inertia in the world axes.
 fn mass<const D: usize>(solid: &Solid<D>, body: &FreeBody<D>) -> Square {
     let mut all = Square::identity();
     let turn = &solid.kinematics.pose.rotation;
@@ -283,9 +286,9 @@ fn angular<const D: usize>(six: &Six) -> Bivector<D> {
     Bivector::from_axial(&six.as_slice()[D..D + Bivector::<D>::COMPONENTS])
 }
 
-/// ω_b (1/s), the highest frequency of a body on the compressibility of water all around: the larger of the largest
-/// translational and the largest rotational one. Every boundary particle of the outer layer is a spring of stiffness
-/// ρ₀ c₀² dpᴰ⁻² (a column of water dp long on a face dpᴰ⁻¹), acting along the normal.
+/// Returns ω_b (1/s), the highest natural frequency of a fully submerged body on the compressibility of the water. ω_b
+/// is the larger of the highest translational and the highest rotational frequency. Every boundary particle of the
+/// outer layer is a spring of stiffness ρ₀ c₀² dpᴰ⁻² along its normal: a column of water dp long on a face dpᴰ⁻¹.
 pub fn stiffest_frequency<const D: usize>(shape: &Shape<D>, body: &FreeBody<D>, medium: &FluidProperties<D>) -> f64 {
     let spring = medium.rho0 * medium.c0 * medium.c0 * medium.dp.powi(D as i32 - 2);
     let (mut along, mut about) = (Vector::<D>::zeros(), [0.0; 3]);

@@ -1,5 +1,5 @@
-//! Moving the solids over a step: driven ones by their law, free ones by the engine or by an external program, then their
-//! boundary particles.
+//! The motion of the solids over a step. Driven solids follow their prescribed motion; the engine or an external
+//! program moves the free solids. The boundary particles follow their solids.
 
 use std::time::{Duration, Instant};
 
@@ -18,7 +18,7 @@ use crate::{
     system::{MomentumTransfer, System},
 };
 
-/// The rigid-body side of a run. A scene without free bodies has no engine and steps none.
+/// The rigid bodies of a run with their engine. A scene without free bodies has no engine.
 pub(crate) struct Bodies<const D: usize> {
     engine: Option<Box<dyn Engine<D>>>,
     added_masses: Vec<AcousticAddedMass<D>>,
@@ -31,8 +31,8 @@ pub(crate) struct Bodies<const D: usize> {
 }
 
 impl<const D: usize> Bodies<D> {
-    /// The bodies that `engine` moves, at the start, with the added masses of the light ones and their constraints; if they
-    /// are `external`, another program moves them.
+    /// Creates the bodies at the start of a run, with their constraints and the added masses of the light bodies.
+    /// `engine` moves the bodies, or an external program if `external`.
     pub(crate) fn new(
         engine: Option<Box<dyn Engine<D>>>,
         added_masses: Vec<AcousticAddedMass<D>>,
@@ -47,17 +47,17 @@ impl<const D: usize> Bodies<D> {
         self.external
     }
 
-    /// The constraints.
+    /// Returns the constraints.
     pub(crate) fn constraints(&self) -> &Assembly<D> {
         &self.constraints
     }
 
-    /// The constraints, to be changed.
+    /// Returns the constraints for changes.
     pub(crate) fn constraints_mut(&mut self) -> &mut Assembly<D> {
         &mut self.constraints
     }
 
-    /// The longest step (s) that springs and motors allow at time `t` (s).
+    /// Returns the longest step (s) that springs and motors allow at time `t` (s).
     pub(crate) fn step_limit(&self, system: &System<D>, t: f64) -> f64 {
         match self.engine.as_deref().filter(|_| !self.constraints.is_empty()) {
             Some(engine) => self.constraints.step_limit(engine, &self.kinematics(system, t, true), t),
@@ -65,7 +65,7 @@ impl<const D: usize> Bodies<D> {
         }
     }
 
-    /// How each solid moves at time `t` (s), which is the engine's; nothing unless that is `wanted`.
+    /// Returns the kinematics of each solid at time `t` (s), the time of the engine, or an empty list unless `wanted`.
     fn kinematics(&self, system: &System<D>, t: f64, wanted: bool) -> Vec<Kinematics<D>> {
         let Some(engine) = self.engine.as_deref().filter(|_| wanted) else { return Vec::new() };
         let one = |(i, solid): (usize, &Solid<D>)| match &solid.spec.role {
@@ -76,12 +76,12 @@ impl<const D: usize> Bodies<D> {
         system.solids.iter().enumerate().map(one).collect()
     }
 
-    /// The state of the added masses in a checkpoint.
+    /// Returns the states of the added masses for a checkpoint.
     pub(crate) fn added_mass_state(&self) -> Vec<AddedMassState> {
         self.added_masses.iter().map(AcousticAddedMass::state).collect()
     }
 
-    /// Returns to a saved state after so many `steps`; whether it belongs to these bodies.
+    /// Restores the saved `states` of a run after `steps` steps. Returns whether the states belong to these bodies.
     pub(crate) fn restore(&mut self, states: &[AddedMassState], steps: u64) -> bool {
         self.added_masses.iter_mut().zip(states).for_each(|(added_mass, state)| added_mass.restore(*state));
         self.steps = steps;
@@ -93,7 +93,7 @@ impl<const D: usize> Bodies<D> {
         self.engine = Some(engine);
     }
 
-    /// Adds a solid that starts as `start`, with its added mass if it is light.
+    /// Adds a solid with the initial kinematics `start`, and its added mass if the solid is light.
     pub(crate) fn add_body(&mut self, added_mass: Option<AcousticAddedMass<D>>, start: Kinematics<D>) {
         self.added_masses.extend(added_mass);
         self.constraints.add_body(start);
@@ -109,30 +109,30 @@ impl<const D: usize> Bodies<D> {
         self.added_masses.iter_mut().for_each(|added_mass| added_mass.renumber(solid, count));
     }
 
-    /// Time spent in the engine so far.
+    /// Returns the computing time that the engine has used so far.
     pub(crate) fn engine_time(&self) -> Duration {
         self.spent
     }
 
-    /// Impulse (N s) of the water not yet applied to `solid`.
+    /// Returns the impulse (N s) that the water has given to `solid` and that no step has applied yet.
     pub(crate) fn pending_impulse(&self, solid: usize) -> Vector<D> {
         let own = self.added_masses.iter().find(|added_mass| added_mass.solid == solid);
         own.map_or_else(Vector::zeros, AcousticAddedMass::pending_impulse)
     }
 
-    /// The engine, if there are free bodies.
+    /// Returns the engine, or `None` if the scene has no free bodies.
     pub(crate) fn engine(&self) -> Option<&dyn Engine<D>> {
         self.engine.as_deref()
     }
 
-    /// The engine to act on, if there are free bodies.
+    /// Returns the engine for changes, or `None` if the scene has no free bodies.
     pub(crate) fn engine_mut(&mut self) -> Option<&mut Box<dyn Engine<D>>> {
         self.engine.as_mut()
     }
 
-    /// Moves the solids over the whole step, under the loads of the last force pass and weights times `weight`; the factor does
-    /// not apply to a body that no water touches. Calls `hook` when the water has moved and the bodies have not. Returns the
-    /// impulses that the water got back.
+    /// Moves the solids over the whole step, under the loads of the last force pass and the weights times `weight`. The
+    /// factor `weight` does not apply to a body that no water touches. Calls `hook` after the water has moved and
+    /// before the bodies move. Returns the impulses that the bodies returned to the water.
     pub(crate) fn advance(
         &mut self,
         system: &mut System<D>,
@@ -174,7 +174,7 @@ impl<const D: usize> Bodies<D> {
     }
 }
 
-/// A function that is called in each step when the water has moved and the bodies have not.
+/// A function that the simulation calls in each step, after the water has moved and before the bodies move.
 pub(crate) type Hook<'a, const D: usize> = dyn FnMut(&mut BodyStep<D>) -> Result<()> + 'a;
 
 /// The part of a step in which the bodies move: see [`Simulation::step_with`](crate::simulation::Simulation::step_with).
@@ -185,47 +185,49 @@ pub struct BodyStep<'a, const D: usize> {
     system: &'a mut System<D>,
     over: Interval,
     loads: Vec<Load<D>>,
-    /// How each solid moves at the end of the step. Fixed and driven ones are set already; free ones are set by
-    /// [`BodyStep::advance_bodies`], or by you where the bodies are external.
+    /// Kinematics of each solid at the end of the step. The entries of fixed and driven solids are set already.
+    /// [`BodyStep::advance_bodies`] sets the entries of free solids; your program sets them if the bodies are external.
     pub solids: Vec<Kinematics<D>>,
     transfers: Vec<MomentumTransfer<D>>,
     advanced: bool,
 }
 
 impl<const D: usize> BodyStep<'_, D> {
-    /// Time at the start of the step, s.
+    /// Returns the time at the start of the step, s.
     pub fn time(&self) -> f64 {
         self.over.t
     }
 
-    /// Length of the step, s.
+    /// Returns the length of the step, s.
     pub fn dt(&self) -> f64 {
         self.over.dt
     }
 
-    /// Force (N; N/m in 2-D) and torque about its centre (N m; N m/m in 2-D) of the water on each solid, constant over the
-    /// step, without weight.
+    /// Returns the force (N; N/m in 2-D) of the water on each solid, and the torque about the centre of the solid (N m;
+    /// N m/m in 2-D). Both are constant over the step and exclude the weight.
     pub fn loads(&self) -> &[Load<D>] {
         &self.loads
     }
 
     /// Adds `load` (N, N m) about the centre of free solid number `solid` in this step, before [`BodyStep::advance_bodies`].
-    /// Without effect where the bodies are external: there your program applies forces.
+    /// The call has no effect if the bodies are external, because your program then applies the forces.
     pub fn push(&mut self, solid: usize, load: &Load<D>) {
         if let Some(engine) = &mut self.bodies.engine {
             engine.add_load(solid, load);
         }
     }
 
-    /// Contact forces, pair by pair: of this step after [`BodyStep::advance_bodies`], of the last step before it.
+    /// Returns the contact forces of each pair: after [`BodyStep::advance_bodies`] of this step, before that call of
+    /// the last step.
     pub fn contacts(&self) -> Vec<ContactForce<D>> {
         self.bodies.engine().map(|engine| engine.contacts()).unwrap_or_default()
     }
 
-    /// Advances the free bodies by the step, unless they have been advanced. If you do not call it, it is called afterwards.
+    /// Advances the free bodies by the step, unless an earlier call has advanced them. The simulation calls this
+    /// function after the hook if the hook does not.
     ///
     /// # Errors
-    /// `Usage` where the bodies are external; `Fault` if a body leaves the valid range.
+    /// `Usage` if the bodies are external; `Fault` if a body leaves the valid range.
     pub fn advance_bodies(&mut self) -> Result<()> {
         if self.bodies.external {
             return Err(Error::new(
@@ -305,7 +307,7 @@ impl<const D: usize> BodyStep<'_, D> {
         Ok(())
     }
 
-    /// Replaces the loads on light bodies by those with their acoustic added mass.
+    /// Replaces the loads on light bodies by the loads corrected for acoustic added mass.
     fn apply_added_mass(&mut self) {
         let engine = &self.bodies.engine;
         let mut returned = Vec::new();
@@ -322,7 +324,8 @@ impl<const D: usize> BodyStep<'_, D> {
         }
     }
 
-    /// Completes the step; returns the kinematics of the solids at its end and the impulses that the water got back.
+    /// Completes the step. Returns the kinematics of the solids at the end of the step, and the impulses that the
+    /// bodies returned to the water.
     fn finish(mut self) -> Result<(Vec<Kinematics<D>>, Vec<MomentumTransfer<D>>)> {
         if !self.bodies.external {
             self.advance_bodies()?;
@@ -348,13 +351,13 @@ impl<const D: usize> BodyStep<'_, D> {
     }
 }
 
-/// Kinematics that an external program has not set yet.
+/// Returns the placeholder for kinematics that an external program has not set yet.
 fn unset<const D: usize>() -> Kinematics<D> {
     let none = Vector::repeat(f64::NAN);
     Kinematics { pose: Pose::at(none), centre: none, velocity: none, spin: Bivector::zero() }
 }
 
-/// The fault of solid number `solid` outside the domain.
+/// Returns the fault of solid number `solid`, which has left the domain.
 fn escaped<const D: usize>(solid: usize, now: &Kinematics<D>) -> EngineFault<D> {
     EngineFault {
         code: ErrorCode::LeftDomain,

@@ -1,9 +1,9 @@
 //! The energy budget of water and bodies since the start.
 //!
 //! A load that acts over a step does work at the mean of the velocities at its two ends, ½ (V₀ + V₁), so that the works of all
-//! loads add up to the change of kinetic energy. The work of the water is taken at the velocity of the force pass. The entry
-//! `coupling` is the difference between what a body received and what the water gave, and the difference that the engine's
-//! step, which moves the body by V₁, makes to the work of weight.
+//! loads add up to the change of kinetic energy. The work of the water uses the velocity of the force pass. The entry
+//! `coupling` has two parts: the energy that a body received less the energy that the water lost, and a correction to
+//! the work of weight. The correction is needed because the engine moves the body by V₁ Δt.
 
 use serde::{Deserialize, Serialize};
 
@@ -18,18 +18,18 @@ use crate::{
     system::{RemovedParticle, System},
 };
 
-/// Energies since the start, J (J/m in 2-D): positive where water and bodies have gained.
+/// Energies since the start, J (J/m in 2-D). An entry is positive if water and bodies have gained energy.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct EnergyBudget {
     /// Work of driven solids on the water, and of gravity along periodic sides.
     pub driven: f64,
     /// Work of motors.
     pub motors: f64,
-    /// Work of springs: stored or damped energy is negative.
+    /// Work of springs. Energy that the springs store or dissipate counts negative.
     pub springs: f64,
-    /// Work of the scene's forces and of a program's pushes.
+    /// Work of the forces of the scene and of the loads that a program adds with `push`.
     pub forces: f64,
-    /// Work of contacts, of driven solids through them too.
+    /// Work of contacts, including contacts with driven solids.
     pub contacts: f64,
     /// Work of joints, end stops and ropes.
     pub joints: f64,
@@ -45,16 +45,16 @@ pub struct EnergyBudget {
     pub damping: f64,
     /// Work of the boundary particles.
     pub walls: f64,
-    /// Difference of what bodies received and what the water gave.
+    /// Energy that the bodies received less the energy that the water lost.
     pub coupling: f64,
     /// Energy of removed particles, negative.
     pub removed: f64,
-    /// Energy of added free solids, less that of removed ones.
+    /// Energy of added free solids less the energy of removed free solids.
     pub solids: f64,
 }
 
 impl EnergyBudget {
-    /// All entries with their names.
+    /// Returns all entries with their names.
     pub fn entries(&self) -> [(&'static str, f64); 15] {
         [
             ("driven", self.driven),
@@ -76,14 +76,14 @@ impl EnergyBudget {
     }
 }
 
-/// Keeps the load breakdown of each body and, if asked for, the energy budget.
+/// Records the load breakdown of each body and, on request, the energy budget.
 #[derive(Serialize, Deserialize)]
 pub(crate) struct Accounting<const D: usize> {
-    /// Steps from one power breakdown to the next; `None` if none is needed.
+    /// Number of steps from one power breakdown to the next; `None` if no power breakdown is needed.
     interval: Option<u32>,
-    /// Steps since the last power breakdown.
+    /// Number of steps since the last power breakdown.
     since: u32,
-    /// Whether the energy budget is kept.
+    /// Whether the energy budget is recorded.
     energy: bool,
     powers: PowerBreakdown,
     /// Viscous loads on the solids at the last power breakdown.
@@ -100,8 +100,8 @@ pub(crate) struct Accounting<const D: usize> {
 pub(crate) type AccountingState<const D: usize> = Accounting<D>;
 
 impl<const D: usize> Accounting<D> {
-    /// Starts to account for the solids of `system`, with the energy budget if `energy`, and a power breakdown every
-    /// `interval` steps, if any.
+    /// Creates the accounting for the solids of `system`, with the energy budget if `energy`. It makes a power
+    /// breakdown every `interval` steps, or no power breakdown if `interval` is `None`.
     pub(crate) fn new(system: &System<D>, energy: bool, interval: Option<u32>) -> Self
     where
         Dim<D>: Dimension<D>,
@@ -120,27 +120,27 @@ impl<const D: usize> Accounting<D> {
         }
     }
 
-    /// Whether the energy budget is kept.
+    /// Whether the energy budget is recorded.
     pub(crate) fn has_energy_budget(&self) -> bool {
         self.energy
     }
 
-    /// Steps from one power breakdown to the next, if any.
+    /// Returns the number of steps from one power breakdown to the next, or `None` without power breakdowns.
     pub(crate) fn power_interval(&self) -> Option<u32> {
         self.interval
     }
 
-    /// The loads on solid number `solid` in the last step by their origin.
+    /// Returns the loads on solid number `solid` in the last step, by their origin.
     pub(crate) fn breakdown(&self, solid: usize) -> &LoadBreakdown<D> {
         &self.breakdown[solid]
     }
 
-    /// The energy budget, if it is kept.
+    /// Returns the energy budget, or `None` if it is not recorded.
     pub(crate) fn budget(&self) -> Option<&EnergyBudget> {
         self.energy.then_some(&self.budget)
     }
 
-    /// The state in a checkpoint.
+    /// Returns the state for a checkpoint.
     pub(crate) fn state(&self) -> AccountingState<D> {
         Self {
             viscous: self.viscous.clone(),
@@ -151,12 +151,12 @@ impl<const D: usize> Accounting<D> {
         }
     }
 
-    /// Continues from `state`, which is of as many solids, with the same entries.
+    /// Continues from `state`, which must have the same number of solids and the same entries.
     pub(crate) fn restore(&mut self, state: AccountingState<D>) {
         *self = Self { meter: self.meter.take(), ..state };
     }
 
-    /// Whether `state` is of as many solids, with the same entries.
+    /// Whether `state` has the same number of solids and the same entries.
     pub(crate) fn matches(&self, state: &AccountingState<D>) -> bool {
         self.interval == state.interval && self.energy == state.energy && self.breakdown.len() == state.breakdown.len()
     }
@@ -210,7 +210,7 @@ impl<const D: usize> Accounting<D> {
         self.budget.removed -= energy;
     }
 
-    /// Adds the energy (J) of a solid that was added; a removed one counts negative.
+    /// Adds the energy (J) of a solid that was added. The energy of a removed solid is negative.
     pub(crate) fn add_solid_energy(&mut self, energy: f64) {
         self.budget.solids += energy;
     }
@@ -225,8 +225,8 @@ impl<const D: usize> Accounting<D> {
         self.budget.coupling += energy;
     }
 
-    /// Adds a step of solid number `i` of `system`, if it is free, under the loads of `breakdown`, to which joints, ropes and
-    /// locks are added here.
+    /// Adds the work of one step on solid number `i` of `system` under the loads of `breakdown`, if the solid is free.
+    /// Adds the loads of joints, ropes and locks to `breakdown`.
     pub(super) fn add_body_step(
         &mut self,
         system: &System<D>,

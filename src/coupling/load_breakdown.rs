@@ -15,7 +15,7 @@ pub struct LoadBreakdown<const D: usize> {
     pub pressure: Load<D>,
     /// Viscosity of the water.
     pub viscous: Load<D>,
-    /// Deferred impulse: acoustic added mass and Verlet's two-step span.
+    /// Deferred impulse, due to the acoustic added mass and the two-step interval of the Verlet scheme.
     pub delayed: Load<D>,
     /// Weight.
     pub weight: Load<D>,
@@ -31,17 +31,17 @@ pub struct LoadBreakdown<const D: usize> {
     pub motors: Load<D>,
     /// The scene's forces.
     pub forces: Load<D>,
-    /// Pushes of a program.
+    /// Loads that a program adds with `push`.
     pub pushes: Load<D>,
-    /// Reaction of locked motions: by definition the sum of the others there, negative.
+    /// Reaction of locked motions: by definition the negative sum of the other loads along these motions.
     pub locks: Load<D>,
-    /// Rate of change of momentum and angular momentum. For a 3-D body in a joint, on a rope or partly locked the latter is what
-    /// the engine integrates, I(R₀) ΔΩ/Δt + Ω ∧ I Ω.
+    /// Rate of change of momentum and angular momentum. For a 3-D body in a joint, on a rope or partly locked, the rate
+    /// of change of angular momentum is the expression that the engine integrates, I(R₀) ΔΩ/Δt + Ω ∧ I Ω.
     pub change: Load<D>,
 }
 
 impl<const D: usize> LoadBreakdown<D> {
-    /// No load.
+    /// Returns a breakdown in which every load is zero.
     pub(crate) fn zero() -> Self {
         let none = Load::zero();
         Self {
@@ -61,7 +61,7 @@ impl<const D: usize> LoadBreakdown<D> {
         }
     }
 
-    /// All loads with their names, without the change of momentum.
+    /// Returns all loads with their names, without the change of momentum.
     pub fn kinds(&self) -> [(&'static str, Load<D>); 12] {
         [
             ("pressure", self.pressure),
@@ -79,18 +79,18 @@ impl<const D: usize> LoadBreakdown<D> {
         ]
     }
 
-    /// The sum of all loads.
+    /// Returns the sum of all loads.
     pub(crate) fn sum(&self) -> Load<D> {
         self.kinds().into_iter().map(|(_, load)| load).sum()
     }
 
-    /// The change of momentum less the sum.
+    /// Returns the change of momentum less the sum of all loads.
     pub fn residual(&self) -> Load<D> {
         self.change - self.sum()
     }
 
-    /// Assigns the remaining imbalance to the joints or the ropes, whichever pull harder: they turn between the iterations of a
-    /// step, and the directions of their reported forces do not.
+    /// Assigns the residual to the joints or to the ropes, according to the larger force. Joints and ropes rotate
+    /// between the iterations of a step, but the directions of their reported forces do not.
     pub(super) fn assign_residual_to_constraints(&mut self) {
         let rest = self.residual();
         let constraints =
@@ -100,8 +100,8 @@ impl<const D: usize> LoadBreakdown<D> {
         }
     }
 
-    /// The loads on solid number `i` in a step, all of the water's load as pressure, without joints, ropes and locks; zero
-    /// unless it is free.
+    /// Returns the loads on solid number `i` in a step, without joints, ropes and locks. The whole load of the water
+    /// counts as pressure. All loads are zero unless the solid is free.
     pub(super) fn of(system: &System<D>, i: usize, loads: &BodyLoads<'_, D>) -> Self {
         let solid = &system.solids()[i];
         let Role::Free(body) = &solid.spec.role else { return Self::zero() };
@@ -124,7 +124,7 @@ impl<const D: usize> LoadBreakdown<D> {
 
 /// The loads on a free body in a step, and its motion.
 pub(super) struct BodyLoads<'a, const D: usize> {
-    /// Load of the water as it was applied.
+    /// Load of the water that the step applied.
     pub(super) water: Load<D>,
     pub(super) pushes: Load<D>,
     pub(super) contacts: Load<D>,
@@ -138,7 +138,7 @@ pub(super) struct BodyLoads<'a, const D: usize> {
     pub(super) iterated: bool,
 }
 
-/// The sum of all `contacts` on each of so many solids.
+/// Returns the sum of all `contacts` on each of `solids` solids.
 pub(super) fn contact_sums<const D: usize>(contacts: &[ContactForce<D>], solids: usize) -> Vec<Load<D>> {
     let mut sums = vec![Load::zero(); solids];
     for (solid, load) in contacts.iter().flat_map(|contact| contact.between.into_iter().zip(contact.loads)) {
@@ -147,7 +147,7 @@ pub(super) fn contact_sums<const D: usize>(contacts: &[ContactForce<D>], solids:
     sums
 }
 
-/// Momentum, kg m/s, and angular momentum about the centre of mass, kg m²/s.
+/// Returns the momentum, kg m/s, and the angular momentum about the centre of mass, kg m²/s.
 fn momentum<const D: usize>(body: &FreeBody<D>, motion: &Kinematics<D>) -> Load<D> {
     Load {
         force: motion.velocity * body.mass,
@@ -155,7 +155,7 @@ fn momentum<const D: usize>(body: &FreeBody<D>, motion: &Kinematics<D>) -> Load<
     }
 }
 
-/// I Ω in the world's axes, with the inertia in the body's.
+/// Returns the angular momentum I Ω in the world axes. The inertia is in the axes of the body.
 fn angular_momentum<const D: usize>(inertia: &Matrix<D>, rotation: &Matrix<D>, spin: &Bivector<D>) -> Bivector<D> {
     if D == 2 {
         return *spin * inertia[(0, 0)];
@@ -164,7 +164,7 @@ fn angular_momentum<const D: usize>(inertia: &Matrix<D>, rotation: &Matrix<D>, s
     Bivector::from_axial(world.as_slice())
 }
 
-/// The part of `load` along the locked motions of `body`: all of it if it is `held`.
+/// Returns the part of `load` along the locked motions of `body`, or the whole load if the body is `held`.
 pub(super) fn locked<const D: usize>(body: &FreeBody<D>, held: bool, load: &Load<D>) -> Load<D> {
     let force = Vector::from_fn(|i, _| if held || body.locked_translations[i] { load.force[i] } else { 0.0 });
     let turns = load.torque.axial().into_iter().enumerate();

@@ -1,4 +1,4 @@
-//! The coupling of water and bodies: the body step, the acoustic added mass, and where loads and energy come from.
+//! The coupling of water and bodies: the body step, the acoustic added mass, and the breakdown of loads and energy.
 
 mod acoustic_added_mass;
 mod body_step;
@@ -23,13 +23,14 @@ use crate::{
 /// A time interval, s.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Interval {
-    /// Time at its start, s.
+    /// Time at the start of the interval, s.
     pub t: f64,
-    /// Its length, s.
+    /// Length of the interval, s.
     pub dt: f64,
 }
 
-/// Moves the solids to where they are half a step on: driven ones exactly, free ones at constant velocity and spin.
+/// Moves the solids to their positions half a step later: driven solids exactly, free solids at constant velocity and
+/// spin.
 pub(crate) fn drift_half_step<const D: usize>(system: &mut System<D>, over: Interval) {
     let half = 0.5 * over.dt;
     place(system, None, |_, solid| match &solid.spec.role {
@@ -39,8 +40,8 @@ pub(crate) fn drift_half_step<const D: usize>(system: &mut System<D>, over: Inte
     });
 }
 
-/// Gives each solid the kinematics that `to` returns, if any, and places its boundary particles; `over` is the length (s) of
-/// the step that ends there.
+/// Sets the kinematics of each solid to the value that `to` returns, if any, and places the boundary particles of the
+/// solid. `over` is the length (s) of the step that ends at these kinematics.
 fn place<const D: usize>(
     system: &mut System<D>,
     over: Option<f64>,
@@ -57,7 +58,7 @@ fn place<const D: usize>(
     }
 }
 
-/// The kinematics after `dt` (s) of free motion at constant velocity and spin.
+/// Returns the kinematics after a time `dt` (s) at constant velocity and spin.
 fn drifted<const D: usize>(k: &Kinematics<D>, dt: f64) -> Kinematics<D> {
     let turn = (k.spin * dt).exp();
     let centre: Vector<D> = k.centre + k.velocity * dt;

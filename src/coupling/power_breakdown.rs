@@ -1,4 +1,4 @@
-//! The power of each law on the water, by a second force pass with the pressure alone.
+//! The power of each term of the equations on the water, from a second force pass with the pressure alone.
 //!
 //! With the pressure force (P_a + P_b)/(ρ_a ρ_b) and the volume form of continuity, a pair of water particles exchanges kinetic
 //! energy and energy of compression without a remainder @colagrossi2003. With e(ρ) the energy of compression and F·V, T·Ω the
@@ -11,8 +11,9 @@
 //!   work       −Σ (F·V + T·Ω)             of the solids on the water
 //!
 //! where a dash marks the pass with the pressure alone: Ė = viscous + diffusion + walls + work. `walls` is the power of the
-//! boundary particles and their repulsion. The sum of the first three needs no second pass. With corrected gradients the pressure
-//! does not exchange energy exactly; a third pass, with plain gradients, gives the difference, `gradient`.
+//! boundary particles and their repulsion. The sum of viscous, diffusion and walls needs no second pass. With corrected
+//! gradients the pressure does not exchange energy exactly. The difference `gradient` follows from a third pass with
+//! uncorrected gradients.
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -40,14 +41,14 @@ pub(super) struct PowerBreakdown {
 /// The force passes with the pressure alone.
 pub(super) struct PowerMeter<const D: usize> {
     pressure: Box<dyn PairLoop<D>>,
-    /// With plain gradients, if those of the model are corrected.
+    /// Pair loop with uncorrected gradients, if the model corrects the gradients.
     plain: Option<Box<dyn PairLoop<D>>>,
     fluid_sums: Vec<PairSums<D>>,
     boundary_sums: Vec<PairSums<D>>,
 }
 
 impl<const D: usize> PowerMeter<D> {
-    /// The passes of a system of that model.
+    /// Creates the force passes for systems with the given `model`.
     pub(super) fn new(model: &Model) -> Self
     where
         Dim<D>: Dimension<D>,
@@ -60,8 +61,8 @@ impl<const D: usize> PowerMeter<D> {
         Self { pressure: Dim::<D>::pair_loop(&pressure), plain, fluid_sums, boundary_sums }
     }
 
-    /// The powers at the last force pass, and the loads of the pressure alone on the solids; the state of `system` must be that
-    /// of the pass.
+    /// Returns the powers at the last force pass, and the loads of the pressure alone on the solids. The state of
+    /// `system` must not have changed since that pass.
     pub(super) fn decompose(&mut self, system: &System<D>) -> (PowerBreakdown, Vec<Load<D>>) {
         let Self { pressure, plain, fluid_sums, boundary_sums } = self;
         fluid_sums.resize(system.rates.fluid.len(), PairSums::zero());
@@ -86,13 +87,15 @@ impl<const D: usize> PowerMeter<D> {
     }
 }
 
-/// viscous + diffusion + gradient + walls, W: the power on the water at the last force pass beyond the work of the solids.
+/// Returns viscous + diffusion + gradient + walls, W: the power on the water at the last force pass without the work of
+/// the solids.
 pub(super) fn total_power<const D: usize>(system: &System<D>) -> f64 {
     let on_solids: f64 = system.solids.iter().map(|solid| solid.load.power(&solid.kinematics)).sum();
     gains(system, &system.rates.fluid).iter().sum::<f64>() + on_solids
 }
 
-/// The powers (W) on motion and on compression of the water by the rates `sums`, without its weight, added up in chunks in order.
+/// Returns the powers (W) on the motion and on the compression of the water from the rates `sums`, without the weight
+/// of the water. The sums over chunks are added in order.
 fn gains<const D: usize>(system: &System<D>, sums: &[PairSums<D>]) -> [f64; 2] {
     let (water, rho0, g) = (system.fluid(), system.properties().rho0, system.gravity());
     let particles = water.v.par_chunks(CHUNK).zip(water.rho.par_chunks(CHUNK));

@@ -1,4 +1,4 @@
-//! Boundary particles: layers one dp apart, the first half a dp inside the true face, evenly spaced.
+//! Boundary particles: evenly spaced layers one dp apart, with the first layer half a dp inside the true face.
 
 use std::f64::consts::{PI, TAU};
 
@@ -10,17 +10,18 @@ use super::{
 };
 use crate::math::{Pose, Vector};
 
-/// No two particles of one solid are nearer than this, in dp.
+/// Least distance between two particles of the same solid, dp.
 pub(super) const MIN_SPACING: f64 = 0.7;
 
 impl<const D: usize> Shape<D> {
-    /// Boundary particles in `layers` layers, spaced about `dp` (m).
+    /// Returns the boundary particles in `layers` layers, with a spacing of about `dp` (m).
     ///
-    /// Layer k lies (k + ½) dp inside the face. A box is divided into cells, round(size/dp) along each edge,
-    /// so that one whose size is a multiple of dp reproduces the lattice; round shapes get rings and shells,
-    /// outlines parallel curves, meshes even places on surfaces of equal depth, the innermost
-    /// up to a quarter dp short of it where faces are too near each other. A tank's layers go outwards into its walls, as many as are asked for.
-    /// A polygon or a tip thinner than dp has no room for a particle half a dp inside and gets none there.
+    /// Layer k lies (k + ½) dp inside the face. A box has round(size/dp) cells along each edge, so a box whose size is
+    /// a multiple of dp reproduces the lattice. Round shapes have rings and shells, and outlines have parallel curves.
+    /// Meshes have evenly spaced points on surfaces of constant depth; if two faces are too close, the innermost points
+    /// lack up to a quarter dp of that depth. The layers of a tank extend outwards into its walls, always `layers` in
+    /// number. If a polygon or a tip is thinner than dp, the depth of half a dp does not exist, and the shape has no
+    /// particles there.
     pub fn boundary_points(&self, dp: f64, layers: usize) -> Vec<BoundaryPoint<D>> {
         let layers = layers.min(u8::MAX as usize);
         let points = match self {
@@ -38,7 +39,7 @@ impl<const D: usize> Shape<D> {
     }
 }
 
-/// The points that keep `distance` from all earlier ones.
+/// Returns the points that are at least `distance` from all earlier points.
 fn thinned<const D: usize>(points: Vec<BoundaryPoint<D>>, distance: f64) -> Vec<BoundaryPoint<D>> {
     let kept = spacing_flags(&points.iter().map(|p| p.r).collect::<Vec<_>>(), 0, distance);
     points.into_iter().zip(kept).filter_map(|(p, keep)| keep.then_some(p)).collect()
@@ -58,8 +59,8 @@ pub(super) fn for_each_index<const D: usize>(low: &[i64; D], high: &[i64; D], mu
     }
 }
 
-/// As [`for_each_index`], but leaps over most of what lies `layers` or more cells inside the faces: of a large tank that
-/// is nearly all.
+/// Visits the same index vectors as [`for_each_index`], but skips most of the vectors that lie `layers` or more cells
+/// inside the faces. In a large tank the function skips nearly all vectors.
 fn each_outer<const D: usize>(low: &[i64; D], high: &[i64; D], layers: i64, mut visit: impl FnMut(&[i64; D])) {
     let mut rows = *high;
     rows[0] = low[0];
@@ -74,7 +75,7 @@ fn each_outer<const D: usize>(low: &[i64; D], high: &[i64; D], layers: i64, mut 
     });
 }
 
-/// How many cells of about `dp` divide `length`; at least one.
+/// Returns the number of cells of about `dp` along `length`; at least one cell.
 fn parts(length: f64, dp: f64) -> i64 {
     ((length / dp).round() as i64).max(1)
 }
@@ -107,7 +108,7 @@ fn tank_skin<const D: usize>(size: &Vector<D>, dp: f64, layers: usize) -> Vec<Bo
     skin
 }
 
-/// Places of even spacing about `dp` on a circle of radius r around the origin, as (x, y).
+/// Returns evenly spaced points, about `dp` apart, on a circle of radius r around the origin, as (x, y).
 fn ring(r: f64, dp: f64) -> Vec<(f64, f64)> {
     let mut n = parts(TAU * r.max(0.0), dp);
     while n > 1 && 2.0 * r * (PI / n as f64).sin() < MIN_SPACING * dp {
@@ -120,7 +121,7 @@ fn ring(r: f64, dp: f64) -> Vec<(f64, f64)> {
     (0..n).map(|i| (r * at(i).1, r * at(i).0)).collect()
 }
 
-/// The depths (layer, radius) of concentric layers; the last may be a core of radius zero.
+/// Returns the concentric layers as (layer, radius); the last layer may be a core of radius zero.
 fn shells(radius: f64, dp: f64) -> impl Iterator<Item = (usize, f64)> {
     (0..)
         .map(move |k| (k, radius - (k as f64 + 0.5) * dp))
@@ -128,7 +129,7 @@ fn shells(radius: f64, dp: f64) -> impl Iterator<Item = (usize, f64)> {
         .map(|(k, r)| (k, r.max(0.0)))
 }
 
-/// Slices across the axis, each a disc of rings.
+/// Generates the boundary particles of a cylinder: slices across the axis, each a disc of rings.
 fn cylinder_skin<const D: usize>(
     length: f64,
     radius: f64,
@@ -149,7 +150,7 @@ fn cylinder_skin<const D: usize>(
     skin
 }
 
-/// The point at `along` the axis, x and y across it.
+/// Returns the point at `along` on the axis, with the coordinates `x` and `y` across the axis.
 fn around<const D: usize>(axis: usize, along: f64, x: f64, y: f64) -> Vector<D> {
     let mut r = Vector::zeros();
     r[(axis + 1) % D] = x;
@@ -158,7 +159,7 @@ fn around<const D: usize>(axis: usize, along: f64, x: f64, y: f64) -> Vector<D> 
     r
 }
 
-/// A ball is a capsule of no length.
+/// Generates the boundary particles of a capsule; a ball is a capsule of length zero.
 fn capsule_skin<const D: usize>(
     length: f64,
     radius: f64,
@@ -177,7 +178,7 @@ fn capsule_skin<const D: usize>(
             let n = parts(outline, dp);
             for i in 0..n {
                 let s = outline * i as f64 / n as f64;
-                // Down one side and back up the other.
+                // The profile runs down along one side and up along the other.
                 let half = 0.5 * outline;
                 let (side, s) = if s < half { (1.0, s) } else { (-1.0, s - half) };
                 let (along, across) = profile(s, length, r);
@@ -192,7 +193,7 @@ fn capsule_skin<const D: usize>(
     skin
 }
 
-/// The point of a capsule's profile at the arc length `s` from its top: (along the axis, across it).
+/// Returns the point of a capsule's profile at arc length `s` from its top, as (along the axis, across the axis).
 fn profile(s: f64, length: f64, r: f64) -> (f64, f64) {
     let quarter = 0.5 * PI * r;
     if s < quarter {
@@ -206,15 +207,15 @@ fn profile(s: f64, length: f64, r: f64) -> (f64, f64) {
     }
 }
 
-/// Hoops around the axis of a capsule of radius `r`, one dp apart from pole to pole. Each takes as many
-/// points as bring the sum so far to one per dp² of the surface so far.
+/// Generates hoops around the axis of a capsule of radius `r`, one dp apart from pole to pole. The number of points in
+/// each hoop keeps the running total at one point per dp² of surface.
 fn hoops<const D: usize>(length: f64, r: f64, axis: usize, dp: f64, push: &mut impl FnMut(Vector<D>)) {
     let arc = PI * r + length;
     let m = parts(arc, dp);
     let (mut placed, mut turn) = (0, 0.0);
     for j in 0..m {
         let (along, across) = profile(arc * (j as f64 + 0.5) / m as f64, length, r);
-        // Archimedes: a zone of a sphere has the area of the cylinder around it, as a cylinder itself.
+        // Archimedes' theorem: a zone of a sphere has the same area as the zone of the cylinder around the sphere.
         let (end, _) = profile(arc * (j + 1) as f64 / m as f64, length, r);
         let area = TAU * r * (0.5 * length + r - end);
         let n = ((area / (dp * dp)).round() as i64 - placed).max(1);

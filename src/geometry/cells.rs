@@ -1,4 +1,4 @@
-//! Which points lie near a place: a grid of cells, filled once.
+//! Search for the points near a position, on a grid of cells that the code fills once.
 
 use std::ops::Range;
 
@@ -14,15 +14,15 @@ pub(super) struct PointCells<const D: usize> {
     min: Vector<D>,
     size: f64,
     count: [usize; D],
-    /// Where each cell's points start in `order`.
+    /// Start index of each cell's points in `order`.
     start: Vec<u32>,
     order: Vec<u32>,
-    /// The coordinates of the points in that order, axis by axis.
+    /// Coordinates of the points in the sequence of `order`, axis by axis.
     along: [Vec<f64>; D],
 }
 
 impl<const D: usize> PointCells<D> {
-    /// A grid over `points` of cells `size` (m) wide, or wider.
+    /// Returns a grid over `points`, with cells at least `size` (m) wide.
     pub(crate) fn new(points: &[Vector<D>], size: f64) -> Self {
         let bounds = Bounds::around(points);
         let along = std::array::from_fn(|_| Vec::new());
@@ -31,7 +31,7 @@ impl<const D: usize> PointCells<D> {
             return grid;
         }
         let cells = |size: f64| bounds.size().map(|s| (s / size).floor() + 1.0);
-        // Few points in much space: wider cells rather than many empty ones.
+        // If few points occupy a large space, the grid uses wider cells instead of many empty cells.
         while cells(grid.size).product() > 4.0 * points.len() as f64 + 64.0 {
             grid.size *= 1.5;
         }
@@ -61,12 +61,13 @@ impl<const D: usize> PointCells<D> {
         std::array::from_fn(|i| ((x[i] - self.min[i]) / self.size).floor() as isize)
     }
 
-    /// The first axis runs fastest, so that neighbours along it lie side by side.
+    /// Returns the index of a cell. The first axis varies fastest, so that neighbours along it are adjacent in memory.
     fn index(&self, place: &[usize; D]) -> usize {
         (0..D).rev().fold(0, |sum, i| sum * self.count[i] + place[i])
     }
 
-    /// Visits every point within `distance` (m) of `x`, and some farther ones, in an order fixed by the points.
+    /// Visits every point within `distance` (m) of `x`, and some points beyond, in an order that depends only on the
+    /// points.
     pub(crate) fn visit_near(&self, x: &Vector<D>, distance: f64, mut visit: impl FnMut(usize, &Vector<D>)) {
         self.rows_near(x, distance, |places| {
             let at = |k| Vector::from_fn(|axis, _| self.along[axis][k]);
@@ -74,8 +75,8 @@ impl<const D: usize> PointCells<D> {
         });
     }
 
-    /// Appends to `found` every point nearer than `distance` (m) to `x`, in an order fixed by the points; `r2` is
-    /// scratch memory.
+    /// Appends to `found` every point nearer than `distance` (m) to `x`, in an order that depends only on the points.
+    /// `r2` is scratch memory.
     pub(crate) fn append_within(&self, x: &Vector<D>, distance: f64, r2: &mut Vec<f64>, found: &mut Vec<u32>) {
         let mut n = found.len();
         self.rows_near(x, distance, |places| {
@@ -85,7 +86,8 @@ impl<const D: usize> PointCells<D> {
                 r2.iter_mut().zip(&along[places.clone()]).for_each(|(r2, y)| *r2 += (x - y) * (x - y));
             }
             found.resize(n + places.len(), 0);
-            // A few in a dozen are near enough: taken without a branch, which would be guessed wrong.
+            // Only a few in a dozen points are near enough, so the loop has no branch, which the processor would
+            // mispredict.
             for (&i, &r2) in self.order[places].iter().zip(&*r2) {
                 found[n] = i;
                 n += usize::from(r2 < distance * distance);
@@ -94,7 +96,7 @@ impl<const D: usize> PointCells<D> {
         found.truncate(n);
     }
 
-    /// Visits places in `order`, those of a row of cells at a time.
+    /// Visits ranges of indices in `order`, each with the points of a row of cells.
     fn rows_near(&self, x: &Vector<D>, distance: f64, mut visit: impl FnMut(Range<usize>)) {
         if self.order.is_empty() {
             return;
@@ -113,7 +115,7 @@ impl<const D: usize> PointCells<D> {
             if !places.is_empty() {
                 visit(places);
             }
-            // The next row: count up the axes after the first.
+            // Advance to the next row by incrementing the axes after the first.
             let Some(axis) = (1..D).find(|&i| (row[i] as isize) < high[i]) else { return };
             row[axis] += 1;
             (1..axis).for_each(|i| row[i] = low[i] as usize);
@@ -121,8 +123,8 @@ impl<const D: usize> PointCells<D> {
     }
 }
 
-/// The points that keep `distance` (m) from every earlier point that was kept, as flags; the first `given` are kept
-/// however near they are.
+/// Returns for each point whether it is at least `distance` (m) from every earlier point with a true flag. The first
+/// `given` points always have a true flag.
 pub(super) fn spacing_flags<const D: usize>(points: &[Vector<D>], given: usize, distance: f64) -> Vec<bool> {
     let cells = PointCells::new(points, distance);
     let mut kept = vec![false; points.len()];

@@ -1,4 +1,4 @@
-//! Whether a shape can exist: finite, positive sizes, an axis that is there, outlines that do not cross.
+//! Validity checks of a shape: finite, positive sizes, a valid axis, and outlines that do not cross themselves.
 
 use super::Shape;
 use crate::{
@@ -6,15 +6,16 @@ use crate::{
     math::Vector,
 };
 
-/// Most points of an outline: each of its edges is held against each, and every particle near it against all.
+/// Largest number of points of an outline: the check compares all pairs of edges, and every particle near the outline
+/// searches all edges.
 const MOST_POINTS: usize = 10_000;
 
 impl<const D: usize> Shape<D> {
-    /// Whether the shape can exist in `D` dimensions.
+    /// Checks that the shape is valid in `D` dimensions.
     ///
     /// # Errors
-    /// A scene error for a size that is not a positive number, an axis that does not exist, a shape of the
-    /// other dimension, an outline that crosses itself, repeats a point or runs clockwise, an empty compound.
+    /// A scene error for a size that is not a positive number, an axis that does not exist, a shape of the other
+    /// dimension, an outline that crosses itself, repeats a point or runs clockwise, or an empty compound.
     pub(crate) fn check(&self) -> Result<()> {
         match self {
             Shape::Box { size } => sizes("the size of a box", size),
@@ -88,7 +89,7 @@ fn compound<const D: usize>(parts: &[(crate::math::Pose<D>, Shape<D>)]) -> Resul
     Ok(())
 }
 
-/// What polygons (closed) and polylines (open) have in common.
+/// Checks the properties that polygons (closed) and polylines (open) have in common.
 fn outline<const D: usize>(name: &str, points: &[Vector<D>], least: usize, closed: bool) -> Result<()> {
     if D != 2 {
         return Err(Error::scene(format!("a {name} is a 2-D shape"))
@@ -131,18 +132,18 @@ fn outline<const D: usize>(name: &str, points: &[Vector<D>], least: usize, close
     Ok(())
 }
 
-/// a₀b₁ − a₁b₀.
+/// Returns a₀b₁ − a₁b₀.
 fn wedge<const D: usize>(a: &Vector<D>, b: &Vector<D>) -> f64 {
     a[0] * b[1] - a[1] * b[0]
 }
 
-/// Whether the corner a-b-c turns straight back.
+/// Returns whether the corner a-b-c turns back by 180°.
 fn folds<const D: usize>(a: &Vector<D>, b: &Vector<D>, c: &Vector<D>) -> bool {
     let (u, v) = (b - a, c - b);
     u.dot(&v) < 0.0 && wedge(&u, &v).abs() <= 1e-9 * u.norm() * v.norm()
 }
 
-/// Whether the segments a-b and c-d meet (touching counts).
+/// Returns whether the segments a-b and c-d intersect or touch.
 fn cross<const D: usize>(a: &Vector<D>, b: &Vector<D>, c: &Vector<D>, d: &Vector<D>) -> bool {
     let side = |p: &Vector<D>, q: &Vector<D>, x: &Vector<D>| wedge(&(q - p), &(x - p));
     let between = |p: &Vector<D>, q: &Vector<D>, x: &Vector<D>| (x - p).dot(&(x - q)) <= 0.0;

@@ -1,13 +1,13 @@
-//! How far a point is from the surface of a shape: exact for every single shape.
+//! Distance of a point from the surface of a shape: exact for every single shape.
 
 use super::Shape;
 use crate::math::Vector;
 
 impl<const D: usize> Shape<D> {
-    /// Distance from `x` (m, own frame) to the surface, m: negative inside the solid.
+    /// Returns the distance from `x` (m, own frame) to the surface, m: negative inside the solid.
     ///
-    /// A tank or a polyline is inside in the material of its walls. Of a compound it is the least of its
-    /// parts' distances: exact outside, at the joint of two parts too shallow.
+    /// The inside of a tank or a polyline is the material of its walls. For a compound the function returns the least
+    /// distance of all parts. That distance is exact outside, but too shallow inside near the joint of two parts.
     pub fn signed_distance(&self, x: &Vector<D>) -> f64 {
         match self {
             Shape::Box { size } => to_box(x, &(size * 0.5)),
@@ -31,8 +31,9 @@ impl<const D: usize> Shape<D> {
         }
     }
 
-    /// The direction in which the signed distance grows at `x` (m, own frame), unit length: the outward
-    /// normal of the nearest face. By central differences over `step` (m), of a mesh exact.
+    /// Returns the direction in which the signed distance grows at `x` (m, own frame), as a unit vector: the outward
+    /// normal of the nearest face. The function uses central differences over `step` (m); the result for a mesh is
+    /// exact.
     pub(crate) fn outward_normal(&self, x: &Vector<D>, step: f64) -> Vector<D> {
         if let Shape::Mesh { mesh, .. } = self {
             let n = mesh.distance_and_normal(&in_space(x)).1;
@@ -47,7 +48,8 @@ impl<const D: usize> Shape<D> {
         n.try_normalize(1e-9 * step).unwrap_or_else(Vector::zeros)
     }
 
-    /// The signed distance at `x`, m, and the outward direction, as by themselves; of a mesh by one search.
+    /// Returns the signed distance (m) at `x` and the outward normal. A mesh needs only a single search for both
+    /// values.
     pub(super) fn distance_and_normal(&self, x: &Vector<D>, step: f64) -> (f64, Vector<D>) {
         match self {
             Shape::Mesh { mesh, .. } => {
@@ -59,7 +61,7 @@ impl<const D: usize> Shape<D> {
     }
 }
 
-/// A point of space, whatever `D`.
+/// Returns `x` as a point in 3-D, for any `D`.
 fn in_space<const D: usize>(x: &Vector<D>) -> Vector<3> {
     Vector::from_fn(|i, _| if i < D { x[i] } else { 0.0 })
 }
@@ -90,11 +92,11 @@ fn to_tank<const D: usize>(x: &Vector<D>, size: &Vector<D>, thickness: f64) -> f
     outer.max(-to_hollow.sqrt())
 }
 
-/// The point of the segment a-b nearest to `x`, and where `x` projects on its line (0 at a, 1 at b).
+/// Returns the point of the segment a-b nearest to `x`, and the projection of `x` on the line a-b (0 at a, 1 at b).
 pub(super) fn nearest_on_segment<const D: usize>(x: &Vector<D>, a: &Vector<D>, b: &Vector<D>) -> (Vector<D>, f64) {
     let along = b - a;
     let u = (x - a).dot(&along) / along.norm_squared();
-    // The ends are returned as given, so that two segments tie exactly at their shared point.
+    // The function returns the ends unchanged, so that two segments tie exactly at their shared point.
     let nearest = if u <= 0.0 {
         *a
     } else if u >= 1.0 {
@@ -117,22 +119,22 @@ fn to_polygon<const D: usize>(x: &Vector<D>, points: &[Vector<D>]) -> f64 {
     if inside { -d2.sqrt() } else { d2.sqrt() }
 }
 
-/// The unit normal to the right of the step from `a` to `b`: into the solid of a polyline.
+/// Returns the unit normal to the right of the direction from `a` to `b`: into the solid of a polyline.
 pub(super) fn right_normal<const D: usize>(a: &Vector<D>, b: &Vector<D>) -> Vector<D> {
     let mut n = Vector::<D>::zeros();
     (n[0], n[1]) = (b[1] - a[1], a[0] - b[0]);
     n / n.norm()
 }
 
-/// Which side of an open line a point is on.
+/// Position of a point relative to an open line.
 pub(super) enum LineSide {
-    /// On the water's side, or on the line.
+    /// The point is on the water's side of the line, or on the line.
     Left(f64),
-    /// On the solid's side, this deep (m).
+    /// The point is on the solid's side of the line, at this depth (m).
     Right(f64),
-    /// Past the first point of the line.
+    /// The point is before the first point of the line.
     BeforeStart,
-    /// Past its last point.
+    /// The point is beyond the last point of the line.
     AfterEnd,
 }
 

@@ -1,9 +1,9 @@
-//! Filling with water: points on a lattice of spacing dp, each the centre of its cell, less the solids.
+//! Filling with water: points on a lattice of spacing dp, each at the centre of its cell, outside the solids.
 //!
-//! A cell inside a solid goes; of the cells that a face cuts so many go that along each side of the solid as much
-//! water is gone as it displaces. Where a solid then does not fit the lattice, the water around it is packed: it leaves no gap
-//! to the face and comes no nearer to it than half a dp. Where everything fits, the lattice stays exact. A gap between two
-//! solids that is too narrow for a row of particles stays dry.
+//! The module removes each cell inside a solid. Of the cells that a face cuts, the module removes as many as the
+//! displaced volume requires along each side of the solid. If a solid does not fit the lattice, the module packs the
+//! water around it. The packed water leaves no gap at the face and stays at least half a dp from it. If all solids fit,
+//! the lattice stays exact. A gap between two solids that is too narrow for a row of particles stays dry.
 
 use super::{
     Shape,
@@ -15,37 +15,37 @@ use crate::{
     math::{Bounds, Matrix, Pose, Vector},
 };
 
-/// A body of water.
+/// A region of water.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WaterRegion<const D: usize> {
-    /// What is filled; of an unturned box the lattice starts at the lowest corner.
+    /// Shape of the region. For an unturned box, the lattice starts at the lowest corner.
     pub shape: Shape<D>,
-    /// Where it is.
+    /// Pose of the region.
     pub pose: Pose<D>,
 }
 
-/// What the filling gave.
+/// Result of the filling.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FilledWater<const D: usize> {
     /// Positions, m.
     pub r: Vec<Vector<D>>,
-    /// Lattice points that were dropped because they lay in a solid.
+    /// Number of lattice points removed because they lie in a solid.
     pub removed_in_solids: usize,
-    /// Lattice points that were dropped because they lay in an earlier region.
+    /// Number of lattice points removed because they lie in an earlier region.
     pub removed_in_regions: usize,
 }
 
-/// Most points of a lattice: beyond, the spacing is a slip of the pen.
+/// Largest number of points of a lattice: a larger number indicates a mistyped spacing.
 const MOST: f64 = 4e8;
 
-/// Fills `regions` with water of spacing `dp` (m), less the `solids`.
+/// Fills `regions` with water of spacing `dp` (m) outside the `solids`, and returns the filling.
 ///
-/// Regions whose corners are a whole number of dp apart share one lattice. A box that is not a whole
-/// number of dp wide has its lattice in the middle, the lowest row half a dp above the bottom.
+/// Regions share a lattice if their corners are a whole number of dp apart. If a box is not a whole number of dp wide,
+/// its lattice is centred, with the lowest row half a dp above the bottom.
 ///
 /// # Errors
-/// A scene error if `dp` is not positive, a region cannot exist or is thinner than half a dp, or its lattice
-/// would have more than 4·10⁸ points.
+/// A scene error if `dp` is not positive, a region is not valid or is thinner than half a dp, or its lattice would have
+/// more than 4·10⁸ points.
 pub fn fill<const D: usize>(
     regions: &[WaterRegion<D>],
     solids: &[(&Shape<D>, &Pose<D>)],
@@ -91,7 +91,8 @@ pub fn fill<const D: usize>(
 /// The lattice of a region: point i lies at origin + (i + ½) dp.
 pub(super) struct Lattice<'a, const D: usize> {
     region: &'a WaterRegion<D>,
-    /// An unturned box holds all points of its lattice, any other shape those inside it.
+    /// Whether the region is an unturned box. Such a box contains all points of its lattice; any other shape contains
+    /// only the points inside it.
     is_box: bool,
     origin: Vector<D>,
     low: [i64; D],
@@ -100,7 +101,7 @@ pub(super) struct Lattice<'a, const D: usize> {
 }
 
 impl<'a, const D: usize> Lattice<'a, D> {
-    /// The lattice of `region`, one with the lattice at `shared` if their corners allow.
+    /// Returns the lattice of `region`, aligned with the lattice at `shared` if their corners permit.
     fn new(region: &'a WaterRegion<D>, shared: Option<Vector<D>>, dp: f64) -> Result<Self> {
         region.shape.check()?;
         let bounds = region.shape.bounds_at(&region.pose);
@@ -132,7 +133,7 @@ impl<'a, const D: usize> Lattice<'a, D> {
         Ok(made)
     }
 
-    /// Visits the lattice points of the region's box, and of `margin` cells around it.
+    /// Visits the lattice points of the region's box and of a margin of `margin` cells around it.
     pub(crate) fn for_each_point(&self, margin: i64, mut visit: impl FnMut(&Vector<D>)) {
         let (low, high) = (self.low.map(|i| i - margin), self.high.map(|i| i + margin));
         for_each_index(&low, &high, |at| {
@@ -140,14 +141,14 @@ impl<'a, const D: usize> Lattice<'a, D> {
         });
     }
 
-    /// The cells of the lattice and of `margin` cells around it.
+    /// Returns the bounds of the lattice cells and of a margin of `margin` cells around them.
     pub(crate) fn bounds_with_margin(&self, margin: i64) -> Bounds<D> {
         let corner =
             |at: &[i64; D], more: i64| Vector::from_fn(|i, _| self.origin[i] + (at[i] + more) as f64 * self.dp);
         Bounds { min: corner(&self.low, -margin), max: corner(&self.high, 1 + margin) }
     }
 
-    /// Whether the region holds the place `x`.
+    /// Returns whether the region contains the point `x`.
     pub(crate) fn contains(&self, x: &Vector<D>) -> bool {
         if self.is_box {
             return self.bounds_with_margin(0).grown(-1e-9 * self.dp).contains(x);
@@ -155,8 +156,8 @@ impl<'a, const D: usize> Lattice<'a, D> {
         self.region.shape.signed_distance(&self.region.pose.local(x)) < -1e-9 * self.dp
     }
 
-    /// Keeps `x` half a dp inside the sides of a box; its top is free and its bottom a solid's business.
-    /// Returns how far (m) it may then go without leaving them.
+    /// Keeps `x` at least half a dp inside the sides of a box; the top and the bottom do not constrain `x`. Returns the
+    /// distance (m) that `x` can then move without leaving the sides.
     pub(crate) fn clamp_to_sides(&self, x: &mut Vector<D>) -> f64 {
         let mut room = f64::INFINITY;
         if let (true, Shape::Box { size }) = (self.is_box, &self.region.shape) {

@@ -1,5 +1,5 @@
-//! How water and solids fit together: which points lie in a solid, which are too near to its face, and
-//! the packing of the water around the solids that do not fit the lattice.
+//! Fit of water to solids: which points lie in a solid and which are too near to its face. The module packs the water
+//! around the solids that do not fit the lattice.
 
 use rayon::prelude::*;
 
@@ -9,29 +9,29 @@ use crate::{
     particles::PARTICLES_PER_TASK,
 };
 
-/// Water may move up to this far from a solid that does not fit, dp: far enough to hide half a row.
+/// Water moves up to this distance from a solid that does not fit, dp: enough to distribute half a row of particles.
 const ZONE: f64 = 6.0;
-/// Layers of skin in the packing: as deep as its kernel reaches.
+/// Boundary layers in the packing: as many as the kernel's support covers.
 const LAYERS: usize = 2;
-/// The widest gap, beyond half a dp, between a face and its water that is let be, dp.
+/// The widest accepted gap between a face and its water, in excess of half a dp, dp.
 const GAP: f64 = 0.1;
-/// Least distance of packed water from a face, dp: what lies nearer is squeezed between two of them.
+/// Least distance of packed water from a face, dp: a nearer point lies in a narrow gap between two faces.
 const NARROW: f64 = 0.35;
 
-/// A solid in the way of the water.
+/// A solid that displaces water.
 pub(super) struct Obstacle<'a, const D: usize> {
     shape: &'a Shape<D>,
     pose: &'a Pose<D>,
     dp: f64,
-    /// Everything within one dp.
+    /// Bounds of the solid, extended by one dp.
     close: Bounds<D>,
-    /// Everything that the packing of its water involves.
+    /// Bounds of all points that the packing around this solid involves.
     around: Bounds<D>,
-    /// The lines of its polyline walls, in the world.
+    /// The lines of the solid's polyline walls, in world coordinates.
     lines: Vec<Vec<Vector<D>>>,
-    /// What the cells taken so far lack in the solid's volume, on each side, cells.
+    /// Volume of the solid less the volume of the cells taken so far, on each side, in cells.
     owed: Vec<f64>,
-    /// Whether water on the lattice would lie too near to its face, or too far.
+    /// Whether water on the lattice would be too near to the solid's face, or too far from it.
     needs_packing: bool,
 }
 
@@ -52,21 +52,23 @@ impl<'a, const D: usize> Obstacle<'a, D> {
         self.pose.rotation * self.shape.outward_normal(&self.pose.local(x), 1e-3 * self.dp)
     }
 
-    /// Whether the cell at `x` goes to the solid, or lies in the ground below a bed. Cells that a face cuts are
-    /// shared out so that, along each side, the solid gets its volume and not half a row more or less.
+    /// Returns whether the solid takes the cell at `x`, or whether the cell lies in the ground below a bed. On each
+    /// side, the solid takes as many of the cut cells as its volume requires, without an excess or a lack of half a
+    /// row.
     pub(crate) fn claims_cell(&mut self, x: &Vector<D>) -> bool {
-        // A line over one dp has a cubic cell's second moment along any normal: before a curved face, too, the
-        // shares add up to the volume.
+        // A line of length one dp has the second moment of a cubic cell along any normal. The shares therefore add up
+        // to the volume at a curved face too.
         let share = if self.close.contains(x) { 0.5 - self.distance(x) / self.dp } else { 0.0 };
         if share <= 0.0 || share >= 1.0 {
             return share >= 1.0 || self.buries(x);
         }
         let n = self.outward(x);
-        // A cell cut by the bed's own face is not ground, one cut by its underside is.
+        // A cell that the bed's own face cuts is not ground; a cell that the bed's underside cuts is ground.
         self.buries(&(x + n * self.dp)) || self.settle(share, &n)
     }
 
-    /// Settles a cell of which the solid has a `share`: the side that faces along `n` takes it or is owed.
+    /// Adds the solid's `share` of a cell to the side that faces along `n`. Returns whether the solid takes the whole
+    /// cell.
     fn settle(&mut self, share: f64, n: &Vector<D>) -> bool {
         let axis = n.iamax();
         let owed = &mut self.owed[2 * axis + usize::from(n[axis] > 0.0)];
@@ -78,13 +80,13 @@ impl<'a, const D: usize> Obstacle<'a, D> {
         taken
     }
 
-    /// Whether `x` lies in the ground below a bed.
+    /// Returns whether `x` lies in the ground below a bed.
     fn buries(&self, x: &Vector<D>) -> bool {
         self.lines.iter().any(|line| below_bed(x, line))
     }
 
-    /// Notes whether the water point `x` lies too near to the face, or leaves a gap before it that
-    /// belongs to the water (`in_water`) or is not above it.
+    /// Records that the solid needs packing if the water point `x` is too near to the face, or if it leaves a gap at
+    /// the face. A gap below the solid (face downwards) counts only if it belongs to the water (`in_water`).
     pub(crate) fn check_fit(&mut self, x: &Vector<D>, in_water: impl Fn(&Vector<D>) -> bool) {
         if self.needs_packing || !self.close.contains(x) {
             return;
@@ -92,25 +94,26 @@ impl<'a, const D: usize> Obstacle<'a, D> {
         let distance = self.distance(x) / self.dp;
         self.needs_packing = distance < 0.5 - 1e-6;
         if distance > 0.5 + GAP && distance < 1.0 {
-            // Only before a face along the lattice: at a corner this distance is as it should be.
+            // This applies only to a face parallel to the lattice: at a corner this distance is correct.
             let n = self.outward(x);
             let is_above = n[D - 1] < -0.5;
             self.needs_packing = n.amax() > 1.0 - 1e-6 && (!is_above || in_water(&(x - n * self.dp)));
         }
     }
 
-    /// Whether water on the lattice does not fit it.
+    /// Returns whether water on the lattice does not fit the solid.
     pub(crate) fn needs_packing(&self) -> bool {
         self.needs_packing
     }
 
-    /// Whether the water point `x` lies so near to the face that it can only be in a gap too narrow for a row of particles.
+    /// Returns whether the water point `x` is so near to the face that it lies in a gap too narrow for a row of
+    /// particles.
     pub(crate) fn is_in_narrow_gap(&self, x: &Vector<D>) -> bool {
         self.close.contains(x) && self.distance(x) < NARROW * self.dp
     }
 
-    /// Puts `x` back to half a dp from the face if it is nearer. Returns how far (m) it may then go without
-    /// coming nearer than that.
+    /// Moves `x` out to half a dp from the face if it is nearer. Returns the distance (m) that `x` can then move
+    /// without becoming nearer than that.
     fn push_out(&self, x: &mut Vector<D>) -> f64 {
         if !self.close.contains(x) {
             return 0.5 * self.dp;
@@ -119,7 +122,7 @@ impl<'a, const D: usize> Obstacle<'a, D> {
         if lack > 0.0 {
             *x += self.outward(x) * lack;
         }
-        // Behind a thin wall its distance may jump.
+        // Behind a thin wall the distance may be discontinuous.
         if self.lines.is_empty() { -lack } else { 0.0 }
     }
 }
@@ -132,7 +135,7 @@ fn collect_lines<const D: usize>(shape: &Shape<D>, pose: &Pose<D>, lines: &mut V
     }
 }
 
-/// Whether the part of the line next above `x` is a bed: walked towards +x, the water above it.
+/// Returns whether the line segment next above `x` is a bed: a segment that runs towards +x, with the water above it.
 fn below_bed<const D: usize>(x: &Vector<D>, line: &[Vector<D>]) -> bool {
     let (mut lowest, mut bed) = (f64::INFINITY, false);
     for ab in line.windows(2) {
@@ -147,7 +150,7 @@ fn below_bed<const D: usize>(x: &Vector<D>, line: &[Vector<D>]) -> bool {
     bed
 }
 
-/// Packs the water around the solids that do not fit the lattice; `home` is each point's lattice.
+/// Packs the water around the solids that do not fit the lattice; `home` contains the lattice index of each point.
 pub(super) fn pack_around_obstacles<const D: usize>(
     water: &mut [Vector<D>],
     home: &[usize],
@@ -174,7 +177,7 @@ pub(super) fn pack_around_obstacles<const D: usize>(
         }
     }
     let mut points: Vec<_> = movable.iter().map(|&i| water[i]).collect();
-    // The water is continued beyond its regions, or it would creep out of them; that part is left behind.
+    // Temporary points continue the water beyond its regions, so that the water does not spread out of them.
     points.extend(moving);
     let all_movable = points.len();
     points.extend(held);
@@ -186,14 +189,14 @@ pub(super) fn pack_around_obstacles<const D: usize>(
     }
     packing::spread_points(&mut points, all_movable, dp, |i, _, x| {
         let room = movable.get(i).map_or(f64::INFINITY, |&w| lattices[home[w]].clamp_to_sides(x));
-        // Twice: what one face of a corner pushes out, it may push into the other.
+        // Two passes: a point that moves out of one face of a corner may move into the other face.
         (0..2).flat_map(|_| &*obstacles).fold(room, |room, o| room.min(o.push_out(x)))
     });
     movable.iter().zip(&points).for_each(|(&i, x)| water[i] = *x);
 }
 
-/// Lattice points in a margin around the regions, near the solids that do not fit: those that may move,
-/// and the outermost, which hold them.
+/// Returns the lattice points in a margin around the regions, near the solids that do not fit. The first list contains
+/// the movable points; the second contains the outermost points, which are fixed and hold the others.
 fn ghosts<const D: usize>(lattices: &[Lattice<D>], obstacles: &mut [Obstacle<D>]) -> (Vec<Vector<D>>, Vec<Vector<D>>) {
     const MARGIN: i64 = 8;
     const RIM: i64 = 3;

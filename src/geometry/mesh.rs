@@ -1,4 +1,4 @@
-//! A solid given by the triangles of its surface: checked to be one, measured exactly.
+//! A solid defined by the triangles of its surface. The module validates the surface and computes its exact properties.
 
 mod shells;
 #[cfg(feature = "dim3")]
@@ -18,13 +18,13 @@ use crate::{
 };
 use tree::FacetTree;
 
-/// Most facets of a mesh: far more than particles can feel.
+/// Largest number of facets of a mesh: far more detail than SPH particles resolve.
 pub(crate) const MAX_FACETS: usize = 500_000;
 
-/// The longest mesh, m: what is longer is in another unit.
+/// Longest permitted mesh, m: a longer mesh indicates another unit of length.
 const LARGEST: f64 = 1e6;
 
-/// The closed surface of a solid in space, as triangles that are counter-clockwise seen from outside.
+/// The closed surface of a 3-D solid, as triangles that are counter-clockwise seen from outside.
 #[derive(Clone)]
 pub struct Mesh {
     points: Vec<Vector<3>>,
@@ -33,33 +33,35 @@ pub struct Mesh {
     tree: FacetTree,
 }
 
-/// What of a mesh other bodies touch. The water sees the mesh itself, whatever is chosen. Scene word `mesh.contact`.
+/// The geometry of a mesh that other bodies contact. The water always interacts with the mesh itself. Scene key
+/// `mesh.contact`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum ContactGeometry {
-    /// The surface of a solid that is fixed. Of one that moves its hull, where that has at most a hundredth more
-    /// volume, else its decomposition: two surfaces without an inside cannot be kept apart.
+    /// The surface, if the solid is fixed. For a moving solid, the hull if its volume exceeds the solid's by at most a
+    /// hundredth, otherwise the decomposition: contact between two bare surfaces cannot keep the solids apart.
     #[default]
     Fitting,
-    /// Every facet, whatever moves: exact, slow, and between two such solids not robust.
+    /// Every facet, for fixed and moving solids: exact and slow, and not robust between two such solids.
     Surface,
     /// The convex hull.
     Hull,
-    /// Convex parts that follow the solid to about a sixtieth of its size.
+    /// Convex parts that approximate the solid to about a sixtieth of its size.
     Decomposition,
-    /// Nothing: other bodies pass through it.
+    /// No contact: other bodies pass through the mesh.
     None,
 }
 
 impl Mesh {
-    /// The solid with these corners (m) and facets, three indices of corners each, counter-clockwise seen from outside.
-    /// Corners in the same place become one, facets with two corners in one place are left out.
+    /// Returns the solid with these corners (m) and facets. Each facet has three indices of corners, counter-clockwise
+    /// seen from outside. The function merges corners at the same position, and omits facets with two corners at the
+    /// same position.
     ///
     /// # Errors
-    /// `Scene` if a corner is not finite or not there, there are too many facets, the surface is open, turned inside
-    /// out or partly turned over, passes through itself, or has a shell within a shell that faces the same way: says where (m), how
-    /// often, and what to do.
+    /// `Scene` if a corner is not finite or does not exist, there are too many facets, the surface is open, inside out
+    /// or partly inverted, or intersects itself, or a shell lies within a shell of the same orientation. The error
+    /// contains the position (m), the number of occurrences and a remedy.
     pub fn new(points: &[Vector<3>], facets: &[[u32; 3]]) -> Result<Self> {
         if facets.len() > MAX_FACETS {
             return Err(Error::scene(format!("a mesh of {} facets; the most is {MAX_FACETS}", facets.len()))
@@ -100,27 +102,27 @@ impl Mesh {
         Ok(mesh)
     }
 
-    /// The corners, m.
+    /// Returns the corners, m.
     pub fn points(&self) -> &[Vector<3>] {
         &self.points
     }
 
-    /// The facets: three indices of corners each, counter-clockwise seen from outside.
+    /// Returns the facets: three indices of corners each, counter-clockwise seen from outside.
     pub fn facets(&self) -> &[[u32; 3]] {
         &self.facets
     }
 
-    /// The smallest axis-aligned box around it, m.
+    /// Returns the smallest axis-aligned box around the mesh, m.
     pub(crate) fn bounds(&self) -> Bounds<3> {
         self.bounds
     }
 
-    /// Exact volume, centroid and second moment of the polyhedron.
+    /// Returns the exact volume, centroid and second moment of the polyhedron.
     pub fn volume_properties(&self) -> VolumeProperties<3> {
         moments(&self.points, &self.facets)
     }
 
-    /// Area of the surface, m².
+    /// Returns the area of the surface, m².
     pub(crate) fn surface_area(&self) -> f64 {
         (0..self.facets.len())
             .map(|i| self.facet_corners(i))
@@ -128,15 +130,16 @@ impl Mesh {
             .sum()
     }
 
-    /// Signed distance (m) of `x` (m) from the surface, negative inside, and the direction in which it grows, unit
-    /// length.
+    /// Returns the signed distance (m) of `x` (m) from the surface, negative inside, and the unit vector in which the
+    /// distance grows.
     ///
-    /// Exact to round-off. The sign is that of the angle-weighted normal at the nearest place. @baerentzen2005
+    /// The distance is exact to round-off. Its sign follows from the angle-weighted normal at the nearest point of the
+    /// surface. @baerentzen2005
     pub(crate) fn distance_and_normal(&self, x: &Vector<3>) -> (f64, Vector<3>) {
         self.tree.distance_and_normal(x)
     }
 
-    /// The facets with their corners, for sums over the surface; none in 2-D.
+    /// Returns the facets with their corners, for sums over the surface; an empty list in 2-D.
     pub(super) fn triangles<const D: usize>(&self) -> Vec<Facet<D>> {
         let corner = |p: &Vector<3>| Vector::from_fn(|i, _| p[i]);
         let all = (0..if D == 3 { self.facets.len() } else { 0 }).map(|i| self.facet_corners(i));
@@ -160,11 +163,12 @@ impl std::fmt::Debug for Mesh {
     }
 }
 
-/// One corner for each place that a facet touches, and the facets that have three places.
+/// Merges corners at the same position. Returns the corners that facets use, and the facets with three distinct
+/// corners.
 fn joined(points: &[Vector<3>], facets: &[[u32; 3]]) -> (Vec<Vector<3>>, Vec<[u32; 3]>) {
     let (mut kept, mut places) = (Vec::new(), HashMap::new());
     let mut index = |p: u32| {
-        // −0 and 0 are one place.
+        // −0 and 0 are the same position.
         let x = points[p as usize].add_scalar(0.0);
         *places.entry([x[0].to_bits(), x[1].to_bits(), x[2].to_bits()]).or_insert_with(|| {
             kept.push(x);
@@ -176,7 +180,7 @@ fn joined(points: &[Vector<3>], facets: &[[u32; 3]]) -> (Vec<Vector<3>>, Vec<[u3
     (kept, facets)
 }
 
-/// The signed sum of the tetrahedra between the facets and the middle of all corners.
+/// Returns the signed sum of the tetrahedra between the facets and the mean of all corners.
 fn moments(points: &[Vector<3>], facets: &[[u32; 3]]) -> VolumeProperties<3> {
     let bounds = Bounds::around(points);
     let origin = (bounds.min + bounds.max) * 0.5;

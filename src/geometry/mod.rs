@@ -1,7 +1,8 @@
-//! Geometry of solids and water: shapes, volumes, distances, boundary points, filling. No motion, no mass.
+//! Geometry of solids and water: shapes, volumes, distances, boundary points and filling. The module has no motion or
+//! mass.
 //!
-//! A [`Shape`] gives its exact volume properties, its signed distance, the part of it under water and its
-//! boundary particles; [`fill()`] puts water on a lattice and fits it to the solids.
+//! A [`Shape`] computes its exact volume properties, its signed distance, its submerged part and its boundary
+//! particles. [`fill()`] places water on a lattice and fits the water to the solids.
 
 mod boundary_points;
 mod cells;
@@ -24,7 +25,7 @@ use crate::math::{Matrix, Pose, Vector};
 pub use fill::{FilledWater, WaterRegion, fill};
 pub use mesh::{ContactGeometry, Mesh};
 
-/// A shape in its own frame, m. The last axis is the vertical one of an unturned shape.
+/// A shape in its own frame, m. The last axis is vertical if the shape is not rotated.
 #[derive(Clone, Debug, PartialEq)]
 #[allow(missing_docs, reason = "the sentence of each variant names its fields")]
 #[non_exhaustive]
@@ -39,16 +40,17 @@ pub enum Shape<const D: usize> {
     Cylinder { length: f64, radius: f64, axis: usize },
     /// A simple polygon, counter-clockwise; 2-D only.
     Polygon { points: Vec<Vector<D>> },
-    /// A wall along an open line, 2-D only: walking from the first point to the last, the water is on
-    /// the left and the solid, `thickness` thick, on the right. A line walked towards +x is a bed: no
-    /// water is filled below it, however thin it is.
+    /// A wall along an open line, 2-D only. Seen from the first point towards the last, the water is on the left, and
+    /// the solid, `thickness` thick, is on the right. A line that runs towards +x is a bed: the filling places no water
+    /// below a bed, even if the bed is thin.
     Polyline { points: Vec<Vector<D>>, thickness: f64 },
     /// An open-topped tank: bottom and side walls `thickness` thick around the inner box from the
     /// origin to `size`.
     Tank { size: Vector<D>, thickness: f64 },
-    /// A solid by the facets of its surface, and what of it other bodies touch; 3-D only.
+    /// A solid with the facets of its surface, and the geometry that other bodies contact; 3-D only.
     Mesh { mesh: Arc<Mesh>, contact: ContactGeometry },
-    /// Several shapes as one solid, each at its pose; they must not overlap, unless it is fixed or driven.
+    /// Several shapes as a single solid, each at its pose. The shapes must not overlap, unless the solid is fixed or
+    /// driven.
     Compound(Vec<(Pose<D>, Shape<D>)>),
 }
 
@@ -69,6 +71,6 @@ pub struct VolumeProperties<const D: usize> {
 pub struct BoundaryPoint<const D: usize> {
     /// Position, m.
     pub r: Vector<D>,
-    /// Layer, 0 the one nearest the water, half a dp inside the true face.
+    /// Layer number. Layer 0 is nearest to the water, half a dp inside the true face.
     pub layer: u8,
 }

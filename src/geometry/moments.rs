@@ -1,4 +1,4 @@
-//! Exact bounds, volume, centroid, second moment and surface of every shape.
+//! Exact bounds, volume, centroid, second moment and surface area of every shape.
 
 use std::f64::consts::PI;
 
@@ -6,7 +6,7 @@ use super::{Shape, VolumeProperties, distance::right_normal};
 use crate::math::{Bounds, Matrix, Pose, Vector};
 
 impl<const D: usize> Shape<D> {
-    /// The smallest axis-aligned box around the shape in its own frame, m.
+    /// Returns the smallest axis-aligned box around the shape in its own frame, m.
     pub fn bounds(&self) -> Bounds<D> {
         let around = |half: Vector<D>| Bounds { min: -half, max: half };
         match self {
@@ -35,7 +35,7 @@ impl<const D: usize> Shape<D> {
         }
     }
 
-    /// An axis-aligned box around the shape placed at `pose`, m: the smallest if the pose is unturned.
+    /// Returns an axis-aligned box around the shape at `pose`, m: the smallest such box if the pose has no rotation.
     pub fn bounds_at(&self, pose: &Pose<D>) -> Bounds<D> {
         let own = self.bounds();
         let centre = pose.point(&((own.min + own.max) * 0.5));
@@ -43,7 +43,7 @@ impl<const D: usize> Shape<D> {
         Bounds { min: centre - half, max: centre + half }
     }
 
-    /// Exact volume, centroid and second moment.
+    /// Returns the exact volume, centroid and second moment.
     pub fn volume_properties(&self) -> VolumeProperties<D> {
         match self {
             Shape::Box { size } => {
@@ -79,8 +79,8 @@ impl<const D: usize> Shape<D> {
         }
     }
 
-    /// Area of the whole surface, m² (length of the outline, m, in 2-D). Of a compound the sum of its
-    /// parts', so that faces in touch count.
+    /// Returns the area of the whole surface, m² (in 2-D the length of the outline, m). The area of a compound is the
+    /// sum over its parts, including faces in contact.
     pub(crate) fn surface_area(&self) -> f64 {
         match self {
             Shape::Box { size } => (0..D).map(|i| 2.0 * size.product() / size[i]).sum(),
@@ -90,7 +90,7 @@ impl<const D: usize> Shape<D> {
             Shape::Polygon { points } => perimeter(points),
             Shape::Polyline { points, thickness } => perimeter(&polyline_outline(points, *thickness)),
             Shape::Tank { size, thickness } => {
-                // The hollow's floor makes up for the hole that it leaves in the top.
+                // The floor of the hollow has the same area as the opening at the top.
                 let sides: f64 = (0..D - 1).map(|i| 2.0 * size.product() / size[i]).sum();
                 Shape::Box { size: tank_outer_bounds(size, *thickness).size() }.surface_area() + sides
             }
@@ -100,7 +100,7 @@ impl<const D: usize> Shape<D> {
     }
 }
 
-/// Volume of a ball in `n` dimensions, 1 to 3.
+/// Returns the volume of a ball in `n` dimensions, 1 to 3.
 fn ball_volume(n: usize, radius: f64) -> f64 {
     match n {
         1 => 2.0 * radius,
@@ -109,7 +109,7 @@ fn ball_volume(n: usize, radius: f64) -> f64 {
     }
 }
 
-/// Surface of a ball in `n` dimensions, 1 to 3: n V / r.
+/// Returns the surface area of a ball in `n` dimensions, 1 to 3: n V / r.
 fn ball_surface(n: usize, radius: f64) -> f64 {
     n as f64 * ball_volume(n, radius) / radius
 }
@@ -130,7 +130,7 @@ fn capsule<const D: usize>(length: f64, radius: f64, axis: usize) -> VolumePrope
     centred(rod + ends, moment)
 }
 
-/// Sum of volumes, each with its sign and its pose, by the parallel-axis theorem.
+/// Returns the sum of volumes, each with its sign and its pose, by the parallel-axis theorem.
 fn sum<const D: usize>(parts: impl IntoIterator<Item = (f64, Pose<D>, VolumeProperties<D>)>) -> VolumeProperties<D> {
     let (mut volume, mut first, mut second) = (0.0, Vector::zeros(), Matrix::zeros());
     for (sign, pose, part) in parts {
@@ -144,7 +144,7 @@ fn sum<const D: usize>(parts: impl IntoIterator<Item = (f64, Pose<D>, VolumeProp
     VolumeProperties { volume, centroid, second_moment: second - centroid * centroid.transpose() * volume }
 }
 
-/// A polygon as the signed sum of the triangles between its edges and its first point.
+/// Returns the properties of a polygon, as the signed sum of the triangles between its edges and its first point.
 fn polygon<const D: usize>(points: &[Vector<D>]) -> VolumeProperties<D> {
     let origin = points[0];
     let (mut volume, mut first, mut second) = (0.0, Vector::zeros(), Matrix::zeros());
@@ -168,20 +168,20 @@ fn perimeter<const D: usize>(points: &[Vector<D>]) -> f64 {
     (0..points.len()).map(|i| (points[(i + 1) % points.len()] - points[i]).norm()).sum()
 }
 
-/// The outside of a tank: walls and bottom, the top open at `size`.
+/// Returns the outer bounds of a tank: walls and bottom, open at the top at `size`.
 pub(super) fn tank_outer_bounds<const D: usize>(size: &Vector<D>, thickness: f64) -> Bounds<D> {
     let mut max = size.add_scalar(thickness);
     max[D - 1] = size[D - 1];
     Bounds { min: Vector::repeat(-thickness), max }
 }
 
-/// The outline of a polyline wall, counter-clockwise: the line backwards, then its parallel `thickness`
-/// to the right, whose corners are mitred.
+/// Returns the outline of a polyline wall, counter-clockwise: the line in reverse, then its mitred parallel at a
+/// distance of `thickness` to the right.
 pub(super) fn polyline_outline<const D: usize>(points: &[Vector<D>], thickness: f64) -> Vec<Vector<D>> {
     let normals: Vec<_> = points.windows(2).map(|ab| right_normal(&ab[0], &ab[1])).collect();
     let back = points.iter().enumerate().map(|(i, p)| {
         let (a, b) = (normals[i.max(1) - 1], normals[i.min(normals.len() - 1)]);
-        // A corner sharper than 143° would send its mitre far away: cut it there.
+        // The code truncates the mitre of a corner sharper than 143°, which would otherwise be too long.
         p + (a + b) * (thickness / (1.0 + a.dot(&b)).max(0.2))
     });
     points.iter().rev().copied().chain(back).collect()

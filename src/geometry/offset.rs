@@ -1,5 +1,5 @@
-//! Layers of polygons and polyline walls: curves parallel to the outline, cut where another part of the
-//! outline is nearer, mitred at outer corners of a wall, and divided evenly. 2-D only.
+//! Layers of polygons and polyline walls, 2-D only: curves parallel to the outline. The module cuts the curves where
+//! another part of the outline is nearer, mitres them at the outer corners of a wall, and divides them evenly.
 
 use super::{
     BoundaryPoint, Shape,
@@ -7,25 +7,26 @@ use super::{
 };
 use crate::math::Vector;
 
-/// A curve at one depth. Its ends are points of their own unless it ends where the wall ends.
+/// A curve at constant depth. The ends of the curve are points of the layer unless the curve ends at the end of the
+/// wall.
 struct Curve<const D: usize> {
     points: Vec<Vector<D>>,
     open_start: bool,
     open_end: bool,
 }
 
-/// Corners that turn by less than this (cosine; 30°) are smooth: a curve runs on through them.
+/// Corners that turn by less than this angle (as cosine; 30°) are smooth: a curve continues through them.
 const SMOOTH: f64 = 0.866;
 
-/// The layers inside a counter-clockwise polygon.
+/// Returns the layers inside a counter-clockwise polygon.
 pub(super) fn polygon_points<const D: usize>(points: &[Vector<D>], dp: f64, layers: usize) -> Vec<BoundaryPoint<D>> {
-    // Walked backwards the solid is on the right, as a wall's is.
+    // In reverse order the solid is on the right of the outline, as for a wall.
     let line: Vec<_> = points.iter().chain(points.first()).rev().copied().collect();
     let shape = Shape::Polygon { points: points.to_vec() };
     layered(&line, true, dp, layers, |x| -shape.signed_distance(x))
 }
 
-/// The layers on the right of an open line, as many as are asked for, however thick the wall.
+/// Returns `layers` layers on the right of an open line, for any thickness of the wall.
 pub(super) fn polyline_points<const D: usize>(points: &[Vector<D>], dp: f64, layers: usize) -> Vec<BoundaryPoint<D>> {
     layered(points, false, dp, layers, |x| match side_of_line(x, points) {
         LineSide::Right(depth) => depth,
@@ -43,7 +44,7 @@ fn layered<const D: usize>(
     let mut skin = Vec::new();
     for k in 0..layers {
         let depth = (k as f64 + 0.5) * dp;
-        // A hair of slack: the parallel itself is to count as deep enough.
+        // The tolerance admits points that lie on the parallel itself.
         let valid = |x: &Vector<D>| depth_at(x) >= depth * (1.0 - 1e-7);
         let pieces = parallels(line, closed, depth, dp, &valid);
         for curve in joined(pieces, closed, dp) {
@@ -53,7 +54,7 @@ fn layered<const D: usize>(
     skin
 }
 
-/// The valid pieces of the parallel at `depth`, in the order of the line.
+/// Returns the valid pieces of the parallel at `depth`, in the order of the line.
 fn parallels<const D: usize>(
     line: &[Vector<D>],
     closed: bool,
@@ -63,7 +64,7 @@ fn parallels<const D: usize>(
 ) -> Vec<Curve<D>> {
     let edges = line.len() - 1;
     let normal: Vec<_> = line.windows(2).map(|ab| right_normal(&ab[0], &ab[1])).collect();
-    // How far the parallel runs on past corner i, before which edge i − 1 and after which edge i lies.
+    // Length by which the parallel extends beyond corner i, which lies between edge i − 1 and edge i.
     let past = |i: usize| -> Option<f64> {
         let (a, b) = match (i == 0 || i == edges, closed) {
             (true, false) => return None,
@@ -71,7 +72,7 @@ fn parallels<const D: usize>(
             _ => (normal[i - 1], normal[i]),
         };
         let turns_left = a[0] * b[1] - a[1] * b[0] > 0.0;
-        // The mitre's length is d tan(θ/2), at most for θ = 100°; sharper corners get an arc.
+        // The mitre's length is d tan(θ/2), up to θ = 100°; sharper corners have an arc.
         let half = ((1.0 - a.dot(&b)) / (1.0 + a.dot(&b)).max(1e-12)).sqrt();
         Some(if turns_left && half < 1.2 { depth * half } else { 0.0 })
     };
@@ -94,7 +95,8 @@ fn parallels<const D: usize>(
     pieces
 }
 
-/// The arc around a sharp outer corner of the parallel, if the corner is one.
+/// Returns the arc of the parallel around a sharp outer corner, or `None` if the corner is not sharp, not an outer
+/// corner, or the arc has no valid part.
 fn arc<const D: usize>(
     corner: &Vector<D>,
     from: &Vector<D>,
@@ -119,7 +121,7 @@ fn arc<const D: usize>(
     (points.len() > 1).then_some(Curve { points, open_start: false, open_end: false })
 }
 
-/// The parts of the segment a-b where `valid` holds, their ends found by halving.
+/// Returns the parts of the segment a-b where `valid` holds; the function finds the ends of the parts by bisection.
 fn valid_spans<const D: usize>(
     a: &Vector<D>,
     b: &Vector<D>,
@@ -151,7 +153,7 @@ fn valid_spans<const D: usize>(
     spans
 }
 
-/// Joins pieces that go on smoothly from one to the next.
+/// Joins pieces that continue smoothly from one to the next.
 fn joined<const D: usize>(pieces: Vec<Curve<D>>, closed: bool, dp: f64) -> Vec<Curve<D>> {
     let smooth = |a: &Curve<D>, b: &Curve<D>| {
         let (p, q) = (&a.points, &b.points);
@@ -177,7 +179,8 @@ fn joined<const D: usize>(pieces: Vec<Curve<D>>, closed: bool, dp: f64) -> Vec<C
     curves
 }
 
-/// Points about one dp apart along the curve. An end that is no point of its own is half a step away.
+/// Returns points about one dp apart along the curve. If an end is not itself a point, it lies half a step from the
+/// nearest point.
 fn divided<const D: usize>(curve: &Curve<D>, dp: f64) -> Vec<Vector<D>> {
     let length: f64 = curve.points.windows(2).map(|ab| (ab[1] - ab[0]).norm()).sum();
     let spare = 0.5 * (f64::from(curve.open_start) + f64::from(curve.open_end));

@@ -1,4 +1,4 @@
-//! Where two shapes overlap, and whether the parts of a compound do.
+//! Detection of overlaps between two shapes and between the parts of a compound.
 
 use super::Shape;
 use crate::{
@@ -6,18 +6,20 @@ use crate::{
     math::{Pose, Vector},
 };
 
-/// How deep in both a place of two parts may be, over the least extent of the smaller: the round-off of numbers written
-/// with a few digits.
+/// Largest accepted depth of overlap of two parts, over the least extent of the smaller part: the rounding of
+/// coordinates with few digits.
 const DEEPEST: f64 = 1e-3;
 
-/// Most boxes that are searched at once: along faces that touch aslant they become ever more.
+/// Largest number of boxes in a search at a time: along oblique touching faces the number of boxes keeps growing.
 const MOST_BOXES: usize = 10_000;
 
 impl<const D: usize> Shape<D> {
-    /// Whether the parts of a compound touch one another at most: what overlaps would weigh and displace twice.
+    /// Checks that the parts of a compound at most touch one another: an overlap would count mass and displacement
+    /// twice.
     ///
     /// # Errors
-    /// A scene error that names two parts, counted from 1, where they overlap (m, in the compound's frame), and how much.
+    /// A scene error that names two parts, counted from 1, the position of their overlap (m, in the compound's frame)
+    /// and its depth.
     pub(crate) fn check_no_overlap(&self) -> Result<()> {
         let Shape::Compound(parts) = self else { return Ok(()) };
         parts.iter().try_for_each(|(_, part)| part.check_no_overlap())?;
@@ -40,8 +42,8 @@ impl<const D: usize> Shape<D> {
     }
 }
 
-/// A place (m) more than `deeper` (m, above zero) inside both posed shapes, and how deep it is (m): looked for in boxes
-/// that are halved as long as they may hold one.
+/// Returns a position (m) deeper than `deeper` (m, positive) inside both posed shapes, and its depth (m). The search
+/// halves boxes as long as they may contain such a position, and returns `None` if it finds no such position.
 pub(crate) fn find_overlap<const D: usize>(
     (one, here): (&Shape<D>, &Pose<D>),
     (other, there): (&Shape<D>, &Pose<D>),

@@ -1,8 +1,8 @@
-//! Fitting water to solids off its lattice: points spread until they fill their space evenly.
+//! Packing of water around solids that do not fit its lattice: the points spread until they fill their space evenly.
 //!
-//! Each movable point drifts down the gradient of the concentration C = Σ V W of all points around it,
-//! water and skins alike: δ = −β dp² ∇C, V = dp^D. Where every face has its skin behind it, the even
-//! packing ends half a dp before the face.
+//! Each movable point moves down the gradient of the concentration C = Σ V W of all points around it, both water and
+//! boundary layers: δ = −β dp² ∇C, V = dp^D. If every face has boundary layers behind it, the even packing ends half a
+//! dp from the face.
 
 use std::f64::consts::PI;
 
@@ -11,31 +11,32 @@ use rayon::prelude::*;
 use super::cells::PointCells;
 use crate::math::Vector;
 
-/// Smoothing length, dp. Of 1.0 to 1.5, tried on boxes, discs, balls and slopes, it leaves the smallest gaps.
+/// Smoothing length, dp. Tests from 1.0 to 1.5 on boxes, discs, balls and slopes show the smallest gaps at this value.
 const H: f64 = 1.0;
-/// Reach of the kernel, dp.
+/// Radius of the kernel's support, dp.
 pub(super) const SUPPORT_RADIUS_DP: f64 = 2.0 * H;
-/// Longest move in one pass, dp.
+/// Longest displacement of a point in a pass, dp.
 const STEP: f64 = 0.15;
-/// The longest move, in dp, that counts as rest.
+/// The passes end if the longest displacement is below this limit, dp.
 const REST: f64 = 0.01;
-/// Points that a thread moves at a time.
+/// Number of points per parallel task.
 const CHUNK: usize = 256;
 
-/// What the passes take in each dimension.
+/// Parameters of the passes, by dimension.
 struct Pace {
-    /// Most passes.
+    /// Largest number of passes.
     passes: usize,
     /// Drift factor β, –.
     drift: f64,
-    /// How far beyond the kernel's reach the lists of near points look, dp: they hold until a point has gone half
-    /// of that.
+    /// Margin of the neighbour lists beyond the kernel's support, dp. The lists are valid until a point has moved half
+    /// the margin.
     margin: f64,
 }
 
 impl Pace {
-    /// Rows of a cubic lattice swing from β = 0.42 on, those of a square one from 0.47: 2 over the stiffness of a wave
-    /// two rows long. The packed places of 2-D, mostly not square, bear 0.5; lists are not worth it for so few.
+    /// Returns the parameters for `dimension`. Rows of a cubic lattice oscillate from β = 0.42, rows of a square
+    /// lattice from 0.47: β = 2 over the stiffness of a wave two rows long. In 2-D, where most packed points are not on
+    /// a square lattice, β = 0.5 is stable. The few points of 2-D do not justify lists with a margin.
     fn of(dimension: usize) -> Self {
         match dimension {
             2 => Self { passes: 60, drift: 0.5, margin: 0.0 },
@@ -44,10 +45,10 @@ impl Pace {
     }
 }
 
-/// Moves the first `movable` of `points` until they are evenly spread among all of them.
+/// Moves the first `movable` of `points` until these points are evenly spaced among all `points`.
 ///
-/// `confine(i, from, x)` may put point `i`, which has come from `from`, back where it is allowed to be, and says how
-/// far (m) it may then go before it has to be asked again.
+/// `confine(i, from, x)` may move point `i`, which has moved from `from` to `x`, back into its permitted space. It
+/// returns the distance (m) that the point can move before the next call of `confine`.
 pub(super) fn spread_points<const D: usize>(
     points: &mut [Vector<D>],
     movable: usize,
@@ -71,7 +72,7 @@ pub(super) fn spread_points<const D: usize>(
                 *x = at + drift / (drift.norm() / (STEP * dp)).max(1.0);
                 *room -= (*x - at).norm();
                 if *room <= 0.0 {
-                    // A hair less than allowed: the sum of the moves is rounded.
+                    // The factor is slightly below 1, because the sum of the moves has rounding errors.
                     *room = 0.999 * confine(c * CHUNK + k, &at, x);
                 }
                 moved = moved.max((*x - at).norm());
@@ -87,7 +88,8 @@ pub(super) fn spread_points<const D: usize>(
     }
 }
 
-/// By how much (m) the points `near` push a point at `at` away, for a drift factor `beta`; `weight` is scratch memory.
+/// Returns the displacement (m) by which the points `near` repel a point at `at`, for a drift factor `beta`. `weight`
+/// is scratch memory.
 fn drift<const D: usize>(
     points: &[Vector<D>],
     at: &Vector<D>,
@@ -106,11 +108,11 @@ fn drift<const D: usize>(
         let tail = (1.0 - weight.sqrt() / reach).max(0.0);
         *weight = tail * tail * tail * factor;
     }
-    // The point itself is among them and adds nothing.
+    // The list includes the point itself, which adds nothing.
     near.iter().zip(weight).fold(Vector::zeros(), |sum, (&j, weight)| sum + (at - points[j as usize]) * *weight)
 }
 
-/// The points near each of a chunk of points, themselves among them.
+/// Neighbour lists of a chunk of points; each list includes the point itself.
 #[derive(Default)]
 struct List {
     end: Vec<u32>,
@@ -118,7 +120,7 @@ struct List {
 }
 
 impl List {
-    /// The lists of the first `movable` of `points`, of all within `reach` (m).
+    /// Returns the neighbour lists of the first `movable` of `points`, with all points within `reach` (m).
     fn all<const D: usize>(points: &[Vector<D>], movable: usize, reach: f64) -> Vec<Self> {
         let cells = PointCells::new(points, reach);
         let list = |points: &[Vector<D>]| {
@@ -132,7 +134,7 @@ impl List {
         points[..movable].par_chunks(CHUNK).map(list).collect()
     }
 
-    /// Those near the `k`-th point.
+    /// Returns the indices of the neighbours of the `k`-th point.
     fn of(&self, k: usize) -> &[u32] {
         let start = k.checked_sub(1).map_or(0, |before| self.end[before]);
         &self.index[start as usize..self.end[k] as usize]

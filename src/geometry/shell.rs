@@ -1,40 +1,40 @@
-//! Layers of a shape that has only its signed distance: points spread evenly over the surfaces of equal depth, as many
-//! in each layer as its shell holds cells of dp.
+//! Boundary layers of a shape that provides only its signed distance. The module spaces the points evenly over surfaces
+//! of constant depth; each layer has as many points as its shell contains cells of dp.
 //!
-//! Candidates are the middles of small cells near such a surface, moved onto it along the distance's gradient, or, where
-//! the faces on either side are too near each other for it, halfway between them. Of these as many as are wanted are
-//! kept, as far apart as they can be, and pushed apart until they lie evenly. What a layer has no room for goes to the
-//! next one outward, so that the whole skin has the solid's volume.
+//! The candidate points are the centres of small cells near such a surface. The module moves each candidate onto the
+//! surface along the distance gradient. If two opposite faces are too close, the module moves the candidate halfway
+//! between them. The module selects the wanted number of candidates as far apart as possible, and spreads the selected
+//! points until their spacing is even. Points for which a layer has no space move to the next layer outward. The layers
+//! together then have the solid's volume.
 
 use rayon::prelude::*;
 
 use super::{BoundaryPoint, Shape, boundary_points::MIN_SPACING, cells::spacing_flags, packing};
 use crate::math::Vector;
 
-/// Edge of the cells, dp: eight candidates for each point.
+/// Edge of the small cells, dp: eight candidates for each point (3-D).
 const GRAIN: f64 = 0.5;
-/// How far from its depth a point may be left, dp.
+/// Largest deviation of a point from its depth, dp.
 const OFF: f64 = 1e-4;
-/// How far from its depth a point between two faces may be, dp; not in the first layer.
+/// Largest lack of depth of a point between two opposite faces, dp; the first layer allows no such lack.
 const SHORT: f64 = 0.25;
-/// The faces on either side of a place are held to be opposite where their normals are more than 120 degrees apart: this
-/// is −cos 120°.
+/// Two faces are opposite if their normals are more than 120 degrees apart: −cos 120°.
 const OPPOSITE: f64 = 0.5;
 
-/// A cell: its middle, m, and that middle's signed distance, m.
+/// A cell: its centre (m) and the signed distance (m) of that centre.
 type Cell<const D: usize> = (Vector<D>, f64);
 
-/// The cells near the layers, and what lies deeper.
+/// The cells near the layers, and the volume below the layers.
 #[derive(Default)]
 struct Found<const D: usize> {
     cells: Vec<Cell<D>>,
-    /// Volume of the deeper ones, m³.
+    /// Volume below the layers, m³.
     inner: f64,
-    /// The least signed distance met, m.
+    /// The least signed distance found, m.
     deepest: f64,
 }
 
-/// Boundary particles of `shape` in `layers` layers.
+/// Returns the boundary particles of `shape` in `layers` layers.
 pub(super) fn points_by_distance<const D: usize>(shape: &Shape<D>, dp: f64, layers: usize) -> Vec<BoundaryPoint<D>> {
     let bounds = shape.bounds();
     let grain = GRAIN * dp;
@@ -52,7 +52,7 @@ pub(super) fn points_by_distance<const D: usize>(shape: &Shape<D>, dp: f64, laye
     skin.concat()
 }
 
-/// The points of layer `k`: `wanted` of them, or as many as it has room for.
+/// Returns the points of layer `k`: `wanted` points, or as many as the layer has space for.
 fn layer<const D: usize>(shape: &Shape<D>, cells: &[Cell<D>], k: usize, wanted: usize, dp: f64) -> Vec<Vector<D>> {
     let depth = (k as f64 + 0.5) * dp;
     let short = if k == 0 { OFF * dp } else { SHORT * dp };
@@ -67,8 +67,8 @@ fn layer<const D: usize>(shape: &Shape<D>, cells: &[Cell<D>], k: usize, wanted: 
     apart(&[], &points, MIN_SPACING * dp)
 }
 
-/// The small cells no deeper than `depth` (m), by halving a cube of edge `edge` (m) about `middle` wherever it may hold
-/// some.
+/// Returns the small cells no deeper than `depth` (m), and the volume below them. The function recursively halves a
+/// cube of edge `edge` (m) around `middle` while the cube may contain such cells.
 fn walk<const D: usize>(shape: &Shape<D>, middle: &Vector<D>, edge: f64, grain: f64, depth: f64) -> Found<D> {
     let distance = shape.signed_distance(middle);
     let reach = 0.5 * edge * (D as f64).sqrt();
@@ -101,8 +101,8 @@ fn walk<const D: usize>(shape: &Shape<D>, middle: &Vector<D>, edge: f64, grain: 
     found
 }
 
-/// How many cells of dp the shell of each layer holds. What lies deeper than the last layer, too little for one more, goes
-/// to that.
+/// Returns the number of cells of dp in the shell of each layer. If the depth allows no further layer, the last layer
+/// also receives the volume below it.
 fn counts<const D: usize>(shape: &Shape<D>, found: &Found<D>, dp: f64, layers: usize) -> Vec<f64> {
     let grain = GRAIN * dp;
     let deeper = |depth: f64| {
@@ -120,8 +120,9 @@ fn counts<const D: usize>(shape: &Shape<D>, found: &Found<D>, dp: f64, layers: u
     volume.windows(2).map(|pair| (pair[0] - pair[1]) / dp.powi(D as i32)).collect()
 }
 
-/// The place at the depth `depth` (m) that the point `x` comes to along the gradient; or the place halfway between two
-/// opposite faces, if it meets that first and no more than `short` (m) is missing there. `None` where there is none.
+/// Moves the point `x` along the gradient to the depth `depth` (m) and returns the new position. If the path first
+/// meets the point halfway between two opposite faces, the function returns that point, provided that its depth is
+/// short by less than `short` (m). Otherwise the function returns `None`.
 fn at_depth<const D: usize>(shape: &Shape<D>, mut x: Vector<D>, depth: f64, short: f64, dp: f64) -> Option<Vector<D>> {
     let slope = |x: &Vector<D>| shape.distance_and_normal(x, 1e-3 * dp);
     let (mut distance, mut normal) = slope(&x);
@@ -134,7 +135,8 @@ fn at_depth<const D: usize>(shape: &Shape<D>, mut x: Vector<D>, depth: f64, shor
         let (beyond, facing) = slope(&next);
         let turn = -normal.dot(&facing);
         if off > 0.0 && turn > OPPOSITE {
-            // One face is left by `off` on this way and the other neared by `turn * off`: where they are equally far.
+            // The path moves away from the first face by `off` and towards the other by `turn * off`; `half` is equally
+            // far from both.
             let half = x - normal * ((distance - beyond + off * turn) / (1.0 + turn));
             return (shape.signed_distance(&half) + depth < short).then_some(half);
         }
@@ -143,21 +145,22 @@ fn at_depth<const D: usize>(shape: &Shape<D>, mut x: Vector<D>, depth: f64, shor
     ((distance + depth).abs() < OFF * dp).then_some(x)
 }
 
-/// About evenly, `wanted` of `candidates`, if there are so many: as far apart as the most can be that are not too many,
-/// and as far from these and one another as those that lack then can be.
+/// Selects `wanted` of the `candidates` with an approximately even spacing, or fewer if there are fewer candidates. The
+/// function first selects at the largest spacing that gives at most `wanted` points. It then adds the missing points as
+/// far as possible from the selected points and from one another.
 fn chosen<const D: usize>(candidates: &[Vector<D>], wanted: usize, dp: f64) -> Vec<Vector<D>> {
     let (mut kept, _) = farthest(&[], candidates, wanted, dp);
     let lack = wanted - kept.len();
     let (_, more) = farthest(&kept, candidates, lack, dp);
-    // The few too many go here and there.
+    // Removes the surplus points at regular intervals of the list.
     let many = more.len();
     let stays = |i: usize| many <= lack || (i + 1) * lack / many > i * lack / many;
     kept.extend((0..many).filter(|&i| stays(i)).map(|i| more[i]));
     kept
 }
 
-/// The farthest apart that at most `wanted` of `candidates` can be, from `fixed` too, taken in order; and the farthest
-/// apart that more can be.
+/// Returns two selections of `candidates`, in order, spaced from one another and from `fixed`. The first has at most
+/// `wanted` points at the largest possible spacing; the second has more points at the largest possible spacing.
 fn farthest<const D: usize>(
     fixed: &[Vector<D>],
     candidates: &[Vector<D>],
@@ -177,7 +180,7 @@ fn farthest<const D: usize>(
     (few, many)
 }
 
-/// Those of `points` that keep `distance` (m) from all of `fixed` and from all earlier ones.
+/// Returns the `points` that are at least `distance` (m) from all `fixed` points and from all points selected earlier.
 fn apart<const D: usize>(fixed: &[Vector<D>], points: &[Vector<D>], distance: f64) -> Vec<Vector<D>> {
     let kept = spacing_flags(&[fixed, points].concat(), fixed.len(), distance);
     points.iter().zip(&kept[fixed.len()..]).filter_map(|(x, keep)| keep.then_some(*x)).collect()

@@ -1,7 +1,8 @@
-//! The part of a shape under water, by the divergence theorem over its surface.
+//! Submerged part of a shape, by the divergence theorem over its surface.
 //!
-//! With z the height above the water level, the volume below it is ∫ z n_z dA over the wetted surface: the
-//! cut itself, at z = 0, adds nothing. The first moments are ∫ xᵢ z n_z dA and, upwards, ∫ ½ z² n_z dA.
+//! With z the height above the water level, the volume below the level is ∫ z n_z dA over the wetted surface. The
+//! waterplane, at z = 0, contributes nothing. The first moments are ∫ xᵢ z n_z dA and, along the vertical, ∫ ½ z² n_z
+//! dA.
 
 use std::f64::consts::{PI, TAU};
 
@@ -11,23 +12,27 @@ use super::{
 };
 use crate::math::{Bounds, Pose, Vector};
 
-/// A piece of surface: an edge in 2-D, the solid on its left; in 3-D a triangle, counter-clockwise from outside.
+/// A facet of the surface: in 2-D an edge with the solid on its left; in 3-D a triangle, counter-clockwise seen from
+/// outside.
 pub(super) type Facet<const D: usize> = [Vector<D>; D];
 
-/// Edges of a full circle. Scaled to the exact volume, they leave 1e-5 of it in doubt at any level.
+/// Number of edges of a full circle. After scaling to the exact volume, the error at any level is at most 1e-5 of the
+/// volume.
 const ROUND: usize = 256;
 
 impl<const D: usize> Shape<D> {
-    /// The volume (m³; m² in 2-D) of the shape at `pose` below the horizontal plane at the height `level`
-    /// (m), and the world position of that volume's centroid (of the shape's, if all of it is dry).
+    /// Returns the volume (m³; m² in 2-D) of the shape at `pose` below the horizontal plane at height `level` (m), and
+    /// the world position of that volume's centroid. If the whole shape is dry, the position is the centroid of the
+    /// shape.
     ///
-    /// Exact for flat-sided shapes and balls, to 1e-5 of the volume for capsules and cylinders.
+    /// The result is exact for shapes with flat sides and for balls. The error for capsules and cylinders is 1e-5 of
+    /// the volume.
     pub fn submerged_volume(&self, pose: &Pose<D>, level: f64) -> (f64, Vector<D>) {
         let (volume, first) = self.below(pose, level);
         if volume > 0.0 { (volume, first / volume) } else { (0.0, pose.point(&self.volume_properties().centroid)) }
     }
 
-    /// Volume and its first moment ∫ x dV below `level`.
+    /// Returns the volume and its first moment ∫ x dV below `level`.
     fn below(&self, pose: &Pose<D>, level: f64) -> (f64, Vector<D>) {
         match self {
             Shape::Ball { radius } => ball_below(*radius, pose, level),
@@ -78,8 +83,8 @@ impl<const D: usize> Shape<D> {
         }
     }
 
-    /// The facets of a shape of revolution from its profile of (radius, height along `axis`), scaled across
-    /// the axis so that they enclose the exact volume.
+    /// Returns the facets of a shape of revolution from its profile of (radius, height along `axis`). The function
+    /// scales the facets across the axis so that they enclose the exact volume.
     fn turned_facets(&self, profile: &[(f64, f64)], axis: usize) -> Vec<Facet<D>> {
         let mut all = if D == 2 { mirrored(profile, axis) } else { revolved(profile, axis) };
         let top = self.bounds().max[D - 1];
@@ -93,7 +98,8 @@ impl<const D: usize> Shape<D> {
     }
 }
 
-/// Adds a facet's wet part to the sums. A facet that the water level crosses is cut in two until none does.
+/// Adds the wetted part of a facet to the sums. The function splits a facet that crosses the water level until no part
+/// crosses it.
 fn add_wet<const D: usize>(facet: Facet<D>, height: [f64; D], level: f64, sum: &mut (f64, Vector<D>)) {
     let above = height.iter().position(|z| *z > 0.0);
     let below = height.iter().position(|z| *z < 0.0);
@@ -116,7 +122,7 @@ fn add_wet<const D: usize>(facet: Facet<D>, height: [f64; D], level: f64, sum: &
                 first += x * (z_sum + z) * factor;
             }
             let z2: f64 = height.iter().map(|z| z * z).sum();
-            // Upwards: ∫ (level + ½z) z n_z dA.
+            // Along the vertical: ∫ (level + ½z) z n_z dA.
             first[D - 1] = level * upward_area(&facet) * z_sum / D as f64 + 0.5 * factor * (z_sum * z_sum + z2);
             sum.1 += first;
         }
@@ -124,7 +130,7 @@ fn add_wet<const D: usize>(facet: Facet<D>, height: [f64; D], level: f64, sum: &
     }
 }
 
-/// The facet's area times the upward component of its outward normal.
+/// Returns the facet's area times the upward component of its outward normal.
 fn upward_area<const D: usize>(facet: &Facet<D>) -> f64 {
     if D == 2 {
         return facet[0][0] - facet[1][0];
@@ -146,12 +152,12 @@ fn ball_below<const D: usize>(radius: f64, pose: &Pose<D>, level: f64) -> (f64, 
     (volume, first)
 }
 
-/// The edges of a closed outline (2-D).
+/// Returns the edges of a closed outline (2-D).
 fn edges<const D: usize>(points: &[Vector<D>]) -> Vec<Facet<D>> {
     (0..points.len()).map(|i| facet(&[points[i], points[(i + 1) % points.len()]])).collect()
 }
 
-/// A facet of the first D of `points`.
+/// Returns the facet of the first D of `points`.
 fn facet<const D: usize>(points: &[Vector<D>]) -> Facet<D> {
     std::array::from_fn(|i| points[i])
 }
@@ -164,17 +170,18 @@ fn box_facets<const D: usize>(b: &Bounds<D>) -> Vec<Facet<D>> {
     if D == 2 { edges(&ring(None)) } else { lofted(&[ring(Some(b.min[D - 1])), ring(Some(b.max[D - 1]))]) }
 }
 
-/// The outline whose one half is `profile` (2-D).
+/// Returns the outline of which `profile` is one half (2-D).
 fn mirrored<const D: usize>(profile: &[(f64, f64)], axis: usize) -> Vec<Facet<D>> {
     let point = |across: f64, along: f64| Vector::from_fn(|i, _| if i == axis { along } else { across });
-    // Counter-clockwise: for a vertical axis up the right side; for a horizontal one along the lower side.
+    // The outline runs counter-clockwise: for a vertical axis up the right side, for a horizontal axis along the lower
+    // side.
     let side = if axis == 1 { 1.0 } else { -1.0 };
     let there = profile.iter().map(|(r, s)| point(side * r, *s));
     let back = profile.iter().rev().map(|(r, s)| point(-side * r, *s));
     edges(&there.chain(back).collect::<Vec<_>>())
 }
 
-/// The surface that `profile` makes when it turns about `axis` (3-D).
+/// Returns the surface of revolution of `profile` about `axis` (3-D).
 fn revolved<const D: usize>(profile: &[(f64, f64)], axis: usize) -> Vec<Facet<D>> {
     let (u, v) = ((axis + 1) % D, (axis + 2) % D);
     let ring = |&(radius, along): &(f64, f64)| {
@@ -189,7 +196,8 @@ fn revolved<const D: usize>(profile: &[(f64, f64)], axis: usize) -> Vec<Facet<D>
     lofted(&profile.iter().map(ring).collect::<Vec<_>>())
 }
 
-/// The closed surface through rings of equally many points, each counter-clockwise seen from the last (3-D).
+/// Returns the closed surface through rings with equal numbers of points. Each ring is counter-clockwise seen from the
+/// last ring (3-D).
 fn lofted<const D: usize>(rings: &[Vec<Vector<D>>]) -> Vec<Facet<D>> {
     let mut all = Vec::new();
     for pair in rings.windows(2) {

@@ -1,6 +1,6 @@
-//! Base 64 (RFC 4648, padded), in which frames of earlier versions hold their arrays.
+//! Base 64 (RFC 4648, with padding), the encoding of arrays in frames of earlier versions.
 
-/// The bytes of `text`; `None` if it is not base 64 with its padding.
+/// Returns the bytes of `text`, or `None` if the text is not base 64 with padding.
 pub(super) fn decode(text: &[u8]) -> Option<Vec<u8>> {
     if !text.len().is_multiple_of(4) {
         return None;
@@ -12,14 +12,14 @@ pub(super) fn decode(text: &[u8]) -> Option<Vec<u8>> {
         for digit in group {
             bits = bits << 6 | u32::from(digit_value(*digit)?);
         }
-        // A group of n digits holds n - 1 whole bytes.
+        // A group of n digits contains n - 1 complete bytes.
         bits <<= 6 * (4 - group.len());
         bytes.extend(&bits.to_be_bytes()[1..group.len()]);
     }
     Some(bytes)
 }
 
-/// The value of a digit.
+/// Returns the value of a digit, or `None` for another character.
 fn digit_value(digit: u8) -> Option<u8> {
     match digit {
         b'A'..=b'Z' => Some(digit - b'A'),

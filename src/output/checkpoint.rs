@@ -1,10 +1,12 @@
-//! Checkpoints: all that a run needs to go on to the same bits.
+//! Checkpoints: each contains all data that a run needs to continue bit for bit.
 //!
-//! The file is the magic word, the format's number, the lengths of what follows before and after packing, the hash
-//! (FNV-1a) of both lengths and of what follows; then, packed by zstd, what is known of the run (postcard) and the
-//! simulation's own bytes. A file that was cut short or changed is recognised, never half believed.
+//! The file begins with the magic bytes, the format number, the lengths of the data before and after compression, and a
+//! hash. The hash (FNV-1a) covers both lengths and the compressed data. The data, compressed by zstd, are the
+//! information on the run (postcard) and the bytes of the simulation. The reader detects and rejects a file that was
+//! truncated or changed.
 //!
-//! A folder keeps the last two, [`LAST`] and [`PREVIOUS`]: whenever a writer is killed, one of them is whole.
+//! A folder keeps the last two checkpoints, [`LAST`] and [`PREVIOUS`]: if the process is killed while it writes, at
+//! least one file is complete.
 
 use std::{
     fs,
@@ -17,63 +19,63 @@ use serde::{Deserialize, Serialize};
 use super::{IntervalMean, cannot_write, commit_partial, partial_path, sync_folder, write_partial};
 use crate::error::{Error, ErrorCode, ErrorKind, Result};
 
-/// The last checkpoint, in the run's folder.
+/// File name of the last checkpoint in the run's folder.
 pub(crate) const LAST: &str = "checkpoint.bin";
 
-/// The one before.
+/// File name of the checkpoint before the last.
 pub(crate) const PREVIOUS: &str = "checkpoint.previous.bin";
 
-/// What a run that was killed while it wrote one leaves behind.
+/// File name of the partial checkpoint that remains if a run is killed while it writes a checkpoint.
 pub(crate) const PART: &str = "checkpoint.bin.part";
 
 const MAGIC: &[u8; 8] = b"PONTOON\n";
 const FORMAT: u32 = 5;
 
-/// What a file of so many bytes may unfold to at most, per byte. Particles' numbers alone, which do not pack, keep a
-/// true checkpoint below 200.
+/// Largest ratio of the decompressed size to the file size. The identifiers of the particles do not compress well, and
+/// keep the ratio of a valid checkpoint below 200.
 const MAX_EXPANSION: u64 = 1000;
 
-/// How far the outputs of a run are.
+/// Progress of the outputs of a run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct OutputPositions {
-    /// Length of each table, bytes, in the order of the probes, then of the lists.
+    /// Length of each table, bytes, in the order of the probes and then of the lists.
     pub table_bytes: Vec<u64>,
-    /// Means in the making, of the probes that take some.
+    /// Unfinished time means of the probes that use them.
     pub means: Vec<Option<IntervalMean>>,
     /// Times of the frames written, s.
     pub frame_times: Vec<f64>,
-    /// Numbers of the next looks, frame and checkpoint that are due, then of the lists' looks.
+    /// Numbers of the next due probe sample, frame and checkpoint, then of the next due samples of the lists.
     pub next_due: Vec<u64>,
 }
 
-/// What a checkpoint holds.
+/// The content of a checkpoint.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Checkpoint {
-    /// Version of this crate that wrote it.
+    /// Version of this crate that wrote the checkpoint.
     pub version: String,
-    /// FNV-1a hash of the scene with every default filled in.
+    /// FNV-1a hash of the scene with all default values.
     pub scene_hash: u64,
-    /// Scene keys changed for this run, and their values.
+    /// Scene keys that were changed for this run, and their values.
     pub overrides: Vec<(String, String)>,
     /// Simulated time, s.
     pub time: f64,
-    /// How far the outputs were.
+    /// Progress of the outputs.
     pub outputs: OutputPositions,
     /// Wall time of the run so far, s.
     pub wall_seconds: f64,
     /// Processor time of the run so far, s.
     pub cpu_seconds: f64,
-    /// Water and wet boundary particles × force passes so far.
+    /// (Water particles + wet boundary particles) × force passes so far.
     pub particle_steps: u64,
     /// Wall time of stepping alone, s.
     pub stepping_seconds: f64,
-    /// The simulation's own bytes: they lie behind the rest as they are.
+    /// The bytes of the simulation; the file stores them unchanged after the other data.
     #[serde(skip)]
     pub state: Vec<u8>,
 }
 
 impl Checkpoint {
-    /// What there is to say before the first step of the `scene`, with `sets` changed.
+    /// Returns the checkpoint data before the first step of the `scene`, with the changed keys `sets`.
     pub(crate) fn initial(scene: &str, sets: &[(String, String)]) -> Self {
         Self {
             version: env!("CARGO_PKG_VERSION").into(),
@@ -89,15 +91,16 @@ impl Checkpoint {
         }
     }
 
-    /// Writes it to `folder` as [`LAST`]. What was the last becomes [`PREVIOUS`], if it is `good`; one that is not
-    /// must not take the place of one that is, and is replaced.
+    /// Writes the checkpoint to `folder` as [`LAST`]. The former last checkpoint becomes [`PREVIOUS`] if `good` is
+    /// true. Otherwise it is replaced, because an invalid checkpoint must not replace a valid checkpoint.
     ///
     /// # Errors
-    /// `File` if it cannot be written; those before stay.
+    /// `File` if the checkpoint cannot be written; the former checkpoints remain.
     pub(crate) fn write(&self, folder: &Path, good: bool) -> Result<()> {
         let (last, previous) = (folder.join(LAST), folder.join(PREVIOUS));
         let bytes = self.to_bytes()?;
-        // On the disk under its passing name before the others move: from here on there are two whole ones.
+        // The file is on the disk under its temporary name before the others are renamed: from here on, two complete
+        // checkpoints exist.
         write_partial(&last, |file| file.write_all(&bytes).and_then(|()| file.sync_all()))?;
         if good {
             match fs::rename(&last, &previous) {
@@ -113,17 +116,17 @@ impl Checkpoint {
         Ok(())
     }
 
-    /// The checkpoint as it lies in a file.
+    /// Returns the checkpoint in its file format.
     ///
     /// # Errors
-    /// `Restart` if it cannot be packed.
+    /// `Restart` if the checkpoint cannot be serialised or compressed.
     pub(crate) fn to_bytes(&self) -> Result<Vec<u8>> {
         let cannot = |why: &dyn std::fmt::Display| {
             Error::new(ErrorKind::Restart, format!("the checkpoint cannot be packed: {why}"))
         };
         let known = postcard::to_stdvec(self).map_err(|why| cannot(&why))?;
         let pack = || -> io::Result<Vec<u8>> {
-            // More than the fastest level takes longer, and numbers of a flow hardly pack better.
+            // Higher compression levels take longer, and hardly reduce the size of flow data.
             let mut packed = zstd::Encoder::new(Vec::new(), 1)?;
             packed.write_all(&known)?;
             packed.write_all(&self.state)?;
@@ -138,8 +141,8 @@ impl Checkpoint {
     /// Reads the checkpoint at `path`.
     ///
     /// # Errors
-    /// `Restart` if there is none, or it is no checkpoint, damaged, or of another format or version; `File` if it
-    /// cannot be read.
+    /// `Restart` if the file does not exist, is not a checkpoint, is damaged, or has another format or version; `File`
+    /// if it cannot be read.
     pub fn read(path: &Path) -> Result<Self> {
         let bytes = fs::read(path).map_err(|why| match why.kind() {
             io::ErrorKind::NotFound => restart_error(
@@ -157,10 +160,11 @@ impl Checkpoint {
         })
     }
 
-    /// The checkpoint that lies in a file as `bytes`. Takes no more memory than `MAX_EXPANSION` times theirs.
+    /// Reads a checkpoint from the content `bytes` of its file. The memory use is at most `MAX_EXPANSION` times their
+    /// length.
     ///
     /// # Errors
-    /// As [`Checkpoint::read`].
+    /// The same errors as [`Checkpoint::read`].
     pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
         const AFRESH: &str = "start the run afresh with `pontoon run`";
         const OTHER: &str = "resume with the version that wrote it";
@@ -195,7 +199,7 @@ impl Checkpoint {
             return Err(damaged());
         }
         let mut payload = Vec::new();
-        // Memory grows with what really unfolds, never with what a header promises.
+        // The memory use depends on the decompressed data, not on the length in the header.
         let read = zstd::Decoder::with_buffer(packed).and_then(|d| d.take(unfolded + 1).read_to_end(&mut payload));
         if read.is_err() || payload.len() as u64 != unfolded {
             return Err(damaged());
@@ -218,12 +222,12 @@ fn restart_error(code: ErrorCode, what: &str, help: &str) -> Error {
     Error::new(ErrorKind::Restart, what).with_code(code).help(help)
 }
 
-/// FNV-1a hash of `bytes`.
+/// Returns the FNV-1a hash of `bytes`.
 pub(crate) fn fnv1a(bytes: &[u8]) -> u64 {
     fnv1a_continue(0xcbf2_9ce4_8422_2325, bytes)
 }
 
-/// The hash of what had the hash `before`, and `bytes` behind it.
+/// Returns the hash of earlier data with the hash `before`, followed by `bytes`.
 fn fnv1a_continue(before: u64, bytes: &[u8]) -> u64 {
     bytes.iter().fold(before, |h, &b| (h ^ u64::from(b)).wrapping_mul(0x0000_0100_0000_01b3))
 }

@@ -1,4 +1,4 @@
-//! Series as CSV, written while the run goes on: a header with units, then a row for each look.
+//! Time series as CSV, written during the run: a header with units, then a row for each sample.
 
 use std::{
     fs::{File, OpenOptions},
@@ -12,11 +12,11 @@ use crate::{
     math::{table::TableReader, time_series::TimeSeries},
 };
 
-/// A CSV file that grows by whole rows.
+/// A CSV file to which the program appends complete rows.
 ///
-/// Every row reaches the system at once, so a run that dies loses none; a row that fails half-way, as on a
-/// full disk, is taken back. Numbers are written so that reading them gives the same bits; a number that
-/// does not exist (NaN) is an empty field.
+/// The operating system receives each row at once, so that no row is lost if the process is killed. If the write of a
+/// row fails, for example on a full disk, the table removes the partial row. The text of a number reads back to the
+/// same bits; NaN is an empty field.
 pub(crate) struct CsvTable {
     path: PathBuf,
     file: File,
@@ -27,10 +27,10 @@ pub(crate) struct CsvTable {
 }
 
 impl CsvTable {
-    /// A new table at `path` with the columns `t_s` and `columns`.
+    /// Creates a table at `path` with the columns `t_s` and `columns`.
     ///
     /// # Errors
-    /// `File` if it exists or cannot be written.
+    /// `File` if the file exists or cannot be written.
     pub(crate) fn create(path: &Path, columns: &[String]) -> Result<Self> {
         let file = OpenOptions::new().write(true).create_new(true).open(path).map_err(|e| cannot_write(path, &e))?;
         let mut table = Self { path: path.to_owned(), file, bytes: 0, columns: columns.len(), first: None, last: None };
@@ -38,11 +38,11 @@ impl CsvTable {
         Ok(table)
     }
 
-    /// The table at `path` as it was when it had `bytes` bytes; what came after is cut off.
+    /// Reopens the table at `path` with its first `bytes` bytes, and removes all later data.
     ///
     /// # Errors
-    /// `Restart` if it is shorter than that, has no whole row there or its header names other columns; `File` if it cannot be
-    /// opened.
+    /// `Restart` if the file is shorter than `bytes`, has no complete row at that position, or has other columns in its
+    /// header; `File` if it cannot be opened.
     pub(crate) fn resume(path: &Path, columns: &[String], bytes: u64) -> Result<Self> {
         let text = std::fs::read(path).map_err(|e| Error::read(path, &e))?;
         let header = format!("t_s,{}\n", columns.join(","));
@@ -57,10 +57,10 @@ impl CsvTable {
         Ok(table)
     }
 
-    /// Takes back all but the first `bytes` bytes, the header and whole rows.
+    /// Removes everything after the first `bytes` bytes, which contain the header and complete rows.
     ///
     /// # Errors
-    /// `File` if it cannot be read or cut.
+    /// `File` if the file cannot be read or truncated.
     pub(crate) fn truncate(&mut self, bytes: u64) -> Result<()> {
         let text = std::fs::read(&self.path).map_err(|e| Error::read(&self.path, &e))?;
         let kept = usize::try_from(bytes).map_or(&text[..], |n| &text[..n.min(text.len())]);
@@ -74,10 +74,10 @@ impl CsvTable {
         Ok(())
     }
 
-    /// Adds the row of time `t` (s).
+    /// Appends the row of time `t` (s).
     ///
     /// # Errors
-    /// `File` if it cannot be written; the rows before stay whole.
+    /// `File` if the row cannot be written; the earlier rows remain complete.
     pub(crate) fn append_row(&mut self, t: f64, values: &[f64]) -> Result<()> {
         assert_eq!(values.len(), self.columns, "a value for each column");
         let mut line = number(t);
@@ -92,10 +92,11 @@ impl CsvTable {
         Ok(())
     }
 
-    /// Adds rows of time `t` (s), each of words and of values for the columns behind them: all rows or none.
+    /// Appends several rows of time `t` (s), or no row on failure. Each row has text fields, followed by values for the
+    /// remaining columns.
     ///
     /// # Errors
-    /// `File` if they cannot be written; the rows before stay whole.
+    /// `File` if the rows cannot be written; the earlier rows remain complete.
     pub(crate) fn append_rows(&mut self, t: f64, rows: &[([&str; 2], Vec<f64>)]) -> Result<()> {
         let mut lines = String::new();
         for (words, values) in rows {
@@ -111,37 +112,37 @@ impl CsvTable {
         Ok(())
     }
 
-    /// Values of the first row.
+    /// Returns the values of the first row, or `None` if the table has no rows.
     pub(crate) fn first_row(&self) -> Option<&[f64]> {
         self.first.as_deref()
     }
 
-    /// Time (s) and values of the last row.
+    /// Returns the time (s) and values of the last row, or `None` if the table has no rows.
     pub(crate) fn last_row(&self) -> Option<(f64, &[f64])> {
         self.last.as_ref().map(|(t, row)| (*t, row.as_slice()))
     }
 
-    /// Length of the file, bytes.
+    /// Returns the length of the file, bytes.
     pub(crate) fn bytes(&self) -> u64 {
         self.bytes
     }
 
-    /// Where it is.
+    /// Returns the path of the file.
     pub(crate) fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Waits until all rows are on the disk itself.
+    /// Waits until all rows are on the disk.
     ///
     /// # Errors
-    /// `File` if the disk refuses.
+    /// `File` if the operating system reports an error.
     pub(crate) fn sync(&self) -> Result<()> {
         self.file.sync_data().map_err(|e| cannot_write(&self.path, &e))
     }
 
     fn append(&mut self, line: &str) -> Result<()> {
         if let Err(why) = self.file.write_all(line.as_bytes()) {
-            // Cutting can fail only where writing did: the error to tell is the first.
+            // Truncation can fail only after a failed write: the function returns the error of the write.
             let _ = self.file.set_len(self.bytes);
             return Err(cannot_write(&self.path, &why));
         }
@@ -150,19 +151,19 @@ impl CsvTable {
     }
 }
 
-/// A table as it stands in its file.
+/// The content of a table file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SeriesTable {
     /// Names of the columns after the time.
     pub columns: Vec<String>,
     /// Times, s.
     pub times: Vec<f64>,
-    /// A row of numbers for each column; NaN where there was nothing to measure.
+    /// One row for each time, with a number for each column; NaN where no measurement exists.
     pub values: Vec<Vec<f64>>,
 }
 
 impl SeriesTable {
-    /// The table at `path`. A last row that is cut, as that of a killed run may be, is left out.
+    /// Reads the table at `path`. The function ignores an incomplete last row, which a killed run may leave.
     ///
     /// # Errors
     /// `File` if it cannot be read.
@@ -173,7 +174,8 @@ impl SeriesTable {
         Ok(Self { columns, times: values.next().unwrap_or_default(), values: values.collect() })
     }
 
-    /// The numbers of the column called `name` from `from` to `until` (s); none if there are less than two.
+    /// Returns the values of the column `name` from `from` to `until` (s), or `None` if there are fewer than two
+    /// values.
     pub(crate) fn series(&self, name: &str, from: f64, until: f64) -> Option<TimeSeries> {
         let column = &self.values[self.columns.iter().position(|column| column == name)?];
         let known = self.times.iter().zip(column).filter(|(t, x)| x.is_finite() && (from..=until).contains(*t));
@@ -182,12 +184,12 @@ impl SeriesTable {
     }
 }
 
-/// The shortest text that reads back as `x`; nothing for NaN.
+/// Returns the shortest text that reads back as `x`, or an empty text for NaN.
 fn number(x: f64) -> String {
     if x.is_nan() { String::new() } else { format!("{x:?}") }
 }
 
-/// Time and values of a row, empty fields as NaN.
+/// Returns the time and the values of a row, with NaN for empty fields.
 fn read_row(line: &str) -> Option<(f64, Vec<f64>)> {
     let mut fields = line.split(',').map(|x| x.parse().unwrap_or(f64::NAN));
     Some((fields.next()?, fields.collect()))

@@ -1,5 +1,6 @@
-//! Frames for ParaView: `frames.pvd` lists the frames; each is two files, as `frames/water_00000.vtu` and
-//! `frames/solids_00000.vtu`. Points have three coordinates; in 2-D the third is zero. Single precision, compressed (zlib).
+//! Frames for ParaView: `frames.pvd` lists the frames. Each frame has two files, such as `frames/water_00000.vtu` and
+//! `frames/solids_00000.vtu`. Points have three coordinates; in 2-D the third coordinate is zero. The data have single
+//! precision and are compressed (zlib).
 
 use std::{
     fs::File,
@@ -20,14 +21,14 @@ use crate::{
     system::System,
 };
 
-/// Fields that a frame may hold.
+/// Fields that a frame can contain.
 pub(crate) const FIELDS: [&str; 4] = ["velocity", "density", "pressure", "id"];
 
-/// Part of a frame that remains after compression, where water moves, –; where it rests, a third remains.
+/// Ratio of compressed to uncompressed size of a frame with moving water, –; for water at rest it is a third.
 const COMPRESSED: f64 = 0.6;
 
-/// Bytes of a water particle and of a boundary particle in a frame with these `fields`, rarely more: position, vertex and
-/// fields, compressed.
+/// Returns the usual upper limit of the bytes per water particle and per boundary particle in a frame with these
+/// `fields`. The bytes are those of the compressed position, vertex and fields.
 pub fn particle_bytes(fields: &[String]) -> (f64, f64) {
     let fields: f64 = fields.iter().map(|field| if field == "velocity" { 12.0 } else { 4.0 }).sum();
     let place = 12.0 + 8.0 + 8.0 + 1.0;
@@ -37,24 +38,25 @@ pub fn particle_bytes(fields: &[String]) -> (f64, f64) {
 /// VTK's number of a cell that is one point.
 const VERTEX: u8 = 1;
 
-/// The parts of a frame, a file each.
+/// The parts of a frame, with one file for each part.
 const PARTS: [&str; 2] = ["water", "solids"];
 
-/// The frames of a run. Solids carry the number of their solid besides the chosen fields.
+/// Writer of the frames of a run. Boundary particles have the number of their solid in addition to the chosen fields.
 pub(crate) struct FrameWriter {
     folder: PathBuf,
     fields: Vec<String>,
-    /// Lowest and highest corner (m) of the box whose water is written; `None` for all water.
+    /// Lowest and highest corner (m) of the box of water in the frames; `None` for all water.
     crop: Option<[Vec<f64>; 2]>,
     times: Vec<f64>,
-    /// Their size, B.
+    /// Size of all frames, B.
     bytes: u64,
-    /// Number of frames that are surely on the disk.
+    /// Number of frames that are confirmed to be on the disk.
     synced: usize,
 }
 
 impl FrameWriter {
-    /// The frames in the run's `folder` with the fields and the box of `words`; `times` (s) are those of the frames that exist.
+    /// Makes the writer of frames in the run's `folder`, with the fields and the box of `words`. `times` (s) are the
+    /// times of the existing frames.
     ///
     /// # Errors
     /// `Scene` for an unknown field; `File` if the folder `frames` cannot be made.
@@ -76,10 +78,10 @@ impl FrameWriter {
         Ok(frames)
     }
 
-    /// Removes all frames but the first `kept`.
+    /// Removes all frames except the first `kept` frames.
     ///
     /// # Errors
-    /// `File` if the disk refuses.
+    /// `File` if the operating system reports an error.
     pub(crate) fn truncate(&mut self, kept: usize) -> Result<()> {
         if kept >= self.times.len() {
             return Ok(());
@@ -98,7 +100,7 @@ impl FrameWriter {
         Ok(())
     }
 
-    /// Sums up the sizes of the frames.
+    /// Updates the total size of the frames.
     fn update_size(&mut self) {
         let files = self.folder.join("frames");
         let there = (0..self.times.len()).flat_map(piece_names);
@@ -110,12 +112,12 @@ impl FrameWriter {
         write_atomically(&self.folder.join("frames.pvd"), pvd_index(&self.times, "frames", &PARTS).as_bytes())
     }
 
-    /// Times of the frames so far, s.
+    /// Returns the times of the frames so far, s.
     pub(crate) fn times(&self) -> &[f64] {
         &self.times
     }
 
-    /// Their size on the disk, B.
+    /// Returns the size of the frames on the disk, B.
     pub(crate) fn bytes(&self) -> u64 {
         self.bytes
     }
@@ -123,7 +125,7 @@ impl FrameWriter {
     /// Adds a frame of `system` at time `t` (s).
     ///
     /// # Errors
-    /// `File` if it cannot be written; the frames before stay as they are.
+    /// `File` if the frame cannot be written; the earlier frames remain unchanged.
     pub(crate) fn write<const D: usize>(&mut self, system: &System<D>, t: f64) -> Result<()> {
         let number = self.times.len();
         let water = system.fluid();
@@ -147,7 +149,7 @@ impl FrameWriter {
     /// Waits until all frames are on the disk.
     ///
     /// # Errors
-    /// `File` if one cannot be opened or the disk refuses.
+    /// `File` if a frame cannot be opened or the operating system reports an error.
     pub(crate) fn sync(&mut self) -> Result<()> {
         let files = self.folder.join("frames");
         for number in self.synced..self.times.len() {
@@ -179,12 +181,12 @@ impl FrameWriter {
     }
 }
 
-/// The files of a frame.
+/// Returns the names of the files of a frame.
 fn piece_names(number: usize) -> [String; 2] {
     PARTS.map(|part| format!("{part}_{number:05}.vtu"))
 }
 
-/// The field called `name` of all particles.
+/// Returns the field called `name` of all particles.
 fn field<const D: usize>(name: &str, system: &System<D>, particles: ParticlesView<'_, D>) -> DataArray {
     let all = |f: &dyn Fn(usize) -> f64| (0..particles.len()).map(|i| f(i) as f32).collect();
     match name {
@@ -195,18 +197,18 @@ fn field<const D: usize>(name: &str, system: &System<D>, particles: ParticlesVie
     }
 }
 
-/// Three components for each vector, in a row.
+/// Returns three components for each vector, in a single list.
 fn to_3d<const D: usize>(vectors: &[Vector<D>]) -> Vec<f32> {
     vectors.iter().flat_map(|v| (0..3).map(|i| if i < D { v[i] as f32 } else { 0.0 })).collect()
 }
 
-/// A .vtu file with a vertex at each point.
+/// Returns a .vtu file with a vertex at each point.
 fn points_vtu<const D: usize>(points: &[Vector<D>], fields: Vec<DataArray>) -> io::Result<Vec<u8>> {
     let connectivity = (0..points.len() as i64).collect();
     vtu::write(to_3d(points), Cells { connectivity, points_per_cell: 1, cell_type: VERTEX }, fields)
 }
 
-/// The text of a .pvd file: the files of all `parts`, in the `folder` beside it, with their times (s).
+/// Returns the text of a .pvd file, which lists the files of all `parts` in the adjacent `folder` with their times (s).
 pub(super) fn pvd_index(times: &[f64], folder: &str, parts: &[&str]) -> String {
     let mut text = String::from(
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n<Collection>\n",

@@ -1,4 +1,4 @@
-//! Frames read back, as [`FrameWriter`](super::FrameWriter) wrote them.
+//! Reader of the frames that [`FrameWriter`](super::FrameWriter) writes.
 
 use std::path::{Path, PathBuf};
 
@@ -12,7 +12,7 @@ pub struct FrameSequence {
     times: Vec<f64>,
 }
 
-/// The points of one part of a frame. A field that was not written is empty.
+/// The points of one part of a frame. Fields that the file does not contain are empty.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FramePoints {
     /// Positions, m; in 2-D the third coordinate is zero.
@@ -23,14 +23,14 @@ pub struct FramePoints {
     pub density: Vec<f32>,
     /// Pressures, Pa.
     pub pressure: Vec<f32>,
-    /// Numbers of the particles, the same in all frames.
+    /// Identifiers of the particles, the same in all frames.
     pub id: Vec<u32>,
-    /// Of boundary particles: the number of the solid.
+    /// Number of the solid of each boundary particle; empty for water.
     pub solid_index: Vec<f32>,
 }
 
 impl FrameSequence {
-    /// The frames of the run in `folder`; `None` if it has none.
+    /// Opens the frames of the run in `folder`; returns `None` if the run has no frames.
     ///
     /// # Errors
     /// `File` if `frames.pvd` cannot be read.
@@ -50,35 +50,35 @@ impl FrameSequence {
         }
     }
 
-    /// Times of the frames, s.
+    /// Returns the times of the frames, s.
     pub fn times(&self) -> &[f64] {
         &self.times
     }
 
-    /// The number of the frame nearest to time `t` (s).
+    /// Returns the number of the frame nearest to time `t` (s).
     pub fn nearest_index(&self, t: f64) -> usize {
         let off = |i: &usize| (self.times[*i] - t).abs();
         (0..self.times.len()).min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(0)
     }
 
-    /// Bytes of frame `number` on the disk.
+    /// Returns the size of frame `number` on the disk, bytes.
     pub fn bytes(&self, number: usize) -> u64 {
         let size = |part: &str| std::fs::metadata(self.path(part, number)).map_or(0, |file| file.len());
         size("water") + size("solids")
     }
 
-    /// The water in frame `number`.
+    /// Reads the water particles in frame `number`.
     ///
     /// # Errors
-    /// `File` if it cannot be read.
+    /// `File` if the frame cannot be read.
     pub fn water(&self, number: usize) -> Result<FramePoints> {
         read_points(&self.path("water", number))
     }
 
-    /// The boundary particles in frame `number`.
+    /// Reads the boundary particles in frame `number`.
     ///
     /// # Errors
-    /// `File` if they cannot be read.
+    /// `File` if the frame cannot be read.
     pub fn solids(&self, number: usize) -> Result<FramePoints> {
         read_points(&self.path("solids", number))
     }
@@ -93,7 +93,7 @@ fn read_points(path: &Path) -> Result<FramePoints> {
     parse_points(&file).map_err(|why| Error::file(path, format!("is not a frame of this program: {why}")))
 }
 
-/// The points in a .vtu `file`.
+/// Returns the points in a .vtu `file`.
 fn parse_points(file: &[u8]) -> std::result::Result<FramePoints, String> {
     let (points, fields) = vtu::read_points(file)?;
     let mut all = FramePoints { position: triples(&points), ..FramePoints::default() };
@@ -113,7 +113,7 @@ fn parse_points(file: &[u8]) -> std::result::Result<FramePoints, String> {
     Ok(all)
 }
 
-/// Numbers three by three.
+/// Divides numbers into groups of three.
 fn triples(numbers: &[f32]) -> Vec<[f32; 3]> {
     numbers.as_chunks().0.to_vec()
 }

@@ -1,5 +1,6 @@
-//! The free surface of 3-D water as a mesh, made from frames by the crate splashsurf: `surface.pvd` lists the files
-//! `surface/surface_00000.vtu`. Normals of the triangles point outwards; the corners have the velocity of the water.
+//! The free surface of 3-D water as a mesh, which the crate splashsurf makes from frames. `surface.pvd` lists the
+//! files, such as `surface/surface_00000.vtu`. Normals of the triangles point outwards; each corner has the velocity of
+//! the water.
 
 use std::{io, path::Path};
 
@@ -14,14 +15,14 @@ use super::{
 };
 use crate::error::{Error, ErrorKind, Result};
 
-/// Radius of the support of a particle, dp.
+/// Support radius of a particle, dp.
 const REACH: f64 = 3.0;
-/// Edge of the cubes of the marching-cubes algorithm, dp.
+/// Edge of the cubes in the marching-cubes algorithm, dp.
 const CUBE: f64 = 0.75;
-/// Density of the surface relative to that of water: with this the still surface is 0.005 dp above the true one, half a dp
-/// above the uppermost particles.
+/// Density at the surface relative to that of water. With this value, the still surface is 0.005 dp above the true
+/// surface, which is half a dp above the uppermost particles.
 const ISO_LEVEL: f32 = 0.64;
-/// VTK's number of a cell that is a triangle.
+/// VTK's number of the triangle as a cell type.
 const TRIANGLE: u8 = 5;
 
 /// A closed surface of triangles.
@@ -29,17 +30,18 @@ const TRIANGLE: u8 = 5;
 pub struct FreeSurfaceMesh {
     /// Corners, m.
     pub corners: Vec<[f32; 3]>,
-    /// Triangles: numbers of their corners, counter-clockwise as seen from outside.
+    /// Triangles, as indices of their corners, counter-clockwise as seen from outside.
     pub triangles: Vec<[usize; 3]>,
-    /// Velocity of the water at the corners, m/s; empty if the frame did not keep it.
+    /// Velocity of the water at the corners, m/s; empty if the frame does not contain velocities.
     pub velocity: Vec<[f32; 3]>,
 }
 
 impl FreeSurfaceMesh {
-    /// The surface of `water` in space, of particles `dp` (m) apart. Bodies are not water, so they are outside it.
+    /// Returns the free surface of `water` in 3-D, with the particle spacing `dp` (m). Bodies are not part of the
+    /// water, so they are outside the surface.
     ///
     /// # Errors
-    /// `Usage` if it cannot be made.
+    /// `Usage` if the surface cannot be made.
     pub fn reconstruct(water: &FramePoints, dp: f64) -> Result<Self> {
         if water.position.is_empty() {
             return Ok(Self::default());
@@ -66,7 +68,7 @@ impl FreeSurfaceMesh {
         })
     }
 
-    /// The surface as a .vtu file.
+    /// Returns the surface as a .vtu file.
     fn to_vtu(&self) -> io::Result<Vec<u8>> {
         let connectivity = self.triangles.iter().flatten().map(|i| *i as i64).collect();
         let cells = Cells { connectivity, points_per_cell: 3, cell_type: TRIANGLE };
@@ -76,11 +78,11 @@ impl FreeSurfaceMesh {
     }
 }
 
-/// Writes the surface of the water in each of the `frames`, of particles `dp` (m) apart, into the run's `folder`; returns the
-/// number of files.
+/// Writes the surface of the water in each of the `frames` into the run's `folder`; `dp` (m) is the particle spacing.
+/// Returns the number of files.
 ///
 /// # Errors
-/// `File` if a frame cannot be read or a file written; `Usage` if a surface cannot be made.
+/// `File` if a frame cannot be read or a file cannot be written; `Usage` if a surface cannot be made.
 pub fn write(folder: &Path, frames: &FrameSequence, dp: f64) -> Result<usize> {
     let files = folder.join("surface");
     std::fs::create_dir_all(&files).map_err(|why| cannot_write(&files, &why))?;

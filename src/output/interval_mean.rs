@@ -1,23 +1,24 @@
-//! The mean over time of what is read at every step, from one row of a table to the next.
+//! Time means, from one row of a table to the next, of values that are read at every step.
 
 use serde::{Deserialize, Serialize};
 
-/// A mean in the making: all that it needs to go on to the same bits.
+/// An unfinished mean, with all data that a restart needs to continue bit for bit.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct IntervalMean {
     /// Time (s) and values of the last reading.
     last: Option<(f64, Vec<f64>)>,
-    /// ∫ x dt since the last row by the trapezoid, and how long x was known (s): two for each column.
+    /// ∫ x dt since the last row by the trapezoidal rule, and the time (s) for which x was finite: one pair for each
+    /// column.
     sums: Vec<(f64, f64)>,
 }
 
 impl IntervalMean {
-    /// Time (s) and values of the last reading.
+    /// Returns the time (s) and the values of the last reading, or `None` before the first reading.
     pub(crate) fn last(&self) -> Option<(f64, &[f64])> {
         self.last.as_ref().map(|(t, row)| (*t, row.as_slice()))
     }
 
-    /// Adds the reading `row` of time `t` (s), later than the last.
+    /// Adds the reading `row` at time `t` (s), which is later than the last reading.
     pub(crate) fn add(&mut self, t: f64, row: Vec<f64>) {
         self.sums.resize(row.len(), (0.0, 0.0));
         if let Some((before, old)) = &self.last {
@@ -31,8 +32,8 @@ impl IntervalMean {
         self.last = Some((t, row));
     }
 
-    /// The mean since the last row, of the last `totals` columns the reading itself; a mean of nothing is the reading, too.
-    /// The next begins here.
+    /// Returns the means since the last row, and begins the next interval. For the last `totals` columns, and for
+    /// columns without an interval of finite values, it returns the last reading.
     pub(crate) fn take(&mut self, totals: usize) -> Vec<f64> {
         let row = self.last.as_ref().map_or(&[][..], |(_, row)| row);
         let means = row.len().saturating_sub(totals);

@@ -1,4 +1,4 @@
-//! The manifest: what ran, with what, and how it ended. `manifest.json` in the run's folder.
+//! The manifest, `manifest.json` in the run's folder: it records the run, its inputs and its result.
 
 use std::{collections::BTreeMap, path::Path};
 
@@ -11,133 +11,134 @@ use crate::{
     math::simd,
 };
 
-/// The manifest of a run. Its keys are read by other programs: add some, rename none.
+/// The manifest of a run. Other programs read its keys, so new versions may add keys but must not rename any.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Manifest {
-    /// How the run stands.
+    /// Status of the run.
     pub status: RunStatus,
     /// Caption of the scene.
     pub title: String,
     /// Version of this crate.
     pub version: String,
-    /// Commit of this crate's source, where the build could tell; "…, changed" if the source was not quite that.
+    /// Commit of this crate's source, if the build could determine it; "…, changed" if the source differs from the
+    /// commit.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub commit: Option<String>,
     /// Name and version of the engine that moves the bodies.
     pub engine: String,
     /// Threads used.
     pub threads: usize,
-    /// How many particles of each sort.
+    /// Numbers of particles of each kind.
     pub particles: ParticleCounts,
-    /// Water particles that left the domain and were taken out.
+    /// Number of water particles that left the domain and were removed.
     #[serde(default)]
     pub removed: usize,
-    /// Steps done.
+    /// Number of completed steps.
     pub steps: u64,
     /// Simulated time, s.
     pub simulated_s: f64,
-    /// Simulated time asked for, s.
+    /// Requested simulated time, s.
     pub until_s: f64,
     /// Wall time of the whole run, s.
     pub wall_s: f64,
-    /// Processor time of the whole run, all threads together, s.
+    /// Processor time of the whole run, summed over all threads, s.
     #[serde(default)]
     pub cpu_s: f64,
-    /// Water and boundary particles beside it × force passes, summed over the steps.
+    /// (Water particles + boundary particles next to water) × force passes, summed over the steps.
     #[serde(default)]
     pub particle_steps: u64,
-    /// Water and boundary particles beside it × force passes ÷ wall time of stepping, 1/s.
+    /// (Water particles + boundary particles next to water) × force passes ÷ wall time of stepping, 1/s.
     pub particle_steps_per_second: f64,
-    /// The run against its references.
+    /// Verdicts on the run from its checks against references.
     pub checks: Vec<Verdict>,
     /// Files in the run's folder.
     pub files: Vec<String>,
-    /// Frames that were kept.
+    /// Frames on the disk.
     #[serde(default)]
     pub frames: FrameTotals,
-    /// Why the run failed, in words.
+    /// Reason for the failure of the run, as text.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub error: Option<String>,
-    /// The identifier of the family of that error.
+    /// Error code of the family of that error.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub error_code: Option<String>,
-    /// With which particle or body the run failed.
+    /// Particle or body that caused the failure.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub fault: Option<serde_json::Value>,
-    /// Remarks made at the start.
+    /// Warnings at the start of the run.
     pub warnings: Vec<String>,
-    /// The computer.
+    /// The computer that executed the run.
     pub machine: Machine,
-    /// Keys of the scene changed for this run.
+    /// Scene keys that were changed for this run, and their values.
     pub set: BTreeMap<String, String>,
-    /// Every value in force, the defaults too.
+    /// All values of the run, including defaults.
     pub values: Vec<ValueInForce>,
-    /// The scene with those changes, as TOML.
+    /// The scene with the changed keys, as TOML.
     pub scene: String,
 }
 
-/// A value in force.
+/// A value that the run uses.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ValueInForce {
     /// The scene's key.
     pub key: String,
     /// Its value.
     pub value: String,
-    /// Who said so: a line of the scene, the command line, or a default with its reason.
+    /// Source of the value: a line of the scene, the command line, or a default with its reason.
     pub source: String,
 }
 
-/// How a run stands.
+/// Status of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RunStatus {
-    /// It goes on, or was killed.
+    /// The run is active, or the process was killed.
     Running,
-    /// It reached its end.
+    /// The run reached its end time.
     Finished,
-    /// It was asked to stop, and left a checkpoint.
+    /// The run stopped on request, and left a checkpoint.
     Interrupted,
-    /// It could not go on.
+    /// The run failed.
     Failed,
 }
 
 /// Numbers of particles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ParticleCounts {
-    /// Of the water.
+    /// Number of water particles.
     pub fluid: usize,
-    /// Of all skins.
+    /// Number of boundary particles of all solids.
     pub boundary: usize,
 }
 
 /// Frames on the disk.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct FrameTotals {
-    /// How many.
+    /// Number of frames.
     pub count: usize,
-    /// What they take, B.
+    /// Size of all frames, B.
     pub bytes: u64,
 }
 
-/// The computer that ran it.
+/// The computer that executed the run.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Machine {
     /// Operating system.
     pub os: String,
     /// Processor family.
     pub arch: String,
-    /// Processor, where the system tells.
+    /// Processor name, if the system reports it.
     #[serde(default)]
     pub processor: String,
-    /// Instructions that the fast sweep uses; none if the processor has none for it.
+    /// Instruction set that the fast particle sweep uses; `None` if the processor has no suitable instruction set.
     #[serde(default)]
     pub instructions: Option<String>,
-    /// Processors that this program may use.
+    /// Number of processors available to this program.
     pub cpus: usize,
 }
 
 impl Machine {
-    /// This computer.
+    /// Returns a description of this computer.
     pub fn current() -> Self {
         let info = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
         let model = info.lines().find_map(|line| line.strip_prefix("model name")?.split_once(": ").map(|m| m.1));
@@ -152,12 +153,12 @@ impl Machine {
 }
 
 impl Manifest {
-    /// A number in force, by its key in the scene.
+    /// Returns the numeric value with the scene key `key`, or `None` if the key has no numeric value.
     pub fn numeric_value(&self, key: &str) -> Option<f64> {
         self.values.iter().find(|value| value.key == key)?.value.parse().ok()
     }
 
-    /// Notes that the run failed with `error`.
+    /// Records the failure of the run with `error`.
     pub fn record_failure(&mut self, error: &Error) {
         self.status = RunStatus::Failed;
         self.error = Some(error.to_string());
@@ -175,10 +176,10 @@ impl Manifest {
         write_atomically(&path, (text + "\n").as_bytes())
     }
 
-    /// Reads `manifest.json` in `folder`.
+    /// Reads `manifest.json` from `folder`.
     ///
     /// # Errors
-    /// `Restart` if there is none or it is not one of this program's.
+    /// `Restart` if the file does not exist or is not a manifest of this program.
     pub fn read(folder: &Path) -> Result<Self> {
         let path = folder.join("manifest.json");
         let text = std::fs::read_to_string(&path).map_err(|why| {

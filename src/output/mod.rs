@@ -35,19 +35,19 @@ use std::{
 
 use crate::error::{Error, ErrorCode, Result};
 
-/// Writes the file at `path` all at once: a reader sees the old file or the new one, never a part.
+/// Writes the file at `path` atomically: a reader sees either the old file or the new file, never a partial file.
 ///
 /// # Errors
-/// `File`, naming the file, if the disk is full or the folder cannot be written; the old file stays.
+/// `File`, with the name of the file, if the disk is full or the folder is not writable; the old file remains.
 pub(crate) fn write_atomically(path: &Path, bytes: &[u8]) -> Result<()> {
     write_partial(path, |file| file.write_all(bytes))?;
     commit_partial(path)
 }
 
-/// That there is a folder for the file at `path`, before work is spent on it.
+/// Checks that the folder for the file at `path` exists, before a run computes results for it.
 ///
 /// # Errors
-/// `File` if there is none.
+/// `File` if the folder does not exist.
 #[doc(hidden)]
 pub fn require_parent_folder(path: &Path) -> Result<()> {
     match path.parent().filter(|folder| !folder.as_os_str().is_empty() && !folder.is_dir()) {
@@ -58,17 +58,17 @@ pub fn require_parent_folder(path: &Path) -> Result<()> {
     }
 }
 
-/// Fills the file that is to become the one at `path`.
+/// Fills the temporary file that replaces the file at `path` later.
 fn write_partial(path: &Path, fill: impl FnOnce(&mut File) -> io::Result<()>) -> Result<()> {
     let part = partial_path(path);
     File::create(&part).and_then(|mut file| fill(&mut file)).map_err(|why| {
-        // The part is of no use; that it cannot be removed either would hide the first trouble.
+        // The partial file has no use. An error from its removal would hide the original error.
         let _ = fs::remove_file(&part);
         cannot_write(path, &why)
     })
 }
 
-/// Gives the part that was filled its name.
+/// Renames the complete temporary file to its final name.
 fn commit_partial(path: &Path) -> Result<()> {
     fs::rename(partial_path(path), path).map_err(|why| {
         let _ = fs::remove_file(partial_path(path));
@@ -76,19 +76,20 @@ fn commit_partial(path: &Path) -> Result<()> {
     })
 }
 
-/// The name that the file at `path` has until it is whole.
+/// Returns the temporary name of the file at `path` until the file is complete.
 fn partial_path(path: &Path) -> PathBuf {
     let mut name = path.as_os_str().to_owned();
     name.push(".part");
     name.into()
 }
 
-/// Waits until the names in `folder` are on the disk. Not every system can; then they will be soon.
+/// Waits until the file names in `folder` are on the disk. Some systems do not support this; they write the names soon
+/// afterwards.
 fn sync_folder(folder: &Path) {
     let _ = File::open(folder).and_then(|folder| folder.sync_all());
 }
 
-/// The error of a file that cannot be written.
+/// Returns the error of a file that cannot be written.
 fn cannot_write(path: &Path, why: &io::Error) -> Error {
     let gone = why.kind() == io::ErrorKind::NotFound;
     let help = match path.parent().filter(|folder| gone && !folder.exists()) {

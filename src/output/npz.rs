@@ -1,4 +1,5 @@
-//! Series as NumPy's `.npz`: an array for each, in a zip that is not packed. `numpy.load` reads it.
+//! Series in NumPy's format `.npz`: a zip file without compression, with one array for each series. `numpy.load` reads
+//! it.
 
 use std::{
     io::{Cursor, Write},
@@ -10,13 +11,13 @@ use zip::{CompressionMethod, ZipWriter, result::ZipError, write::SimpleFileOptio
 use super::{require_parent_folder, write_atomically};
 use crate::error::{Error, ErrorKind, Result};
 
-/// Headers of arrays end at a multiple of so many bytes.
+/// The length of an array header is a multiple of this number of bytes.
 const ALIGNED: usize = 64;
 
-/// Writes the `arrays` with their names to the file at `path`, which may be there.
+/// Writes the `arrays` with their names to the file at `path`, and replaces an existing file.
 ///
 /// # Errors
-/// `File` if it cannot be written, or two arrays have the same name.
+/// `File` if the file cannot be written, or two arrays have the same name.
 pub fn write<'a>(path: &Path, arrays: impl IntoIterator<Item = (String, &'a [f64])>) -> Result<()> {
     require_parent_folder(path)?;
     let bytes = npz_bytes(arrays).map_err(|why| Error::new(ErrorKind::File, format!("{}: {why}", path.display())))?;
@@ -33,10 +34,10 @@ fn npz_bytes<'a>(arrays: impl IntoIterator<Item = (String, &'a [f64])>) -> std::
     Ok(file.finish()?.into_inner())
 }
 
-/// An array in NumPy's own format, version 1.0.
+/// Returns an array in NumPy's format, version 1.0.
 fn npy_bytes(numbers: &[f64]) -> Vec<u8> {
     let mut header = format!("{{'descr': '<f8', 'fortran_order': False, 'shape': ({},), }}", numbers.len());
-    // Magic word, version and length take ten bytes; the header ends with a line.
+    // Magic bytes, version and length take ten bytes; the header ends with a newline.
     let size = (10 + header.len() + 1).next_multiple_of(ALIGNED) - 10;
     header += &" ".repeat(size - 1 - header.len());
     let mut bytes = b"\x93NUMPY\x01\x00".to_vec();

@@ -1,5 +1,5 @@
-//! The list of the particles that left the domain and were taken out: which, when, with what last state, and how they are
-//! likely to have left.
+//! The list of the particles that left the domain and were removed: their numbers, times, last states, and likely
+//! causes.
 
 use std::path::Path;
 
@@ -9,14 +9,14 @@ use crate::{
     simulation::RemovedParticle,
 };
 
-/// Name of the list in the run's folder.
+/// File name of the list in the run's folder.
 pub(crate) const REMOVED: &str = "removed.csv";
 
-/// Writes the list in `folder`, all of it: `lost` in the order in which they were taken out, with the times (s) at which they
-/// were seen outside.
+/// Writes the whole list to `folder`. `lost` contains the particles in order of removal, with the times (s) at which
+/// the program found them outside the domain.
 ///
 /// # Errors
-/// `File` if it cannot be written.
+/// `File` if the list cannot be written.
 pub(crate) fn write<const D: usize>(folder: &Path, lost: &[(f64, RemovedParticle<D>)]) -> Result<()> {
     let axes = &["x", "y", "z"][..D];
     let columns = |prefix: &str, unit: &str| axes.iter().map(|a| format!("{prefix}{a}_{unit}")).collect::<Vec<_>>();

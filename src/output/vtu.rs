@@ -1,7 +1,7 @@
 //! VTK's XML files of unstructured grids (.vtu): points with their fields, and cells.
 //!
-//! The writer appends all arrays as raw bytes, compressed by zlib. The reader takes such files, and those of earlier versions
-//! of the program, in which each element holds its compressed array in base 64.
+//! The writer appends all arrays as raw bytes, compressed by zlib. The reader accepts these files, and files of earlier
+//! program versions, in which each element contains its compressed array in base 64.
 
 use std::io::{self, Read, Write};
 
@@ -10,20 +10,20 @@ use roxmltree::{Document, Node};
 
 use super::base64;
 
-/// Uncompressed bytes of a block; every block is compressed by itself.
+/// Uncompressed size of a block, bytes; each block is compressed separately.
 const BLOCK: usize = 1 << 16;
 
-/// First bytes of the element after which the arrays begin.
+/// First bytes of the element that precedes the appended arrays.
 const APPENDED: &[u8] = b"<AppendedData";
 
-/// The numbers of an array.
+/// The values of an array.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Values {
     /// Single precision.
     F32(Vec<f32>),
-    /// Whole numbers from 0.
+    /// Unsigned integers.
     U32(Vec<u32>),
-    /// Whole numbers.
+    /// Signed integers.
     I64(Vec<i64>),
     /// Bytes.
     U8(Vec<u8>),
@@ -32,27 +32,27 @@ pub(crate) enum Values {
 /// An array with its name.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct DataArray {
-    /// Its name, without characters that XML reserves.
+    /// Name of the array, without characters that XML reserves.
     pub name: String,
-    /// Numbers per point or cell.
+    /// Number of components per point or cell.
     pub components: usize,
-    /// All numbers, point by point.
+    /// All values, point by point.
     pub values: Values,
 }
 
 /// Cells of one type.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Cells {
-    /// Numbers of the points of each cell, cell by cell.
+    /// Indices of the points of each cell, cell by cell.
     pub connectivity: Vec<i64>,
-    /// Points per cell.
+    /// Number of points per cell.
     pub points_per_cell: usize,
-    /// VTK's number of the cell type: 1 is a vertex, 5 a triangle.
+    /// VTK's number of the cell type: 1 is a vertex, 5 is a triangle.
     pub cell_type: u8,
 }
 
 impl DataArray {
-    /// An array of single precision.
+    /// Makes an array of single precision.
     pub(crate) fn new(name: &str, components: usize, values: Vec<f32>) -> Self {
         Self { name: name.into(), components, values: Values::F32(values) }
     }
@@ -77,7 +77,7 @@ impl Values {
         }
     }
 
-    /// Appends the numbers to `data`, compressed.
+    /// Appends the values to `data` in compressed form.
     fn append(&self, data: &mut Vec<u8>) -> io::Result<()> {
         match self {
             Self::F32(x) => append_blocks(x, f32::to_le_bytes, data),
@@ -87,7 +87,7 @@ impl Values {
         }
     }
 
-    /// The numbers in little-endian `bytes` of the type that VTK calls `type_name`.
+    /// Reads the values of the type that VTK calls `type_name` from little-endian `bytes`.
     fn from_bytes(type_name: &str, bytes: &[u8]) -> Result<Self, String> {
         match type_name {
             "Float32" => numbers(bytes, f32::from_le_bytes).map(Self::F32),
@@ -100,14 +100,14 @@ impl Values {
     }
 }
 
-/// The numbers in `bytes`; `None` if the last one is cut.
+/// Returns the numbers in `bytes`, or `None` if the last number is incomplete.
 fn numbers<T, const N: usize>(bytes: &[u8], of: fn([u8; N]) -> T) -> Option<Vec<T>> {
     let (whole, rest) = bytes.as_chunks::<N>();
     rest.is_empty().then(|| whole.iter().map(|bytes| of(*bytes)).collect())
 }
 
-/// Appends `values` to `data`: number of blocks, bytes of a block, bytes of an incomplete last block or 0, compressed bytes of
-/// each block (all of 64 bits), then the blocks.
+/// Appends a header and the compressed blocks of `values` to `data`. The header has 64-bit entries: number of blocks,
+/// bytes per block, bytes of an incomplete last block or 0, and compressed bytes of each block.
 fn append_blocks<T: Copy, const N: usize>(values: &[T], bytes: fn(T) -> [u8; N], data: &mut Vec<u8>) -> io::Result<()> {
     let blocks = values.chunks(BLOCK / N);
     let mut header = vec![blocks.len(), BLOCK, values.len() * N % BLOCK];
@@ -127,15 +127,15 @@ fn append_blocks<T: Copy, const N: usize>(values: &[T], bytes: fn(T) -> [u8; N],
     Ok(())
 }
 
-/// The file of a grid: `points` with three coordinates each (m), `cells`, and fields of the points.
+/// Returns the file of a grid: `points` with three coordinates each (m), `cells`, and fields of the points.
 ///
 /// # Errors
-/// None but those of the compression, which writes to memory.
+/// Errors of the compression only, which writes to memory.
 pub(crate) fn write(points: Vec<f32>, cells: Cells, fields: Vec<DataArray>) -> io::Result<Vec<u8>> {
     let (point_count, cell_count) = (points.len() / 3, cells.connectivity.len() / cells.points_per_cell);
     let name_of =
         |components: usize| fields.iter().find(|field| field.components == components).map(|field| &field.name);
-    // The fields that a reader shows first.
+    // ParaView and similar readers display these fields by default.
     let shown = [("Scalars", name_of(1)), ("Vectors", name_of(3))];
     let shown = shown.into_iter().filter_map(|(kind, name)| Some(format!(" {kind}=\"{}\"", name?)));
     let mut text = format!(
@@ -151,7 +151,8 @@ pub(crate) fn write(points: Vec<f32>, cells: Cells, fields: Vec<DataArray>) -> i
         of_cells("offsets", Values::I64(offsets)),
         of_cells("types", Values::U8(vec![cells.cell_type; cell_count])),
     ];
-    // The last element has the first data: meshio 5.3 mistakes the offsets of arrays in the order of their elements.
+    // The data of the last element come first: meshio 5.3 reads wrong offsets if the arrays are in the order of their
+    // elements.
     let mut data = Vec::new();
     let cells = append_arrays(cells, &mut data)?;
     let points = append_arrays(vec![DataArray::new("Points", 3, points)], &mut data)?;
@@ -165,11 +166,11 @@ pub(crate) fn write(points: Vec<f32>, cells: Cells, fields: Vec<DataArray>) -> i
     Ok(file)
 }
 
-/// Appends `arrays` to `data`, the last one first; returns their elements.
+/// Appends `arrays` to `data`, the last array first; returns their XML elements.
 fn append_arrays(arrays: Vec<DataArray>, data: &mut Vec<u8>) -> io::Result<String> {
     let mut text = String::new();
     for DataArray { name, components, values } in arrays.into_iter().rev() {
-        // One component is the default of the format; meshio makes columns of arrays that state it.
+        // The format's default is a single component; meshio makes a column of an array that states it.
         let components = if components == 1 { String::new() } else { format!(" NumberOfComponents=\"{components}\"") };
         let (kind, offset) = (values.type_name(), data.len());
         text.insert_str(
@@ -183,10 +184,11 @@ fn append_arrays(arrays: Vec<DataArray>, data: &mut Vec<u8>) -> io::Result<Strin
     Ok(text)
 }
 
-/// The coordinates of the points in a `file`, three each, and the fields of the points. Cells are not read.
+/// Returns the coordinates of the points in a `file`, three for each point, and the fields of the points. The function
+/// does not read cells.
 ///
 /// # Errors
-/// The reason, if this is not a whole file of this program.
+/// The reason, if `file` is not a complete file of this program.
 pub(crate) fn read_points(file: &[u8]) -> Result<(Vec<f32>, Vec<DataArray>), String> {
     let (mut points, mut fields) = (None, Vec::new());
     for (parent, array) in read_arrays(file, &["Points", "PointData"])? {
@@ -199,7 +201,7 @@ pub(crate) fn read_points(file: &[u8]) -> Result<(Vec<f32>, Vec<DataArray>), Str
     Ok((points.ok_or("it has no points")?, fields))
 }
 
-/// The arrays in the elements of a `file` that are called as in `parents`, each with the name of its element.
+/// Returns the arrays in the elements of a `file` with a name in `parents`, each with the name of its element.
 fn read_arrays(file: &[u8], parents: &[&str]) -> Result<Vec<(String, DataArray)>, String> {
     let (text, appended) = split(file)?;
     let document = Document::parse(&text).map_err(|why| why.to_string())?;
@@ -240,7 +242,7 @@ fn read_arrays(file: &[u8], parents: &[&str]) -> Result<Vec<(String, DataArray)>
     Ok(arrays)
 }
 
-/// The XML of a `file` without its appended arrays, and these.
+/// Divides a `file` into its XML without the appended arrays, and the appended arrays.
 fn split(file: &[u8]) -> Result<(String, &[u8]), String> {
     let cut = || "it is cut short".to_string();
     let text = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).map_err(|_| "it is no text".to_string());
@@ -257,28 +259,28 @@ fn split(file: &[u8]) -> Result<(String, &[u8]), String> {
     Ok((text(&body[..from])? + "</VTKFile>", data))
 }
 
-/// An attribute that is a number.
+/// Returns an attribute that is a number.
 fn attribute<T: std::str::FromStr>(node: Node<'_, '_>, name: &str) -> Result<T, String> {
     let number = node.attribute(name).and_then(|text| text.parse().ok());
     number.ok_or_else(|| format!("{name} of {} is no number", node.tag_name().name()))
 }
 
-/// The header and the blocks of an array in base 64, which are encoded one after the other; words of the header have `word`
-/// bytes.
+/// Returns the header and the blocks of an array in base 64, which are encoded one after the other. Header entries have
+/// `word` bytes.
 fn from_text(text: &str, word: usize) -> Option<(Vec<u8>, Vec<u8>)> {
     let text = text.trim().as_bytes();
-    // Eight bytes take twelve digits.
+    // Eight bytes need twelve base-64 digits.
     let blocks = header_words(&base64::decode(text.get(..12)?)?, word).next()?;
     let digits = blocks.checked_add(3)?.checked_mul(word)?.div_ceil(3).checked_mul(4)?;
     Some((base64::decode(text.get(..digits)?)?, base64::decode(&text[digits..])?))
 }
 
-/// The words of a header, of `word` bytes each.
+/// Returns the entries of a header, with `word` bytes each.
 fn header_words(bytes: &[u8], word: usize) -> impl Iterator<Item = usize> {
     bytes.chunks_exact(word).map(|bytes| bytes.iter().rev().fold(0, |number, byte| number << 8 | usize::from(*byte)))
 }
 
-/// The bytes of an array that begins where `data` begins: see [`append_blocks`].
+/// Decompresses an array at the start of `data`, in the format of [`append_blocks`].
 fn decompress(data: &[u8], word: usize) -> Option<Vec<u8>> {
     let mut fixed = header_words(data, word);
     let (blocks, block, partial) = (fixed.next()?, fixed.next()?, fixed.next()?);
@@ -288,7 +290,7 @@ fn decompress(data: &[u8], word: usize) -> Option<Vec<u8>> {
         let expected = if number + 1 == blocks && partial > 0 { partial } else { block };
         let (own, after) = rest.split_at_checked(size)?;
         let before = bytes.len();
-        // One byte more would show that the block is longer than its header says.
+        // An additional byte would show that the block is longer than the header states.
         ZlibDecoder::new(own).take((expected as u64).saturating_add(1)).read_to_end(&mut bytes).ok()?;
         if bytes.len() - before != expected {
             return None;

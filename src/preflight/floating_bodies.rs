@@ -1,13 +1,14 @@
-//! How each free body floats: draft, metacentric height, periods; and whether particles of this size can carry it.
+//! Equilibrium of each free body: draft, metacentric height and periods, and whether particles of this size can support
+//! it.
 //!
 //!   heave  T = 2π √((m + m_a)/(ρ₀ g A)),    roll  T = 2π √(I/(m g GM))
 //!
-//! A: area of the waterplane, m_a: the water that heaves along. For m_a stands half of that of a flat plate of the same
-//! waterplane: ½ π ρ₀ (A/2)² in 2-D, ½ (8/3) ρ₀ a³ with π a² = A in 3-D @newman1977, ch. 4; half, for there is water on one
-//! side only. Nothing is added to I: a real roll is slower.
+//! A is the area of the waterplane and m_a is the added mass in heave. The estimate of m_a is half of the added mass of
+//! a flat plate of the same waterplane, because water is on one side only. It is ½ π ρ₀ (A/2)² in 2-D and ½ (8/3) ρ₀ a³
+//! with π a² = A in 3-D @newman1977, ch. 4. Nothing is added to I, so that the real roll period is longer.
 //!
-//! With Δt = C h/c₀ an explicit exchange carries a body whose mass per wetted area is above ½ C ρ₀ h. A lighter one answers
-//! with the inertia of the water around it (`time/light.rs`), and its draft is a few tenths of a dp.
+//! With Δt = C h/c₀ an explicit exchange of forces is stable for a body whose mass per wetted area exceeds ½ C ρ₀ h. A
+//! lighter body moves with the inertia of the water around it (`time/light.rs`), and its draft is a few tenths of a dp.
 
 use std::f64::consts::{PI, TAU};
 
@@ -26,68 +27,70 @@ use crate::{
     },
 };
 
-/// A tilt of less than this (rad) out of rest is not worth a word: half a degree.
+/// Heel (rad) from equilibrium below which no finding is reported: half a degree.
 const LEVEL: f64 = 0.5 * PI / 180.0;
 
 /// A free body before its first step. In 2-D masses are kg/m and volumes m².
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct BodySummary {
-    /// Its name.
+    /// Name of the body.
     pub name: String,
     /// Mass, kg.
     pub mass_kg: f64,
     /// Volume, m³.
     pub volume_m3: f64,
-    /// Its mean density over the water's, –.
+    /// Mean density of the body over the density of the water, –.
     pub density_ratio: f64,
-    /// Mass of the water that it displaces where it starts, kg.
+    /// Mass of the water that the body displaces at its start, kg.
     pub displaced_kg: f64,
-    /// Depth of its lowest point below the still level where it starts, m: negative above.
+    /// Depth of the lowest point of the body below the still water level at its start, m; negative if the point is
+    /// above the level.
     pub draft_m: f64,
-    /// How it floats, as it is turned; absent if it sinks, is held in its height, or nothing floats.
+    /// Equilibrium in the initial orientation; absent if the body sinks, its height is held, or nothing floats.
     pub afloat: Option<Equilibrium>,
-    /// Its thinnest part, m, but for tips.
+    /// Thickness of its thinnest part, m, except for tips.
     pub thinnest_m: f64,
-    /// The same over dp.
+    /// The same thickness over dp.
     pub thinnest_dp: f64,
-    /// Mass per wetted area over ½ C ρ₀ h, –: below 1 the body answers with the water's inertia.
+    /// Mass per wetted area over ½ C ρ₀ h, –; below 1 the body moves with the inertia of the water.
     pub over_limit: f64,
-    /// The density ratio at which that is 1.
+    /// The density ratio at which `over_limit` is 1.
     pub least_ratio: f64,
 }
 
-/// How a body floats.
+/// The equilibrium of a floating body.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Equilibrium {
     /// Draft at rest, m.
     pub draft_m: f64,
-    /// Area of its waterplane, m²; its breadth, m, in 2-D.
+    /// Area of its waterplane, m²; in 2-D the breadth of the waterplane, m.
     pub waterplane_m2: f64,
-    /// Period of heave without any water that heaves along, s.
+    /// Period of heave without added mass, s.
     pub heave_s: f64,
-    /// The water that heaves along, an estimate, kg.
+    /// Estimated added mass in heave, kg.
     pub heave_added_kg: f64,
-    /// Period of heave with it, s.
+    /// Period of heave with the added mass, s.
     pub heave_with_added_s: f64,
-    /// Tilts that are not locked: in 2-D one, in 3-D about the horizontal axes of least and greatest GM.
+    /// Tilts that are not locked: one in 2-D; in 3-D the tilts about the horizontal axes of least and greatest GM.
     pub tilts: Vec<Tilt>,
-    /// How far it is turned out of its rest, degrees; absent if it would turn over.
+    /// Heel of the initial orientation from equilibrium, degrees; absent if the body capsizes.
     pub heel_deg: Option<f64>,
 }
 
-/// A tilt of a floating body.
+/// A tilt (roll or pitch) of a floating body.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Tilt {
-    /// The axis: axial components.
+    /// Axial components of the axis.
     pub axis: Vec<f64>,
-    /// Metacentric height, m: negative, and it turns over.
+    /// Metacentric height, m; if it is negative, the body capsizes.
     pub gm_m: f64,
-    /// Period of roll without any water that rolls along, s; absent unless GM is positive.
+    /// Period of roll without added inertia, s; absent unless GM is positive.
     pub period_s: Option<f64>,
 }
 
 impl<const D: usize> PreflightContext<'_, D> {
-    /// The free bodies; `touching`: which solids touch another.
+    /// Returns the summaries of the free bodies and adds findings about them. `touching` marks the solids that touch
+    /// another.
     pub(super) fn bodies(&self, touching: &[bool], findings: &mut Vec<Finding>) -> Vec<BodySummary> {
         let mut bodies = Vec::new();
         for (i, solid) in self.solids().iter().enumerate() {
@@ -101,7 +104,8 @@ impl<const D: usize> PreflightContext<'_, D> {
         bodies
     }
 
-    /// Bodies through which water does not see, but whose middle sees the water of both sides.
+    /// Adds findings about bodies that are thick enough to separate the water of both sides, but whose middle still
+    /// interacts with both.
     fn thin_bodies(&self, bodies: &[BodySummary], findings: &mut Vec<Finding>) {
         let reach = self.system.model().support_radius() * (1.0 - 1e-6);
         let thin: Vec<&BodySummary> = bodies.iter().filter(|b| (reach..2.0 * reach).contains(&b.thinnest_m)).collect();
@@ -142,7 +146,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         }
     }
 
-    /// Where the body floats at rest, as it is turned.
+    /// Returns the pose of the body in vertical equilibrium with its initial orientation.
     fn equilibrium_pose(&self, solid: &Solid<D>, body: &FreeBody<D>) -> Option<Pose<D>> {
         if self.g == 0.0 || body.locked_translations[D - 1] || self.is_pinned(solid) {
             return None;
@@ -154,7 +158,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         Some(pose)
     }
 
-    /// Whether a joint to what is not free holds a point of the solid.
+    /// Returns whether a joint to a solid that is not free holds a point of `solid`.
     fn is_pinned(&self, solid: &Solid<D>) -> bool {
         let number = self.system.find_solid(&solid.spec.name);
         let free = |i: usize| matches!(self.solids()[i].spec.role, Role::Free(_));
@@ -165,7 +169,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         })
     }
 
-    /// The body at rest at `pose`.
+    /// Returns the equilibrium of the body at `pose`.
     fn afloat(&self, solid: &Solid<D>, body: &FreeBody<D>, pose: &Pose<D>) -> Equilibrium {
         let (shape, level, rho0) = (&solid.spec.shape, self.still_water.level, self.system.model().rho0);
         let bounds = world_bounds(shape, pose);
@@ -179,7 +183,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         up[D - 1] = 1.0;
         let lever = Bivector::torque(&(shape.submerged_volume(pose, level).1 - pose.point(&body.centre)), &up).axial();
         let along = |axis: &[f64]| lever.iter().zip(axis).map(|(l, a)| l * a).sum::<f64>();
-        // A body of revolution on its side has no GM; nor does it list.
+        // A body of revolution on its side has GM = 0 and no heel.
         let heel = |t: &Tilt| if t.gm_m > 0.0 { along(&t.axis) / t.gm_m } else { 0.0 };
         let turned = tilts.iter().map(|t| heel(t).powi(2)).sum::<f64>().sqrt();
         Equilibrium {
@@ -193,14 +197,14 @@ impl<const D: usize> PreflightContext<'_, D> {
         }
     }
 
-    /// The tilts that are not locked, with their metacentric heights.
+    /// Returns the tilts that are not locked, with their metacentric heights.
     fn tilts(&self, solid: &Solid<D>, body: &FreeBody<D>, pose: &Pose<D>) -> Vec<Tilt> {
         let rho0 = self.system.model().rho0;
         let size = solid.spec.shape.bounds().size().max();
         let gm = |axis: &[f64]| {
             let gm =
                 metacentric_height(&solid.spec.shape, pose, body, rho0, self.still_water.level, axis).unwrap_or(0.0);
-            // Round-off and facets: a ball has none.
+            // Round-off and facets give a ball a small GM; its true GM is 0.
             if gm.abs() < 1e-4 * size { 0.0 } else { gm }
         };
         let tilt = |axis: Vec<f64>, gm_m: f64| {
@@ -216,7 +220,7 @@ impl<const D: usize> PreflightContext<'_, D> {
             (_, [false, true, _]) => vec![tilt(x.clone(), gm(&x))],
             (_, [true, false, _]) => vec![tilt(y.clone(), gm(&y))],
             _ => {
-                // GM is a tensor in the plane: its principal axes from three directions.
+                // GM is a tensor in the waterplane; three directions determine its principal axes.
                 let (xx, yy, between) = (gm(&x), gm(&y), gm(&[0.5f64.sqrt(), 0.5f64.sqrt(), 0.0]));
                 let xy = between - 0.5 * (xx + yy);
                 let xy = if xy.abs() < 1e-4 * size { 0.0 } else { xy };
@@ -227,7 +231,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         }
     }
 
-    /// What is to be said of how a body floats.
+    /// Adds findings about the equilibrium of a body.
     fn flotation_findings(&self, body: &BodySummary, touches: bool, findings: &mut Vec<Finding>) {
         let (name, Some(afloat)) = (&body.name, &body.afloat) else { return };
         let least = afloat.tilts.iter().map(|t| t.gm_m).fold(f64::INFINITY, f64::min);
@@ -240,13 +244,13 @@ impl<const D: usize> PreflightContext<'_, D> {
             findings.push(Finding::warning("capsizes", what, mend));
         } else if afloat.heel_deg.is_some_and(|heel| heel > LEVEL.to_degrees()) {
             let heel = afloat.heel_deg.unwrap_or_default();
-            // The metacentre speaks of small tilts.
+            // The metacentric height holds for small tilts only.
             let far = if heel > 45.0 { "more than 45".into() } else { format!("about {}", three_digits(heel)) };
             let what = format!("\"{name}\" starts {far}° out of the trim in which it rests");
             let mend = "turn it by so much (angle_deg, turn_deg), or put its centre of mass under its buoyancy".into();
             findings.push(Finding::note("lists", what, mend));
         }
-        // What stands on another solid is not meant to float by itself.
+        // A body that rests on another solid need not float at equilibrium.
         let off = body.draft_m - afloat.draft_m;
         if off.abs() > self.dp() && !touches {
             let side = if off > 0.0 { "below" } else { "above" };
@@ -261,7 +265,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         }
     }
 
-    /// What is to be said of whether the particles carry a body.
+    /// Adds findings about whether the particles can support a body.
     fn resolution_findings(&self, body: &BodySummary, findings: &mut Vec<Finding>) {
         let (model, name) = (self.system.model(), &body.name);
         let density = body.density_ratio * model.rho0;
@@ -296,7 +300,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         }
     }
 
-    /// Height (m) of the lowest point of `solid`.
+    /// Returns the height (m) of the lowest point of `solid`.
     pub(super) fn lowest_point(&self, solid: &Solid<D>) -> f64 {
         world_bounds(&solid.spec.shape, &solid.kinematics.pose).min[D - 1]
     }

@@ -1,5 +1,5 @@
-//! Waves that driven solids make: those that were asked for by name as they are, those of another motion by the linear
-//! theory of wavemakers for its largest swing; against dp, the paddle and the tank.
+//! Waves that driven solids make, checked against dp, the paddle and the tank. Named waves have their specified
+//! properties. The waves of any other motion follow from its largest stroke by linear wavemaker theory.
 
 use serde::Serialize;
 
@@ -11,63 +11,64 @@ use crate::{
     wavemaker::{DepthRegime, LinearWave, Paddle, TheoryRegion},
 };
 
-/// Wave height over dp below which waves lose much of it on their way.
+/// Wave height over dp below which waves lose much of their height as they propagate.
 pub(super) const LEAST: f64 = 5.0;
 
-/// Wave length over dp below which a wave is not resolved: two supports of the kernel to a crest.
+/// Wave length over dp below which a wave is not resolved: a crest then spans less than two kernel supports.
 const SHORTEST: f64 = 15.0;
 
-/// The wave of a driven solid.
+/// The wave that a driven solid makes.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct GeneratedWave {
     /// Name of the solid.
     pub solid: String,
-    /// Its kind, in the words of a scene; absent if the solid's motion was given instead.
+    /// Kind of the wave, as a scene writes it; absent if the scene gives the motion of the solid instead.
     pub kind: Option<&'static str>,
-    /// Order of the paddle's theory.
+    /// Order of the wavemaker theory.
     pub order: usize,
-    /// The largest swing from one turn to the next, at the still level, m.
+    /// The largest stroke between two turning points, at the still water level, m.
     pub stroke_m: f64,
-    /// Period, of a sea that of the peak; of a motion twice the time of its swing; s. Absent of a solitary wave.
+    /// Period, s: the peak period of a sea; twice the duration of the largest stroke of a motion; absent for a solitary
+    /// wave.
     pub period_s: Option<f64>,
-    /// Height: as named, of a sea the significant one; else by linear theory from the stroke; m.
+    /// Height, m: as specified, the significant height for a sea; otherwise by linear theory from the stroke.
     pub height_m: f64,
-    /// The same over dp.
+    /// The same height over dp.
     pub height_dp: f64,
-    /// Length, of a solitary wave between the points of a hundredth of its height, m.
+    /// Length, m; for a solitary wave the distance between the points at a hundredth of its height.
     pub length_m: f64,
-    /// The same over dp.
+    /// The same length over dp.
     pub length_dp: f64,
     /// Depth at the paddle, m.
     pub depth_m: f64,
-    /// kd; absent of a solitary wave.
+    /// Relative depth kd; absent for a solitary wave.
     pub kd: Option<f64>,
-    /// How deep the water is for the wave; a solitary one is in shallow water.
+    /// Depth regime of the wave; a solitary wave is in shallow water.
     pub regime: DepthRegime,
-    /// Which theory holds, after the chart of Le Méhauté.
+    /// The valid wave theory, according to the chart of Le Méhauté.
     pub region: TheoryRegion,
     /// Speed of the crests, m/s.
     pub celerity_mps: f64,
-    /// Speed of the wave's front and energy, m/s.
+    /// Group velocity, the speed of the wave's front and energy, m/s.
     pub group_mps: f64,
-    /// The paddle's largest speed at the still level, m/s.
+    /// The largest speed of the paddle at the still water level, m/s.
     pub paddle_mps: f64,
-    /// How long the paddle takes to its full motion, s; 0 if its motion was given.
+    /// Duration of the ramp to the full motion, s; 0 if the scene gives the motion.
     pub ramp_s: f64,
-    /// From the paddle to the first thing that answers, m.
+    /// Distance from the paddle to the first reflector, m.
     pub reach_m: f64,
-    /// The solid that answers; absent of the end of the water.
+    /// Name of the reflecting solid; absent if the end of the water reflects.
     pub answers: Option<String>,
-    /// Where a damping zone begins before that, m from the paddle.
+    /// Distance from the paddle to the start of a damping zone before the reflector, m.
     pub damping_m: Option<f64>,
-    /// When the front is where something answers, s.
+    /// Time at which the wave front reaches the reflector, s.
     pub far_s: f64,
-    /// When what comes back from there is at the paddle, s.
+    /// Time at which the reflected front reaches the paddle, s.
     pub back_s: f64,
 }
 
 impl<const D: usize> PreflightContext<'_, D> {
-    /// The waves of the solids that are driven to and fro through the surface.
+    /// Returns the waves of the driven solids that oscillate through the water surface, and adds findings about them.
     pub(super) fn generated_waves(&self, findings: &mut Vec<Finding>) -> Vec<GeneratedWave> {
         let mut waves = Vec::new();
         let depth = self.still_water.depth;
@@ -99,7 +100,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         waves
     }
 
-    /// What is too small for dp.
+    /// Adds findings about waves that dp does not resolve.
     fn check_resolution(&self, wave: &GeneratedWave, findings: &mut Vec<Finding>) {
         let name = &wave.solid;
         if wave.height_dp < LEAST {
@@ -135,7 +136,7 @@ impl<const D: usize> PreflightContext<'_, D> {
     ) -> Option<(GeneratedWave, WavemakerSite<D>)> {
         let level = self.still_water.level;
         let bounds = world_bounds(&solid.spec.shape, &solid.kinematics.pose);
-        // A tank that is shaken holds the water rather than pushing it.
+        // A moving tank contains the water and is not a paddle.
         if has_full_layers(&solid.spec.shape)
             || self.g == 0.0
             || bounds.min[D - 1] >= level
@@ -146,7 +147,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         let swing = self.driven_stroke(solid, motion, &bounds)?;
         let named = motion.wave();
         let [stand, behind] = [swing.direction, -swing.direction].map(|way| WavemakerSite::new(&bounds, way, level));
-        // A given motion makes waves to both sides: those count that go the longer way.
+        // A motion that the scene gives makes waves to both sides; the waves with the longer path are evaluated.
         let stand = if named.is_none() && self.water_end(&behind) > self.water_end(&stand) { behind } else { stand };
         let depth = named.map_or(self.still_water.depth, |wave| wave.depth());
         let facts = named.map(|wave| wave.properties());
@@ -195,7 +196,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         (wave.height_m.is_finite() && swing.stroke > 1e-3 * self.dp()).then_some((wave, stand))
     }
 
-    /// The motion as a paddle's.
+    /// Returns the paddle that is equivalent to the motion.
     fn equivalent_paddle(&self, motion: &PrescribedMotion<D>) -> Paddle {
         match motion.hinge_height() {
             Some(height) if height < self.still_water.level => Paddle::Flap { arm: self.still_water.level - height },
@@ -205,7 +206,7 @@ impl<const D: usize> PreflightContext<'_, D> {
 }
 
 impl GeneratedWave {
-    /// When the first answer is back at the paddle, and from where, in one line.
+    /// Returns one line with the time at which the first reflection reaches the paddle and its reflector.
     pub fn first_reflection(&self) -> String {
         let (reach, far, back) = (three_digits(self.reach_m), three_digits(self.far_s), three_digits(self.back_s));
         let what = self.answers.as_ref().map_or("the far end".into(), |name| format!("\"{name}\""));

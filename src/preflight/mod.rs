@@ -1,8 +1,8 @@
-//! Pre-flight: what a run of a built scene will cost and what looks wrong with it, told before its first step. Nothing
-//! is stepped, written or changed.
+//! Pre-flight: the expected cost of a run of a built scene and its probable faults, reported before the first step. The
+//! pre-flight steps, writes and changes nothing.
 //!
-//! Facts are numbers; a [`Finding`] is a sentence with the number that would mend it. What a run prints at its start
-//! are the findings that are warnings.
+//! Facts are numbers. A [`Finding`] is a sentence with the number that would correct the fault. A run prints the
+//! findings of severity [`Severity::Warning`] at its start.
 
 mod absorption_limits;
 mod misplaced_bodies;
@@ -39,29 +39,29 @@ use crate::{
 };
 use surface_samples::SurfaceSample;
 
-/// So many findings of a kind are read one by one: a crowd of bodies has one for each.
+/// Number of findings of a kind that are listed individually, because many bodies have a finding each.
 const MOST: usize = 3;
 
-/// How much a finding matters.
+/// The severity of a finding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Severity {
-    /// The results will suffer, or the run will not show what it is meant to.
+    /// The results are inaccurate, or the run does not show the intended behaviour.
     Warning,
-    /// Worth knowing; it may well be meant.
+    /// The finding is useful information and may be intended.
     Note,
 }
 
-/// Something that may not be as it was meant.
+/// A property of the scene that may be unintended.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Finding {
-    /// How much it matters.
+    /// Severity of the finding.
     pub severity: Severity,
-    /// Its kind, for programs: `capsizes`, `thin_body`, ...
+    /// Identifier of its kind, for programs: `capsizes`, `thin_body`, ...
     pub topic: &'static str,
-    /// What is wrong, with its numbers, as one sentence.
+    /// Description of the fault, with its numbers, as one sentence.
     pub what: String,
-    /// What would mend it, with the number.
+    /// The correction, with its number.
     pub mend: String,
 }
 
@@ -74,44 +74,44 @@ impl Finding {
         Self { severity: Severity::Note, topic, what, mend }
     }
 
-    /// That the scene writes a key or a value with an old name.
+    /// Creates the finding that the scene writes a key or a value with a former name.
     pub(crate) fn renamed_name(name: &RenamedName) -> Self {
         Self::note("old_name", name.to_string(), format!("write  {}", name.new))
     }
 
-    /// That the timing stopped with `error` after so many `steps`.
+    /// Creates the finding that the timing stopped with `error` after `steps` steps.
     pub(crate) fn timing_stopped(error: &Error, steps: usize) -> Self {
         let mend = error.help.clone().unwrap_or_else(|| "see the other findings".into());
         Self::warning("breaks_down", format!("after {steps} steps: {}", error.message), mend)
     }
 
-    /// The finding in one line, for a record.
+    /// Returns the finding as one line, for the manifest.
     pub(crate) fn one_line(&self) -> String {
         format!("{}: {}", self.what, self.mend)
     }
 }
 
-/// What is known before the first step.
+/// The results of the pre-flight.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Preflight {
-    /// Particles, memory, disk.
+    /// Number of particles, memory and disk space.
     pub size: RunSize,
-    /// Speed of sound and the speeds that it must outrun.
+    /// Speed of sound and the expected speeds that it must exceed.
     pub sound: SoundSpeed,
-    /// How long a step may be, and why.
+    /// The limits of the time step.
     pub step: StepSizeLimits,
-    /// Waves that driven solids make.
+    /// The waves that driven solids make.
     pub waves: Vec<GeneratedWave>,
-    /// Paddles that take the waves which come to them.
+    /// The paddles that absorb incident waves.
     pub absorbers: Vec<AbsorberSummary>,
-    /// Free bodies.
+    /// The free bodies.
     pub bodies: Vec<BodySummary>,
-    /// What may not be as it was meant; warnings first.
+    /// The findings, warnings first.
     pub findings: Vec<Finding>,
 }
 
 impl Preflight {
-    /// The findings to read: of a kind the first three, and how many more there are.
+    /// Returns the findings to print: the first three of each kind and the number of omitted findings.
     pub fn brief(&self) -> Vec<Finding> {
         let kind = |finding: &Finding| (finding.severity, finding.topic);
         let (mut all, mut seen) = (BTreeMap::new(), BTreeMap::new());
@@ -120,7 +120,8 @@ impl Preflight {
         for finding in &self.findings {
             let (all, seen) = (all[&kind(finding)], seen.entry(kind(finding)).or_insert(0));
             *seen += 1;
-            // A fourth and last one takes no more room than to say that there is one.
+            // If only a fourth finding remains, it is listed, because a line with the number of omitted findings takes
+            // as much space.
             if *seen <= MOST || all == MOST + 1 {
                 brief.push(finding.clone());
             } else if *seen == MOST + 1 {
@@ -132,25 +133,25 @@ impl Preflight {
         brief
     }
 
-    /// The findings that a run tells at its start.
+    /// Returns the warnings that a run prints at its start.
     pub fn warnings(&self) -> Vec<String> {
         self.brief().iter().filter(|f| f.severity == Severity::Warning).map(Finding::one_line).collect()
     }
 }
 
-/// What a look at a simulation's start rests on.
+/// The data that the pre-flight evaluates.
 struct PreflightContext<'a, const D: usize> {
     system: &'a System<D>,
     plan: &'a Plan,
     still_water: StillWaterLevel,
-    /// Gravity down the last axis, m/s²; 0 if it points elsewhere, and then nothing floats.
+    /// Gravity along the last axis, downward, m/s²; 0 if gravity has another direction, and then nothing floats.
     g: f64,
-    /// The outermost layer of each solid; empty where nobody asks.
+    /// The outermost layer of each solid; empty for solids that no check evaluates.
     surface_samples: Vec<Vec<SurfaceSample<D>>>,
 }
 
-/// Looks at a simulation before its first step. `columns`: how many columns each of the plan's probes writes beside the
-/// time; `overlapped`: places of the water's lattice that solids took.
+/// Evaluates a simulation before its first step. `columns` is the number of columns that each probe of the plan writes,
+/// without the time. `overlapped` is the number of sites of the water lattice that solids cover.
 pub fn preflight<const D: usize>(
     sim: &Simulation<D>,
     plan: &Plan,
@@ -182,7 +183,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         self.system.model().dp
     }
 
-    /// The kernel's support over dp.
+    /// Returns the radius of the kernel's support over dp.
     fn support_radius_dp(&self) -> f64 {
         self.system.model().support_radius() / self.dp()
     }
@@ -191,13 +192,13 @@ impl<const D: usize> PreflightContext<'_, D> {
         self.system.solids()
     }
 
-    /// How long (s) a run is.
+    /// Returns the end time (s) of the run.
     fn end_time(&self) -> f64 {
         self.plan.until
     }
 }
 
-/// What moves a solid, in a word of the scene.
+/// Returns the name of a role as a scene writes it.
 pub(crate) fn role_name<const D: usize>(role: &Role<D>) -> &'static str {
     match role {
         Role::Fixed => "fixed",

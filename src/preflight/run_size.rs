@@ -1,4 +1,4 @@
-//! How large a run is: particles, memory, disk.
+//! The size of a run: particles, memory, disk space.
 
 use serde::Serialize;
 
@@ -9,41 +9,41 @@ use crate::{
     output::frame::particle_bytes,
 };
 
-/// Disk that frames may take without a word, B.
+/// Disk space of frames above which a finding is reported, B.
 const BUDGET: f64 = 10e9;
 
-/// LoadBreakdown of the water's lattice that solids may take: without a word, and without a warning.
+/// Shares of the water lattice covered by solids above which a note and a warning are reported.
 const TAKEN: [f64; 2] = [0.25, 0.5];
 
 /// Length of a number in a table with its comma, B: seventeen digits as a rule.
 const NUMBER: f64 = 19.0;
 
-/// How large a run is.
+/// The size of a run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RunSize {
-    /// 2 or 3.
+    /// Dimension, 2 or 3.
     pub dimension: usize,
-    /// Particles of water.
+    /// Number of water particles.
     pub fluid: usize,
-    /// Boundary particles of all solids.
+    /// Number of boundary particles of all solids.
     pub boundary: usize,
-    /// Those of them that have water near them; the others cost next to nothing.
+    /// Number of boundary particles near water; the other boundary particles cost almost nothing.
     pub wet: usize,
-    /// Layers of boundary particles.
+    /// Number of layers of boundary particles.
     pub layers: usize,
     /// Depth of the water, m.
     pub depth_m: f64,
-    /// The same over dp.
+    /// The same depth over dp.
     pub depth_dp: f64,
-    /// Places of the water's lattice that solids took.
+    /// Number of sites of the water lattice that solids cover.
     pub removed: usize,
-    /// Memory of its arrays, lists and frames while it runs, B: about.
+    /// Approximate memory for arrays, lists and frames during the run, B.
     pub memory_bytes: f64,
-    /// What it will write.
+    /// The disk space of the outputs.
     pub disk: DiskUse,
 }
 
-/// What a run will write, about, B.
+/// The approximate disk space of the outputs of a run, B.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DiskUse {
     /// Tables of the probes.

@@ -1,4 +1,4 @@
-//! The speed of sound against the speeds that are known beforehand, and how long a step may be.
+//! The speed of sound compared with the speeds that are known in advance, and the limits of the time step.
 
 use serde::Serialize;
 
@@ -10,48 +10,49 @@ use crate::{
     sph::boundary::Slip,
 };
 
-/// Speed of sound over the largest speed, at least: densities vary by the square of its inverse, then 1 %.
+/// Least ratio of the speed of sound to the largest speed. Densities vary by the inverse square of this ratio,
+/// here by 1 %.
 const TIMES: f64 = 10.0;
 
-/// Times at which a driven solid is looked at.
+/// Number of times at which the motion of a driven solid is sampled.
 const TIMES_SEEN: usize = 1000;
 
-/// Places of a driven solid that are looked at.
+/// Number of points at which a driven solid is sampled.
 const PLACES_SEEN: usize = 32;
 
-/// Speed of sound and what it must outrun.
+/// The speed of sound and the expected speeds that it must exceed.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SoundSpeed {
     /// Speed of sound c₀, m/s.
     pub c0_mps: f64,
     /// c₀ over √(g·depth), –; absent without gravity.
     pub over_depth: Option<f64>,
-    /// Speeds that are known beforehand, the largest first.
+    /// Speeds that are known in advance, the largest first.
     pub expected: Vec<ExpectedSpeed>,
 }
 
-/// A speed known beforehand.
+/// A speed that is known in advance.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ExpectedSpeed {
-    /// Of what.
+    /// Description of the moving object.
     pub what: String,
-    /// m/s.
+    /// Speed, m/s.
     pub speed_mps: f64,
 }
 
 impl SoundSpeed {
-    /// The largest speed expected, m/s; 0 if none is known.
+    /// Returns the largest expected speed, m/s, or 0 if no speed is known.
     pub(crate) fn fastest(&self) -> f64 {
         self.expected.first().map_or(0.0, |e| e.speed_mps)
     }
 }
 
-/// How long a step may be, s.
+/// The limits of the time step, s.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct StepSizeLimits {
-    /// The longest step: the least of those below. Impacts shorten it further.
+    /// The longest step: the least of the limits below. Impacts shorten it further.
     pub dt_s: f64,
-    /// What binds it: `sound`, `gravity`, `viscosity`, `springs` or `dt_max`.
+    /// The governing limit: `sound`, `gravity`, `viscosity`, `springs` or `dt_max`.
     pub bound_by: String,
     /// By sound, CFL h/c₀.
     pub sound_s: f64,
@@ -63,9 +64,9 @@ pub struct StepSizeLimits {
     pub springs_s: Option<f64>,
     /// By the model's `dt_max`; absent without one.
     pub dt_max_s: Option<f64>,
-    /// Steps to the end at dt: there will be some more.
+    /// Number of steps to the end with `dt_s`; the run takes somewhat more steps.
     pub steps: f64,
-    /// Force passes a step.
+    /// Force passes per step.
     pub passes: usize,
 }
 

@@ -1,4 +1,4 @@
-//! Loads on a free body in the last step, by kind, against the change of its momentum.
+//! Loads on a free body in the last step, by kind, compared with the change of its momentum.
 
 use serde::{Deserialize, Serialize};
 
@@ -55,19 +55,20 @@ impl ProbeDefinition for LoadBalancePlan {
     }
 }
 
-/// Measures the loads on a free body: force (N) and torque about its centre of mass (N m) of pressure, viscosity, weight, contacts
-/// and constraints, as far as the scene has them. Then follow their sum, the change of momentum and angular momentum, and the residual
-/// of the two. All are NaN unless loads are recorded ([`Simulation::enable_load_breakdown`]).
+/// Measures the loads on a free body: force (N) and torque about its centre of mass (N m) of pressure, viscosity,
+/// weight, contacts and constraints, as far as the scene has them. The next columns are the sum of the loads, the
+/// change of momentum and angular momentum, and the difference between the two. All columns are NaN unless loads are
+/// recorded ([`Simulation::enable_load_breakdown`]).
 pub(crate) struct LoadBalanceProbe {
     solid: usize,
     kinds: Vec<&'static str>,
 }
 
 impl LoadBalanceProbe {
-    /// The probe of the free solid called `solid`.
+    /// Creates the probe of the free solid called `solid`.
     ///
     /// # Errors
-    /// `Scene` if there is no such solid or if it is not free.
+    /// `Scene` if there is no such solid or the solid is not free.
     pub(crate) fn new<const D: usize>(system: &System<D>, solid: &str) -> Result<Self> {
         let index = find_solid(system, solid)?;
         let Role::Free(body) = &system.solids()[index].spec.role else {
@@ -91,7 +92,7 @@ impl LoadBalanceProbe {
     }
 }
 
-/// The numbers of a load: forces, then torques.
+/// Returns the components of a load: force, then torque.
 fn load_components<const D: usize>(load: &Load<D>) -> Vec<f64> {
     load.force.iter().copied().chain(load.torque.axial()).collect()
 }

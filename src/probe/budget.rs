@@ -40,15 +40,17 @@ impl ProbeDefinition for EnergyBudgetPlan {
     }
 }
 
-/// Measures the energy (J; J/m in 2-D) that water and bodies have stored since the start: kinetic, potential and compression energy.
-/// Then follow each entry of the [`EnergyBudget`], and the stored energy less their sum. All are NaN unless the budget is
-/// recorded ([`Simulation::enable_energy_budget`]).
+/// Measures the energy (J; J/m in 2-D) that water and bodies have stored since the start: kinetic, potential and
+/// compression energy. The next columns are the entries of the [`EnergyBudget`]. The last column is the stored energy
+/// less the sum of these entries. All columns are NaN unless the budget is recorded
+/// ([`Simulation::enable_energy_budget`]).
 pub struct EnergyBudgetProbe {
     energy: EnergyProbe,
     start: f64,
 }
 
-/// The residual of a row of an [`EnergyBudgetProbe`] over the sum of |entries|, –; `None` while that sum is 0.
+/// Returns the residual of a row of an [`EnergyBudgetProbe`], divided by the sum of |entries|, –. Returns `None` if
+/// that sum is 0.
 pub(crate) fn relative_residual(row: &[f64]) -> Option<f64> {
     let (residual, rest) = row.split_last()?;
     let turnover: f64 = rest.get(1..)?.iter().map(|energy| energy.abs()).sum();
@@ -56,7 +58,7 @@ pub(crate) fn relative_residual(row: &[f64]) -> Option<f64> {
 }
 
 impl EnergyBudgetProbe {
-    /// The probe; stored energy counts from now.
+    /// Creates the probe. The stored energy counts from the present state of `system`.
     pub fn new<const D: usize>(system: &System<D>) -> Self {
         let energy = EnergyProbe::new(system);
         let start = energy.total(system);

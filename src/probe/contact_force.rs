@@ -1,18 +1,18 @@
-//! Contact forces: of two solids, or of all pairs that touch.
+//! Contact forces of two solids, or of all pairs of solids that touch.
 
 use serde::{Deserialize, Serialize};
 
 use super::{Probe, ProbeConfig, ProbeDefinition, ProbeScope, axes, find_solid, require_true};
 use crate::{error::Result, math::Vector, simulation::Simulation, solid::ContactForce, system::System};
 
-/// Example of a list of contacts.
+/// Example of a section with a list of contacts.
 pub(super) const LIST_EXAMPLE: &str = "contacts = true";
 
-/// Contact of two solids.
+/// Plan of a probe of the contact of two solids.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct ContactForcePlan {
-    /// Their names.
+    /// Names of the two solids.
     pub between: [String; 2],
 }
 
@@ -40,11 +40,11 @@ impl ProbeDefinition for ContactForcePlan {
     }
 }
 
-/// A list of all contacts: at each reading a row for each pair that touches.
+/// Plan of a list of all contacts. Each reading writes a row for each pair of solids that touches.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct ContactListPlan {
-    /// Stem of the file; no probe of the scene has the same.
+    /// Stem of the file; no probe of the scene has the same stem.
     pub name: String,
     /// Simulated time from one reading to the next, s.
     pub every: f64,
@@ -61,14 +61,14 @@ pub(super) fn verify_list(config: &ProbeConfig, key: &str, scene: &dyn ProbeScop
     Err(scene.error_with_help(&format!("{key}.average"), "a list of contacts takes no means", help))
 }
 
-/// Measures the contact of two solids in the last step: the sum of the normal forces (N), the force on the second with friction (N),
-/// and its point of action (m). The point is NaN while they do not touch.
+/// Measures the contact of two solids in the last step: the sum of the normal forces (N), the force on the second solid
+/// with friction (N), and its point of action (m). The point is NaN if the solids do not touch.
 pub(crate) struct ContactForceProbe {
     solids: [usize; 2],
 }
 
 impl ContactForceProbe {
-    /// The probe of the solids of these names.
+    /// Creates the probe of the solids called `first` and `second`.
     ///
     /// # Errors
     /// `Scene` if there is no such solid.
@@ -92,17 +92,17 @@ impl<const D: usize> Probe<D> for ContactForceProbe {
     }
 }
 
-/// Lists all contacts in the last step: a row for each pair that touches, with the two names and then the columns of
-/// [`ContactForceProbe`]. The force is that on the second.
+/// Lists all contacts in the last step, with a row for each pair of solids that touches. A row contains the two names
+/// and the columns of [`ContactForceProbe`]. The force acts on the second solid.
 pub(crate) struct ContactList;
 
 impl ContactList {
-    /// Names of the columns.
+    /// Returns the names of the columns.
     pub(crate) fn columns<const D: usize>() -> Vec<String> {
         ["first", "second"].map(String::from).into_iter().chain(columns::<D>()).collect()
     }
 
-    /// The names of the two solids of each pair and its numbers, in the order of the scene.
+    /// Returns the names of the two solids and the values of each pair, in the order of the scene.
     pub(crate) fn sample<const D: usize>(sim: &Simulation<D>) -> Vec<([&str; 2], Vec<f64>)> {
         let solids = sim.system().solids();
         let row = |contact: ContactForce<D>| {
@@ -113,7 +113,7 @@ impl ContactList {
     }
 }
 
-/// Columns of a contact.
+/// Returns the names of the columns of a contact.
 fn columns<const D: usize>() -> impl Iterator<Item = String> {
     let wide = if D == 2 { "_per_m" } else { "" };
     let forces = axes::<D>().iter().map(move |a| format!("f{a}_N{wide}"));
@@ -121,7 +121,7 @@ fn columns<const D: usize>() -> impl Iterator<Item = String> {
     [format!("pressing_N{wide}")].into_iter().chain(forces).chain(places)
 }
 
-/// Values of a contact with `force` (N) on one of the two.
+/// Returns the values of a contact with `force` (N) on one of the two solids.
 fn contact_values<const D: usize>(contact: &ContactForce<D>, force: &Vector<D>) -> Vec<f64> {
     [contact.normal_force].into_iter().chain(force.iter().copied()).chain(contact.at.iter().copied()).collect()
 }

@@ -11,50 +11,51 @@ use crate::{
     system::System,
 };
 
-/// The surface that an elevation gauge measures, where several lie above one another.
+/// The surface that an elevation gauge measures if several surfaces lie above one another.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum GaugeSurface {
-    /// The highest: a breaker's jet, water on a deck.
+    /// The highest surface, as of the jet of a breaking wave or of water on a deck.
     #[default]
     Highest,
-    /// The lowest: the water under the jet.
+    /// The lowest surface, as of the water under the jet.
     Lowest,
-    /// The highest, and those below it.
+    /// The highest surface and the surfaces below it.
     All,
 }
 
-/// Where elevation gauges stand: x in 2-D, x and y in 3-D, or a row of them; and which surface they measure.
+/// The places of elevation gauges and the surface that they measure. A place is x in 2-D, x and y in 3-D, or a row of
+/// places.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 #[non_exhaustive]
 pub struct GaugeConfig {
-    /// m.
+    /// Coordinate x, m.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub x: Option<f64>,
-    /// m; 3-D only.
+    /// Coordinate y, m; 3-D only.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub y: Option<f64>,
-    /// Where a row begins, m: a number in 2-D, two in 3-D.
+    /// First place of a row, m: one number in 2-D, two numbers in 3-D.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub from: Option<NumberOrArray>,
-    /// Where it ends, m.
+    /// Last place of the row, m.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub to: Option<NumberOrArray>,
-    /// How many gauges it has.
+    /// Number of gauges in the row.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub count: Option<usize>,
-    /// How far apart they are, m.
+    /// Distance between neighbouring gauges, m.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub spacing: Option<f64>,
-    /// Which surface, where there are several above one another.
+    /// The surface to measure if several surfaces lie above one another.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub surface: Option<GaugeSurface>,
 }
 
 impl GaugeConfig {
-    /// The row of gauges; `None` for a single place.
+    /// Returns the row of gauges, or `None` for a single place.
     fn row(&self) -> Option<PointRowConfig> {
         let list = |numbers: &Option<NumberOrArray>| match numbers {
             Some(NumberOrArray::One(x)) => vec![*x],
@@ -71,13 +72,13 @@ impl GaugeConfig {
     }
 }
 
-/// Height of the free surface at horizontal places.
+/// Plan of elevation gauges at horizontal places.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct ElevationPlan {
-    /// Horizontal coordinates, m: D − 1 of each.
+    /// Horizontal coordinates of each place, m: D − 1 numbers.
     pub places: Vec<Vec<f64>>,
-    /// The surface that it measures.
+    /// The surface that the gauges measure.
     pub surface: GaugeSurface,
 }
 
@@ -128,11 +129,11 @@ impl ProbeDefinition for ElevationPlan {
     }
 }
 
-/// Number of surfaces below the highest that [`GaugeSurface::All`] measures.
+/// Number of surfaces below the highest surface that [`GaugeSurface::All`] measures.
 const LOWER_SURFACES: usize = 3;
 
-/// Measures the level of the water (m) at a horizontal place, and its change η (m) since the probe was made. NaN where there is
-/// no water. Spray lighter than half a kernel does not count.
+/// Measures the level of the water (m) at a horizontal place, and its change η (m) since the creation of the probe.
+/// Both are NaN at a dry place. Spray that fills less than half the kernel's weight does not count.
 pub struct ElevationProbe<const D: usize> {
     at: Vector<D>,
     surface: GaugeSurface,
@@ -140,26 +141,26 @@ pub struct ElevationProbe<const D: usize> {
 }
 
 impl<const D: usize> ElevationProbe<D> {
-    /// The gauge of the highest surface at `at` (m; D − 1 horizontal coordinates). Its present level counts as η = 0. At a dry place
-    /// that level is NaN, and η stays NaN.
+    /// Creates the gauge of the highest surface at `at` (m; D − 1 horizontal coordinates). The present level counts as
+    /// η = 0. At a dry place this level is NaN, and η stays NaN.
     ///
     /// # Errors
-    /// `Usage` if the count of coordinates is another or one is not finite.
+    /// `Usage` if the number of coordinates is not D − 1 or a coordinate is not finite.
     pub fn new(system: &System<D>, at: &[f64]) -> Result<Self> {
         Self::with_surface(system, at, GaugeSurface::Highest)
     }
 
-    /// As [`ElevationProbe::new`], for the given surface.
+    /// Creates the gauge as [`ElevationProbe::new`] does, for the given `surface`.
     ///
     /// # Errors
-    /// As [`ElevationProbe::new`].
+    /// The same errors as [`ElevationProbe::new`].
     pub fn with_surface(system: &System<D>, at: &[f64], surface: GaugeSurface) -> Result<Self> {
         let mut gauge = Self { at: point(at, D - 1)?, surface, start: f64::NAN };
         gauge.start = gauge.surface_heights(system)[0];
         Ok(gauge)
     }
 
-    /// Heights (m) of the measured surfaces, the level first.
+    /// Returns the heights (m) of the measured surfaces. The level comes first.
     fn surface_heights(&self, system: &System<D>) -> Vec<f64> {
         let mut found = system.surface_heights(&self.at);
         let all: Vec<f64> = match self.surface {

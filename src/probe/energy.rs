@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::{EnergyReading, Probe, ProbeDefinition, ProbeScope, require_true};
 use crate::{error::Result, simulation::Simulation, solid::Solid, system::System};
 
-/// Energies of water and bodies.
+/// Plan of a probe of the energies of water and bodies.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct EnergyPlan;
 
@@ -45,12 +45,13 @@ pub struct EnergyProbe {
 }
 
 impl EnergyProbe {
-    /// The probe; potential energies count from now.
+    /// Creates the probe. Potential energies count from the present state of `system`.
     pub fn new<const D: usize>(system: &System<D>) -> Self {
         Self { initial_water_potential: water_potential(system), initial_bodies_potential: bodies_potential(system) }
     }
 
-    /// Kinetic, potential and compression energy of the water, kinetic and potential energy of the bodies.
+    /// Returns the kinetic, potential and compression energy of the water, and the kinetic and potential energy of the
+    /// bodies.
     fn parts<const D: usize>(&self, system: &System<D>) -> [f64; 5] {
         let (mass, fluid) = (system.particle_mass(), system.fluid());
         let compressed = mass * fluid.rho.iter().map(|&rho| system.compression_energy(rho)).sum::<f64>();
@@ -62,7 +63,7 @@ impl EnergyProbe {
         [system.kinetic_energy(), water, compressed, moving, bodies]
     }
 
-    /// Their sum.
+    /// Returns the sum of all energies.
     pub(super) fn total<const D: usize>(&self, system: &System<D>) -> f64 {
         self.parts(system).iter().sum()
     }
@@ -84,13 +85,13 @@ impl<const D: usize> Probe<D> for EnergyProbe {
     }
 }
 
-/// −Σ m g·r of the water (J). Along a periodic axis there is no height, and gravity does work.
+/// Returns −Σ m g·r of the water (J). A periodic axis does not contribute, because gravity does work along it.
 fn water_potential<const D: usize>(system: &System<D>) -> f64 {
     let g = system.non_periodic_gravity();
     -system.particle_mass() * system.fluid().r.iter().map(|r| g.dot(r)).sum::<f64>()
 }
 
-/// −Σ M g·R₀ of the free bodies (J).
+/// Returns −Σ M g·R₀ of the free bodies (J).
 fn bodies_potential<const D: usize>(system: &System<D>) -> f64 {
     system.solids().iter().map(|solid| solid.potential_energy(&system.gravity())).sum()
 }

@@ -2,8 +2,8 @@
 //!
 //!   q = Σ V_b v_b·n w(s_b),   w(s) = (1 − |s|/a)/a  for |s| < a = 2 dp
 //!
-//! over the water whose foot lies on the section, s its distance from it. The weights of rows dp apart sum to 1 wherever the section
-//! lies between them.
+//! The sum is over the particles whose projection lies on the section; s is their distance from it. The weights of rows
+//! dp apart, times dp, sum to 1 for every position of the section between the rows.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -16,24 +16,24 @@ use crate::{
     system::System,
 };
 
-/// A section that water flows through: a segment in 2-D, a rectangle upright to an axis in 3-D.
+/// A section that water flows through: a segment in 2-D, a rectangle perpendicular to an axis in 3-D.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[non_exhaustive]
 pub struct SectionConfig {
     /// One end or corner, m.
     pub from: Vec<f64>,
-    /// The opposite one, m.
+    /// The opposite end or corner, m.
     pub to: Vec<f64>,
 }
 
-/// Flow through a section.
+/// Plan of a probe of the flow through a section.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct FlowPlan {
     /// One end or corner, m.
     pub from: Vec<f64>,
-    /// The opposite one, m.
+    /// The opposite end or corner, m.
     pub to: Vec<f64>,
 }
 
@@ -70,7 +70,7 @@ impl ProbeDefinition for FlowPlan {
     }
 }
 
-/// Half the thickness a over which the flow is averaged, over dp.
+/// Half the thickness of the layer over which the flow is averaged, a/dp.
 const HALF_THICKNESS: f64 = 2.0;
 
 const NO_RECTANGLE: &str = "a section in 3-D is a rectangle: its corners have one coordinate in common, and only one";
@@ -84,8 +84,9 @@ pub struct FlowProbe<const D: usize> {
 }
 
 impl<const D: usize> FlowProbe<D> {
-    /// The flow through the segment between two points (m) in 2-D. It is positive to the right of the direction from `from` to `to`:
-    /// along x if that points up. In 3-D the points are opposite corners of a rectangle, and flow along its normal axis is positive.
+    /// Creates the probe of the flow through the segment between two points (m) in 2-D. Flow to the right of the
+    /// direction from `from` to `to` is positive: along x if that direction points up. In 3-D the points are opposite
+    /// corners of a rectangle, and flow along its normal axis is positive.
     ///
     /// # Errors
     /// `Usage` if there is no such section.
@@ -106,7 +107,7 @@ impl<const D: usize> FlowProbe<D> {
         Err(Error::new(ErrorKind::Usage, if D == 2 { "a section of no length" } else { NO_RECTANGLE }))
     }
 
-    /// The flow now.
+    /// Returns the present flow.
     fn flow(&self, system: &System<D>) -> f64 {
         let (fluid, half) = (system.fluid(), HALF_THICKNESS * system.model().dp);
         let mut sum = 0.0;
@@ -121,7 +122,7 @@ impl<const D: usize> FlowProbe<D> {
     }
 }
 
-/// The shortest vector equivalent to `off` (m) across periodic sides.
+/// Returns the shortest vector equivalent to `off` (m) across periodic sides.
 fn minimum_image<const D: usize>(mut off: Vector<D>, system: &System<D>) -> Vector<D> {
     for (x, side) in off.iter_mut().zip(system.periodic()) {
         if let Some([from, to]) = side {

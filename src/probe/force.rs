@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::{Probe, ProbeDefinition, ProbeScope, axes, find_solid};
 use crate::{error::Result, simulation::Simulation, system::System};
 
-/// Force and torque of the water on a solid.
+/// Plan of a probe of the force and torque of the water on a solid.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct ForcePlan {
@@ -35,14 +35,14 @@ impl ProbeDefinition for ForcePlan {
     }
 }
 
-/// Measures the force (N) of the water on a solid and the torque (N m) about its centre: pressure and viscosity, without weight and
-/// contacts. In 2-D both are per metre of width, as the columns state.
+/// Measures the force (N) of the water on a solid and the torque (N m) about its centre. Both include pressure and
+/// viscosity, without weight and contacts. In 2-D both are per metre of width, as the names of the columns state.
 pub struct ForceProbe {
     solid: usize,
 }
 
 impl ForceProbe {
-    /// The probe of the solid called `solid`: fixed, driven or free.
+    /// Creates the probe of the solid called `solid`, which is fixed, driven or free.
     ///
     /// # Errors
     /// `Scene` if there is no such solid.

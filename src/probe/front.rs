@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::{Probe, ProbeDefinition, ProbeScope, require_true};
 use crate::{error::Result, simulation::Simulation, system::System};
 
-/// The leading edge of the water along x.
+/// Plan of a probe of the leading edge of the water along x.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FrontPlan;
 

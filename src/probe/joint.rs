@@ -1,5 +1,5 @@
-//! Reaction and motion of a joint, and the power of its motor. The power of a power take-off is the mean of `power`, or the rise of
-//! `absorbed` over time.
+//! Reaction and motion of a joint, and the power of its motor. The mean power of a power take-off is the mean of
+//! `power`, or the increase of `absorbed` divided by the time.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,7 +11,7 @@ use crate::{
     system::System,
 };
 
-/// Reaction and motion of a joint.
+/// Plan of a probe of the reaction and motion of a joint.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct JointPlan {
@@ -41,9 +41,10 @@ impl ProbeDefinition for JointPlan {
     }
 }
 
-/// Measures a joint: force (N) and torque (N m) of its locks and end stops on its second solid; of a hinge or a slider its angle
-/// (deg) or position (m), the rate, the motor's force, power absorbed (W), energy absorbed (J); of a generic joint the positions
-/// (m) and turns (deg) in its free modes.
+/// Measures the force (N) and torque (N m) of the locks and end stops of a joint on its second solid. For a hinge or a
+/// slider it also measures the angle (deg) or position (m), its rate, the force of the motor, the power absorbed (W)
+/// and the energy absorbed (J). For a generic joint it also measures the positions (m) and rotations (deg) in the free
+/// modes.
 pub struct JointProbe {
     joint: usize,
     kind: JointKind,
@@ -52,7 +53,7 @@ pub struct JointProbe {
 }
 
 impl JointProbe {
-    /// The probe of the joint called `joint`.
+    /// Creates the probe of the joint called `joint`.
     ///
     /// # Errors
     /// `Scene` if there is no such joint.
@@ -64,12 +65,12 @@ impl JointProbe {
     }
 }
 
-/// Number of the columns of force and torque.
+/// Returns the number of columns of force and torque.
 const fn load_columns<const D: usize>() -> usize {
     D + D * (D - 1) / 2
 }
 
-/// The column of a mode's coordinate.
+/// Returns the name of the column with the coordinate of `mode`.
 fn coordinate_column<const D: usize>(mode: usize) -> String {
     match mode.checked_sub(D) {
         None => format!("{}_m", axes::<D>()[mode]),

@@ -9,7 +9,7 @@ use crate::{
     system::System,
 };
 
-/// Length and tension of a spring.
+/// Plan of a probe of the length and tension of a spring.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct SpringPlan {
@@ -39,7 +39,7 @@ impl ProbeDefinition for SpringPlan {
     }
 }
 
-/// Length and tension of a rope.
+/// Plan of a probe of the length and tension of a rope.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct RopePlan {
@@ -69,14 +69,15 @@ impl ProbeDefinition for RopePlan {
     }
 }
 
-/// Measures the length (m) of a spring, mooring line or rope and its tension (N; N/m in 2-D), negative where a spring pushes.
+/// Measures the length (m) of a spring, mooring line or rope and its tension (N; N/m in 2-D). The tension of a spring
+/// in compression is negative.
 pub struct LineProbe {
     line: usize,
     rope: bool,
 }
 
 impl LineProbe {
-    /// The probe of the spring called `name`.
+    /// Creates the probe of the spring called `name`.
     ///
     /// # Errors
     /// `Scene` if there is no such spring.
@@ -85,7 +86,7 @@ impl LineProbe {
         Ok(Self { line: find_by_name("spring", name, springs.map(|spring| spring.name.as_str()))?, rope: false })
     }
 
-    /// The probe of the rope called `name`.
+    /// Creates the probe of the rope called `name`.
     ///
     /// # Errors
     /// `Scene` if there is no such rope.

@@ -1,8 +1,9 @@
 //! Probes measure a simulation and never change it.
 //!
-//! Each probe has a file: its configuration, validation, plan, columns with units, and construction. The registry `probe_kinds!` below
-//! has a line for each. The rest of the program asks [`ProbeConfig`], [`ProbeKind`] and [`Probe`], and names no kind of probe.
-//! A new probe needs its file, its lines here and its row in the documentation.
+//! Each kind of probe has a file with its configuration, validation, plan, columns with units, and construction. The
+//! registry `probe_kinds!` below has a line for each kind. The rest of the program uses [`ProbeConfig`], [`ProbeKind`]
+//! and [`Probe`] and does not depend on any kind of probe. A new kind needs its file, its lines in this file and its
+//! row in the documentation.
 //!
 //! Sums over the water are interpolations with the kernel W and the volumes V_b = m/ρ_b.
 
@@ -75,19 +76,19 @@ use crate::{
 
 /// Measures a simulation.
 pub trait Probe<const D: usize>: Send {
-    /// A name for each number, ending in its unit, as in `fx_N`.
+    /// Returns the name of each column. A name ends in the unit, as in `fx_N`.
     fn columns(&self) -> Vec<String>;
 
-    /// A number for each column, now. NaN where there is nothing to measure, as in a dry place.
+    /// Returns the present value of each column. A value is NaN if the probe has nothing to measure, as at a dry place.
     fn sample(&self, sim: &Simulation<D>) -> Vec<f64>;
 
-    /// Makes the reading `now` continue the reading `before`, for an angle that passes 180° or a volume that adds up.
-    /// `dt` (s) lies between them. By default it changes nothing.
+    /// Adjusts the reading `now` to continue the reading `before`, for an angle that passes 180° or a volume that
+    /// accumulates. The readings are `dt` (s) apart. The default implementation changes nothing.
     fn continue_from(&self, before: &[f64], now: &mut [f64], dt: f64) {
         let _ = (before, now, dt);
     }
 
-    /// Number of last columns that are sums since the start. No mean over time is taken of them.
+    /// Returns the number of cumulative columns, which are the last columns. The program takes no time mean of them.
     fn cumulative_columns(&self) -> usize {
         0
     }
@@ -95,45 +96,46 @@ pub trait Probe<const D: usize>: Send {
 
 /// A kind of probe, implemented by its resolved plan.
 pub(crate) trait ProbeDefinition: Sized {
-    /// The value of its key in a `[[probe]]` section.
+    /// The value of the key of this kind in a `[[probe]]` section.
     type Config;
 
-    /// Name of its table in a report.
+    /// Name of the table of this kind in a report.
     const LABEL: &'static str;
 
     /// A valid line of a scene file, for the documentation and for error messages.
     const EXAMPLE: &'static str;
 
-    /// Checks `config` at `key` against its scene.
+    /// Checks `config` at `key` against `scene`.
     ///
     /// # Errors
     /// `Scene`, with the key.
     fn verify(config: &Self::Config, key: &str, scene: &dyn ProbeScope) -> Result<()>;
 
-    /// The plan, with defaults filled in.
+    /// Returns the plan for `config`, with defaults filled in.
     fn from_config(config: &Self::Config) -> Self;
 
-    /// Stem of the file of a probe without a name; `None` for the key with a number.
+    /// Returns the file stem of a probe without a name. If it returns `None`, the stem is the key with a number.
     fn default_name(_config: &Self::Config) -> Option<String> {
         None
     }
 
-    /// Where it measures, if that is a fixed place.
+    /// Returns the place of measurement, or `None` if the place is not fixed.
     fn location(&self) -> Option<ProbeLocation<'_>> {
         None
     }
 
-    /// The columns that the name of the probe alone means in a statistic, each with its place (m) if it has one.
+    /// Returns the columns that a statistic evaluates if it names the probe without a column. Each column has its place
+    /// (m), if any.
     fn series(&self, _dimension: usize) -> Vec<(String, Option<Vec<f64>>)> {
         Vec::new()
     }
 
-    /// The energy that its rows end with.
+    /// Returns the kind of energy in the last column of the rows, if any.
     fn energy_reading(&self) -> Option<EnergyReading> {
         None
     }
 
-    /// Enables the records of the simulation that it reads.
+    /// Enables the records of the simulation that the probe reads.
     fn enable_records<const D: usize>(&self, _sim: &mut Simulation<D>)
     where
         Dim<D>: Dimension<D>,
@@ -143,37 +145,37 @@ pub(crate) trait ProbeDefinition: Sized {
     /// Builds the probe.
     ///
     /// # Errors
-    /// `Scene` or `Usage` if what it names is not in the system.
+    /// `Scene` or `Usage` if the system lacks an object that the probe names.
     fn build<const D: usize>(&self, system: &System<D>) -> Result<Box<dyn Probe<D>>>;
 }
 
-/// A scene, as the validation of a probe sees it. Keys are as in `probe.0.flow.from`.
+/// The functions of a scene that the validation of a probe uses. A key has the form `probe.0.flow.from`.
 pub(crate) trait ProbeScope {
-    /// 2 or 3.
+    /// Returns the dimension of the scene, 2 or 3.
     fn dimension(&self) -> usize;
 
-    /// Whether the solid called `name` is free.
+    /// Returns whether the solid called `name` is free.
     fn is_free(&self, name: &str) -> bool;
 
-    /// An error about `key`, with an example of it.
+    /// Returns an error about `key`, with an example of the key.
     fn error_at(&self, key: &str, what: &str) -> Error;
 
-    /// An error about `key`, with advice.
+    /// Returns an error about `key`, with the advice `help`.
     fn error_with_help(&self, key: &str, what: &str, help: &str) -> Error;
 
     /// Requires a solid called `name`.
     ///
     /// # Errors
-    /// `Scene` if there is none.
+    /// `Scene` if the scene has no object with this name.
     fn require_solid(&self, key: &str, name: &str) -> Result<()>;
 
     /// Requires a joint, spring or rope (`kind`) called `name`.
     ///
     /// # Errors
-    /// `Scene` if there is none.
+    /// `Scene` if the scene has no object with this name.
     fn require_constraint(&self, key: &str, kind: &str, name: &str) -> Result<()>;
 
-    /// Requires that two solids can touch.
+    /// Requires that the two solids can touch.
     ///
     /// # Errors
     /// `Scene` if they never touch.
@@ -182,23 +184,23 @@ pub(crate) trait ProbeScope {
     /// Requires a vector with a finite number for each dimension.
     ///
     /// # Errors
-    /// `Scene` if it is none.
+    /// `Scene` if `x` is not such a vector.
     fn require_vector(&self, key: &str, x: &[f64]) -> Result<()>;
 
-    /// Requires a positive number, if one is given.
+    /// Requires that `x` is positive if it is present.
     ///
     /// # Errors
-    /// `Scene` if it is not positive.
+    /// `Scene` if `x` is not positive.
     fn require_positive(&self, key: &str, x: Option<f64>) -> Result<()>;
 
-    /// Requires a box with a volume.
+    /// Requires that the box has a positive volume.
     ///
     /// # Errors
-    /// `Scene` if it has none.
+    /// `Scene` if the box has no volume.
     fn require_box(&self, key: &str, corners: &BoxConfig) -> Result<()>;
 }
 
-/// Where a probe measures.
+/// The place at which a probe measures.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum ProbeLocation<'a> {
     /// At points, m.
@@ -209,7 +211,7 @@ pub(crate) enum ProbeLocation<'a> {
     Section([&'a [f64]; 2]),
 }
 
-/// The energy that the rows of a probe end with.
+/// The kind of energy in the last column of the rows of a probe.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum EnergyReading {
     /// The residual of the energy budget.
@@ -218,36 +220,36 @@ pub(crate) enum EnergyReading {
     Total,
 }
 
-/// One probe, with defaults filled in.
+/// The plan of a probe, with defaults filled in.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct ProbePlan {
-    /// Stem of the file it writes; unique within a scene.
+    /// Stem of the file that the probe writes; unique within a scene.
     pub name: String,
-    /// Its kind.
+    /// Kind of the probe.
     pub kind: ProbeKind,
     /// Simulated time from one reading to the next, s.
     pub every: f64,
-    /// Whether a reading is the mean since the one before.
+    /// Whether a reading is the time mean since the previous reading.
     pub average: bool,
 }
 
-/// Defines [`ProbeConfig`] and [`ProbeKind`] from a line for each probe: its key, its configuration, and its plan. The order is that
-/// of the keys in messages. A key without a plan writes a list, not a series.
+/// Defines [`ProbeConfig`] and [`ProbeKind`]. Each line defines a kind of probe by its key, its configuration and its
+/// plan. Messages list the keys in this order. A probe without a plan writes a list, not a series.
 macro_rules! probe_kinds {
     ($($(#[$meta:meta])* $key:ident: $config:ty $(=> $variant:ident($plan:ident))?;)*) => {
-        /// One `[[probe]]`: exactly one of the words that say what it looks at.
+        /// A `[[probe]]` section. It has exactly one of the keys that select the kind of probe.
         #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
         #[serde(deny_unknown_fields, default)]
         #[non_exhaustive]
         pub struct ProbeConfig {
-            /// Stem of the file it writes.
+            /// Stem of the file that the probe writes.
             #[serde(skip_serializing_if = "Option::is_none")]
             pub name: Option<String>,
             /// Simulated time between readings, s.
             #[serde(skip_serializing_if = "Option::is_none")]
             pub every: Option<f64>,
-            /// Whether a reading is the mean since the one before.
+            /// Whether a reading is the time mean since the previous reading.
             #[serde(skip_serializing_if = "Option::is_none")]
             pub average: Option<bool>,
             $(
@@ -271,7 +273,7 @@ macro_rules! probe_kinds {
         /// The keys of all kinds.
         const KEYS: &[&str] = &[$(stringify!($key)),*];
 
-        /// A valid line of a scene file for the kind of probe with this key.
+        /// Returns a valid line of a scene file for the kind of probe with this key, or `None` if the key is unknown.
         pub(crate) fn example(key: &str) -> Option<&'static str> {
             $($(
                 if key == stringify!($key) {
@@ -282,13 +284,13 @@ macro_rules! probe_kinds {
         }
 
         impl ProbeConfig {
-            /// The keys of the kinds that it names: one, if it is valid.
+            /// Returns the keys of all kinds that are set: exactly one key if the section is valid.
             pub(crate) fn keys(&self) -> Vec<&'static str> {
                 let given = [$((stringify!($key), self.$key.is_some())),*];
                 given.into_iter().filter(|(_, given)| *given).map(|(key, _)| key).collect()
             }
 
-            /// Its kind; `None` for a list.
+            /// Returns the kind of the probe, or `None` if it writes a list.
             fn kind(&self) -> Option<ProbeKind> {
                 $($(
                     if let Some(config) = &self.$key {
@@ -298,7 +300,7 @@ macro_rules! probe_kinds {
                 None
             }
 
-            /// Stem of its file by what it measures, if it has no name of its own.
+            /// Returns the default file stem, from the object that the probe measures, if its kind has a default stem.
             fn default_name(&self) -> Option<String> {
                 $($(
                     if let Some(config) = &self.$key {
@@ -308,7 +310,7 @@ macro_rules! probe_kinds {
                 None
             }
 
-            /// Checks the configuration of its kind.
+            /// Checks the configuration of the kind that is set.
             fn verify_kind(&self, key: &str, scene: &dyn ProbeScope) -> Result<()> {
                 $($(
                     if let Some(config) = &self.$key {
@@ -320,32 +322,32 @@ macro_rules! probe_kinds {
         }
 
         impl ProbeKind {
-            /// Its key in a scene file.
+            /// Returns the key of the kind in a scene file.
             pub fn key(&self) -> &'static str {
                 match self { $($(Self::$variant(_) => stringify!($key),)?)* }
             }
 
-            /// Name of its table in a report.
+            /// Name of the table of this kind in a report.
             pub fn label(&self) -> &'static str {
                 match self { $($(Self::$variant(_) => $plan::LABEL,)?)* }
             }
 
-            /// As [`ProbeDefinition::location`].
+            /// Returns the place of measurement: see [`ProbeDefinition::location`].
             pub(crate) fn location(&self) -> Option<ProbeLocation<'_>> {
                 match self { $($(Self::$variant(plan) => plan.location(),)?)* }
             }
 
-            /// As [`ProbeDefinition::series`].
+            /// Returns the columns for a statistic: see [`ProbeDefinition::series`].
             pub(crate) fn series(&self, dimension: usize) -> Vec<(String, Option<Vec<f64>>)> {
                 match self { $($(Self::$variant(plan) => plan.series(dimension),)?)* }
             }
 
-            /// As [`ProbeDefinition::energy_reading`].
+            /// Returns the kind of energy in the last column: see [`ProbeDefinition::energy_reading`].
             pub(crate) fn energy_reading(&self) -> Option<EnergyReading> {
                 match self { $($(Self::$variant(plan) => plan.energy_reading(),)?)* }
             }
 
-            /// As [`ProbeDefinition::enable_records`].
+            /// Enables the records that the probe reads: see [`ProbeDefinition::enable_records`].
             pub(crate) fn enable_records<const D: usize>(&self, sim: &mut Simulation<D>)
             where
                 Dim<D>: Dimension<D>,
@@ -356,7 +358,7 @@ macro_rules! probe_kinds {
             /// Builds the probe.
             ///
             /// # Errors
-            /// `Scene` or `Usage` if what it names is not in the system.
+            /// `Scene` or `Usage` if the system lacks an object that the probe names.
             pub(crate) fn build<const D: usize>(&self, system: &System<D>) -> Result<Box<dyn Probe<D>>> {
                 match self { $($(Self::$variant(plan) => plan.build(system),)?)* }
             }
@@ -365,17 +367,17 @@ macro_rules! probe_kinds {
 }
 
 probe_kinds! {
-    /// Motion of the solid of this name.
+    /// Motion of the solid with this name.
     motion: String => Motion(MotionPlan);
-    /// Force and torque on the solid of this name.
+    /// Force and torque on the solid with this name.
     force: String => Force(ForcePlan);
-    /// What the joint of this name carries, and how it moves.
+    /// Reaction and motion of the joint with this name.
     joint: String => Joint(JointPlan);
-    /// Length and tension of the spring of this name.
+    /// Length and tension of the spring with this name.
     spring: String => Spring(SpringPlan);
-    /// Length and tension of the rope of this name.
+    /// Length and tension of the rope with this name.
     rope: String => Rope(RopePlan);
-    /// Surface elevation at a place, or at a row of them.
+    /// Surface elevation at one place or at a row of places.
     elevation: GaugeConfig => Elevation(ElevationPlan);
     /// Velocity at a point or a row of points, m.
     velocity: PointsConfig => Velocity(VelocityPlan);
@@ -383,7 +385,7 @@ probe_kinds! {
     pressure: PointsConfig => Pressure(PressurePlan);
     /// Flow through a section.
     flow: SectionConfig => Flow(FlowPlan);
-    /// How far water runs up the solid of this name.
+    /// Run-up of the water on the solid with this name.
     runup: String => Runup(RunupPlan);
     /// Force and pressure on a part of a solid's face.
     patch: PatchConfig => Patch(PatchPlan);
@@ -393,55 +395,55 @@ probe_kinds! {
     /// Energies of water and bodies.
     #[schemars(extend("const" = true))]
     energy: bool => Energy(EnergyPlan);
-    /// All loads on the free solid of this name, by kind.
+    /// All loads on the free solid with this name, by kind.
     balance: String => Balance(LoadBalancePlan);
-    /// How the two solids of these names press on each other.
+    /// Contact force between the two solids with these names.
     contact: [String; 2] => Contact(ContactForcePlan);
-    /// How all that touch press on each other, as a list.
+    /// Contact forces of all pairs of solids that touch, as a list.
     #[schemars(extend("const" = true))]
     contacts: bool;
-    /// Where energy came from and went.
+    /// Energy budget since the start: sources, sinks and residual.
     #[schemars(extend("const" = true))]
     budget: bool => Budget(EnergyBudgetPlan);
 }
 
 impl ProbeConfig {
-    /// The motion of the solid of this name.
+    /// Returns a probe of the motion of the solid called `solid`.
     pub fn motion(solid: impl Into<String>) -> Self {
         Self { motion: Some(solid.into()), ..Self::default() }
     }
 
-    /// Force and torque on the solid of this name.
+    /// Force and torque on the solid with this name.
     pub fn force(solid: impl Into<String>) -> Self {
         Self { force: Some(solid.into()), ..Self::default() }
     }
 
-    /// Reaction and motion of the joint of this name.
+    /// Returns a probe of the reaction and motion of the joint called `joint`.
     pub fn joint(joint: impl Into<String>) -> Self {
         Self { joint: Some(joint.into()), ..Self::default() }
     }
 
-    /// Length and tension of the spring of this name.
+    /// Length and tension of the spring with this name.
     pub fn spring(spring: impl Into<String>) -> Self {
         Self { spring: Some(spring.into()), ..Self::default() }
     }
 
-    /// The plan of the probe in a run that ends at `until` (s); `None` for a list.
+    /// Returns the plan of the probe in a run that ends at `until` (s), or `None` if the probe writes a list.
     pub(crate) fn to_plan(&self, until: f64) -> Option<ProbePlan> {
         let (name, every) = (self.name.clone().unwrap_or_default(), self.every.unwrap_or(until));
         self.kind().map(|kind| ProbePlan { name, kind, every, average: self.average.unwrap_or_default() })
     }
 
-    /// The plan of the list of contacts; `None` for a probe that writes a series.
+    /// Returns the plan of the list of contacts, or `None` if the probe writes a series.
     pub(crate) fn to_contact_list(&self, until: f64) -> Option<ContactListPlan> {
         let (name, every) = (self.name.clone().unwrap_or_default(), self.every.unwrap_or(until));
         self.contacts.map(|_| ContactListPlan { name, every })
     }
 
-    /// Checks the section at `key`, its name apart.
+    /// Checks the section at `key`, except its name.
     ///
     /// # Errors
-    /// `Scene` if it names no kind, several, or what its scene does not have.
+    /// `Scene` if the section names no kind or several kinds, or an object that the scene does not have.
     pub(crate) fn verify(&self, key: &str, scene: &dyn ProbeScope) -> Result<()> {
         scene.require_positive(&format!("{key}.every"), self.every)?;
         let named = self.keys();
@@ -455,7 +457,8 @@ impl ProbeConfig {
         contact_force::verify_list(self, key, scene)
     }
 
-    /// Stems of the files of `probes`: the name, the default name, or the key with a number from the second on.
+    /// Returns the file stems of `probes`. A stem is the name, the default name, or the key, with a number from the
+    /// second probe of that key on.
     pub(crate) fn names(probes: &[Self]) -> Vec<String> {
         let nameless = |probe: &&Self| probe.name.is_none();
         let name = |(i, probe): (usize, &Self)| {
@@ -482,7 +485,7 @@ fn require_true(given: bool, key: &str, scene: &dyn ProbeScope) -> Result<()> {
     Err(scene.error_with_help(key, &format!("{word} = false watches nothing"), "remove it"))
 }
 
-/// Names of the axes: the last is up.
+/// Returns the names of the axes. The last axis points up.
 const fn axes<const D: usize>() -> &'static [&'static str] {
     match D {
         2 => &["x", "y"],
@@ -490,18 +493,18 @@ const fn axes<const D: usize>() -> &'static [&'static str] {
     }
 }
 
-/// The number of the solid called `name`.
+/// Returns the index of the solid called `name`.
 ///
 /// # Errors
-/// `Scene` if there is none: says the nearest name, or all of them.
+/// `Scene` if there is no such solid; the message contains the nearest name or all names.
 pub fn find_solid<const D: usize>(system: &System<D>, name: &str) -> Result<usize> {
     find_by_name("solid", name, system.solids().iter().map(|s| s.spec.name.as_str()))
 }
 
-/// A point of `D` components from as many numbers.
+/// Returns the point whose first `count` components are the numbers `at`; the other components are 0.
 ///
 /// # Errors
-/// `Usage` if their count is another or one of them is not finite.
+/// `Usage` if `at` does not have `count` numbers or a number is not finite.
 fn point<const D: usize>(at: &[f64], count: usize) -> Result<Vector<D>> {
     if at.len() != count || at.iter().any(|x| !x.is_finite()) {
         let what = format!("a probe's place needs {count} finite coordinates (m); got {at:?}");
@@ -514,9 +517,9 @@ fn point<const D: usize>(at: &[f64], count: usize) -> Result<Vector<D>> {
     Ok(x)
 }
 
-/// Mean of a quantity of the water at the point `x` (m), weighed by V_b W and normalised (Shepard):
-/// exact for a constant, second order inside the water. `None` where the water fills less than a quarter of
-/// the kernel's weight, as in air.
+/// Returns the mean of a quantity of the water at the point `x` (m), weighted by V_b W and normalised (Shepard). The
+/// mean is exact for a constant and of second order inside the water. Returns `None` if the water fills less than a
+/// quarter of the kernel's weight, as in air.
 fn interpolate<const D: usize, const C: usize>(
     system: &System<D>,
     x: &Vector<D>,

@@ -14,7 +14,7 @@ use crate::{
     system::System,
 };
 
-/// Motion of a solid.
+/// Plan of a probe of the motion of a solid.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct MotionPlan {
@@ -56,7 +56,7 @@ pub struct MotionProbe<const D: usize> {
 }
 
 impl<const D: usize> MotionProbe<D> {
-    /// The probe of the solid called `solid`; displacements count from its present position.
+    /// Creates the probe of the solid called `solid`. Displacements count from its present position.
     ///
     /// # Errors
     /// `Scene` if there is no such solid.
@@ -66,7 +66,7 @@ impl<const D: usize> MotionProbe<D> {
     }
 }
 
-/// Columns of the displacements and angles.
+/// Returns the columns of the displacements and angles.
 const fn displacements(dimension: usize) -> &'static [&'static str] {
     match dimension {
         2 => &["surge_m", "heave_m", "pitch_deg"],
@@ -74,12 +74,12 @@ const fn displacements(dimension: usize) -> &'static [&'static str] {
     }
 }
 
-/// Index of the first angle among the columns.
+/// Returns the index of the first angle among the columns.
 const fn first_angle<const D: usize>() -> usize {
     2 * D
 }
 
-/// Number of angles.
+/// Returns the number of angles.
 const fn angles<const D: usize>() -> usize {
     D * (D - 1) / 2
 }
@@ -110,12 +110,12 @@ impl<const D: usize> Probe<D> for MotionProbe<D> {
     }
 }
 
-/// The angle (deg) that differs from `now` by whole turns and lies nearest to `before`.
+/// Returns the angle (deg) nearest to `before` that differs from `now` by whole turns.
 pub(super) fn unwrapped(before: f64, now: f64) -> f64 {
     now - 360.0 * ((now - before) / 360.0).round()
 }
 
-/// Angles (rad) of a rotation: one in 2-D; roll, pitch and yaw in 3-D.
+/// Returns the angles (rad) of a rotation: one angle in 2-D; roll, pitch and yaw in 3-D.
 fn euler_angles<const D: usize>(m: &Matrix<D>) -> Vec<f64> {
     if D == 2 {
         return vec![m[(1, 0)].atan2(m[(0, 0)])];

@@ -1,7 +1,7 @@
 //! Force and pressure on a part of a solid's face: a panel of a wall, a pressure plate.
 //!
-//! A box selects the part at the start. From then on the part moves with the solid. The force is Σ m_k f_k over the boundary particles
-//! behind the part. Pressures are those of pressure probes on it, about dp apart.
+//! A box selects the part at the start. The part then moves with the solid. The force is Σ m_k f_k over the boundary
+//! particles behind the part. The pressures are values of pressure probes on the part, about dp apart.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -19,22 +19,22 @@ use crate::{
 #[serde(deny_unknown_fields)]
 #[non_exhaustive]
 pub struct PatchConfig {
-    /// The solid.
+    /// Name of the solid.
     pub solid: String,
-    /// The box in which that part lies at the start.
+    /// The box in which the part lies at the start.
     #[serde(rename = "box")]
     pub corners: BoxConfig,
 }
 
-/// Force and pressure on a part of a solid's face.
+/// Plan of a probe of the force and pressure on a part of a solid's face.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct PatchPlan {
     /// The solid's name.
     pub solid: String,
-    /// Lowest corner of the box in which that part is at the start, m.
+    /// Lowest corner of the box in which the part lies at the start, m.
     pub min: Vec<f64>,
-    /// Highest corner, m.
+    /// Highest corner of this box, m.
     pub max: Vec<f64>,
 }
 
@@ -72,11 +72,12 @@ pub struct PatchProbe<const D: usize> {
 }
 
 impl<const D: usize> PatchProbe<D> {
-    /// The part of the face of the solid called `solid` that lies between the corners `min` and `max` (m) now.
+    /// Creates the probe of the part of the face of the solid called `solid` that now lies between the corners `min`
+    /// and `max` (m).
     ///
     /// # Errors
-    /// `Usage` if the corners have another number of coordinates; `Scene` if there is no such solid, or none of its face
-    /// there.
+    /// `Usage` if the number of coordinates of the corners differs from `D`; `Scene` if there is no such solid, or if
+    /// no part of its face lies in the box.
     pub fn new(system: &System<D>, solid: &str, min: &[f64], max: &[f64]) -> Result<Self> {
         let part = Bounds { min: super::point(min, D)?, max: super::point(max, D)? };
         let number = find_solid(system, solid)?;

@@ -11,36 +11,36 @@ use serde::{
 use super::ProbeScope;
 use crate::error;
 
-/// Most points of a row.
+/// Largest number of points in a row.
 const MAX_POINTS: usize = 1000;
 
-/// Least spacing (m) of a row: the names of its columns give places to a micrometre.
+/// Least spacing (m) of a row, because the names of the columns contain places to a micrometre.
 const MIN_SPACING: f64 = 1e-6;
 
-/// A point, or a row of them.
+/// A point or a row of points.
 #[derive(Clone, Debug, PartialEq, JsonSchema)]
 #[schemars(untagged)]
 #[non_exhaustive]
 pub enum PointsConfig {
-    /// One, m.
+    /// A single point, m.
     At(Vec<f64>),
-    /// Several.
+    /// A row of points.
     Row(PointRowConfig),
 }
 
-/// Points in a row, evenly spaced: `count` of them, or as many as there are `spacing` apart.
+/// Evenly spaced points in a row: `count` points, or as many points at distance `spacing` as the row holds.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[non_exhaustive]
 pub struct PointRowConfig {
-    /// The first, m.
+    /// The first point, m.
     pub from: Vec<f64>,
-    /// The last, m; with `spacing` none lies beyond.
+    /// The last point, m. With `spacing`, no point lies beyond it.
     pub to: Vec<f64>,
-    /// How many.
+    /// Number of points.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub count: Option<usize>,
-    /// How far apart, m.
+    /// Distance between neighbouring points, m.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub spacing: Option<f64>,
 }
@@ -82,7 +82,7 @@ impl PointsConfig {
         }
     }
 
-    /// The points, m.
+    /// Returns the points, m.
     pub(super) fn places(&self) -> Vec<Vec<f64>> {
         match self {
             Self::At(at) => vec![at.clone()],
@@ -92,7 +92,7 @@ impl PointsConfig {
 }
 
 impl PointRowConfig {
-    /// Distance (m) from the first point to the last.
+    /// Returns the distance (m) from the first point to the last.
     fn length(&self) -> f64 {
         self.from.iter().zip(&self.to).map(|(a, b)| (b - a).powi(2)).sum::<f64>().sqrt()
     }
@@ -101,13 +101,13 @@ impl PointRowConfig {
     fn point_count(&self) -> usize {
         match (self.count, self.spacing) {
             (Some(count), _) => count,
-            // A length that should be a multiple may lie a few last bits below it.
+            // Round-off can make a length slightly less than the multiple of `spacing` that it should be.
             (None, Some(spacing)) => (self.length() / spacing * (1.0 + 1e-12)) as usize + 1,
             (None, None) => 1,
         }
     }
 
-    /// The points, m.
+    /// Returns the points, m.
     pub(super) fn places(&self) -> Vec<Vec<f64>> {
         let step = match (self.count, self.spacing) {
             (Some(count), _) => 1.0 / count.saturating_sub(1).max(1) as f64,
@@ -117,7 +117,8 @@ impl PointRowConfig {
         (0..self.point_count()).map(at).collect()
     }
 
-    /// Checks that the row at `key` has points of this many coordinates and a valid number of them.
+    /// Checks that each point of the row at `key` has `coordinates` coordinates, and that the number of points is
+    /// valid.
     pub(super) fn verify(&self, key: &str, scene: &dyn ProbeScope, coordinates: usize) -> error::Result<()> {
         for (word, at) in [("from", &self.from), ("to", &self.to)] {
             if at.len() != coordinates || at.iter().any(|x| !x.is_finite()) {

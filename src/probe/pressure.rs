@@ -36,16 +36,16 @@ impl ProbeDefinition for PressurePlan {
     }
 }
 
-/// Measures the pressure (Pa, above that of the air) at a fixed point; 0 while the point is dry.
+/// Measures the pressure (Pa, relative to the air) at a fixed point. The pressure is 0 while the point is dry.
 pub struct PressureProbe<const D: usize> {
     at: Vector<D>,
 }
 
 impl<const D: usize> PressureProbe<D> {
-    /// The probe at the point `at` (m; `D` coordinates).
+    /// Creates the probe at the point `at` (m; `D` coordinates).
     ///
     /// # Errors
-    /// `Usage` if the count of coordinates is another or one is not finite.
+    /// `Usage` if the number of coordinates differs from `D` or a coordinate is not finite.
     pub fn new(at: &[f64]) -> Result<Self> {
         Ok(Self { at: point(at, D)? })
     }
@@ -61,7 +61,7 @@ impl<const D: usize> Probe<D> for PressureProbe<D> {
     }
 }
 
-/// The pressure (Pa) at the point `at` (m); 0 where it is dry.
+/// Returns the pressure (Pa) at the point `at` (m), or 0 if the point is dry.
 pub(super) fn pressure<const D: usize>(system: &System<D>, at: &Vector<D>) -> f64 {
     let (fluid, gravity) = (system.fluid(), system.gravity());
     let read = |b: usize, r: &Vector<D>| {

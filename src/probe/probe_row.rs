@@ -3,16 +3,16 @@
 use super::Probe;
 use crate::{error::Result, math::format::decimals, simulation::Simulation};
 
-/// A row of probes. A column `eta_m` of the one at x = 1.5 m is `eta_at_1.5_m`.
+/// A row of probes. The column `eta_m` of the probe at x = 1.5 m is called `eta_at_1.5_m`.
 pub struct ProbeRow<const D: usize> {
     members: Vec<(Vec<f64>, Box<dyn Probe<D>>)>,
 }
 
 impl<const D: usize> ProbeRow<D> {
-    /// A probe at each of `places` (m); of a single place the probe itself.
+    /// Creates a row with a probe at each of `places` (m). For a single place it returns the probe itself.
     ///
     /// # Errors
-    /// As `make`.
+    /// The errors of `make`.
     pub(crate) fn at_places(
         places: &[Vec<f64>],
         make: impl Fn(&[f64]) -> Result<Box<dyn Probe<D>>>,
@@ -26,13 +26,13 @@ impl<const D: usize> ProbeRow<D> {
         }
     }
 
-    /// The probes of `members`, each with its place (m).
+    /// Creates a row of the probes in `members`, each with its place (m).
     pub fn new(members: Vec<(Vec<f64>, Box<dyn Probe<D>>)>) -> Self {
         Self { members }
     }
 }
 
-/// The name of the column `column` at the place `at` (m), to a micrometre.
+/// Returns the name of the column `column` at the place `at` (m), to a micrometre.
 pub(crate) fn column_at_place(column: &str, at: &[f64]) -> String {
     let rounded = at.iter().map(|x| decimals(*x, 6));
     let place = rounded.collect::<Vec<_>>().join("_");

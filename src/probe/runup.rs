@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::{Probe, ProbeDefinition, ProbeScope, find_solid};
 use crate::{error::Result, math::Vector, simulation::Simulation, system::System};
 
-/// The highest waterline on a solid.
+/// Plan of a probe of the highest waterline on a solid.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct RunupPlan {
@@ -38,17 +38,18 @@ impl ProbeDefinition for RunupPlan {
 /// Largest distance of water on a face, over dp. Rows of particles are 0.5 dp and 1.5 dp from a face.
 const ON_FACE: f64 = 1.0;
 
-/// Least share (–) of the kernel's weight that water fills, for it to be more than a drop.
+/// Least share (–) of the kernel's weight that water fills if it is more than a drop.
 const MIN_FILLED: f64 = 0.25;
 
-/// Measures the highest place (m) of the waterline on a solid, and its height above the start. NaN while the solid is dry.
+/// Measures the highest level (m) of the waterline on a solid, and its height above the initial waterline. Both are NaN
+/// while the solid is dry.
 pub struct RunupProbe<const D: usize> {
     solid: usize,
     start: f64,
 }
 
 impl<const D: usize> RunupProbe<D> {
-    /// The run-up on the solid called `solid`; the waterline now counts as 0.
+    /// Creates the probe of the run-up on the solid called `solid`. The height counts from the present waterline.
     ///
     /// # Errors
     /// `Scene` if there is no such solid.
@@ -70,7 +71,7 @@ impl<const D: usize> Probe<D> for RunupProbe<D> {
     }
 }
 
-/// The foot (m) on solid `solid` of the highest water that lies on its face.
+/// Returns the nearest point (m) on solid number `solid` to the highest water that lies on its face.
 fn highest_waterline<const D: usize>(system: &System<D>, solid: usize) -> Vector<D> {
     let (solid, dp) = (&system.solids()[solid], system.model().dp);
     let (shape, pose) = (&solid.spec.shape, &solid.kinematics.pose);
@@ -92,7 +93,7 @@ fn highest_waterline<const D: usize>(system: &System<D>, solid: usize) -> Vector
     pose.point(&(local - shape.outward_normal(&local, 0.05 * dp) * shape.signed_distance(&local)))
 }
 
-/// Whether the water at `x` (m) is no more than a drop.
+/// Returns whether the water at `x` (m) is an isolated drop.
 fn is_isolated_drop<const D: usize>(system: &System<D>, x: &Vector<D>) -> bool {
     let (mass, rho) = (system.particle_mass(), system.fluid().rho);
     let mut filled = 0.0;

@@ -35,16 +35,16 @@ impl ProbeDefinition for VelocityPlan {
     }
 }
 
-/// Measures the water's velocity (m/s) at a fixed point; NaN while the point is dry.
+/// Measures the velocity (m/s) of the water at a fixed point. The velocity is NaN while the point is dry.
 pub struct VelocityProbe<const D: usize> {
     at: Vector<D>,
 }
 
 impl<const D: usize> VelocityProbe<D> {
-    /// The probe at the point `at` (m; `D` coordinates).
+    /// Creates the probe at the point `at` (m; `D` coordinates).
     ///
     /// # Errors
-    /// `Usage` if the count of coordinates is another or one is not finite.
+    /// `Usage` if the number of coordinates differs from `D` or a coordinate is not finite.
     pub fn new(at: &[f64]) -> Result<Self> {
         Ok(Self { at: point(at, D)? })
     }

@@ -1,5 +1,5 @@
-//! The frames of a run as the page's player takes them: thinned to a budget, rounded to whole numbers, each frame as
-//! its difference from the one before.
+//! Converts the frames of a run for the player of the page: limits the total size, rounds the values to integers and
+//! stores the differences between successive frames.
 
 use std::collections::HashSet;
 
@@ -15,76 +15,78 @@ use crate::{
     output::{FramePoints, FrameSequence},
 };
 
-/// Places are told to this part of dp.
+/// The resolution of positions, as a fraction of dp.
 const PLACES: f32 = 1.0 / 48.0;
 
-/// Values are told to this part of their usual range.
+/// The resolution of field values, as a fraction of their usual range.
 const VALUES: f32 = 1.0 / 600.0;
 
-/// Most frames, and the least that are kept before particles are left out.
+/// The largest number of frames, and the smallest number of frames before the program omits particles.
 const FRAMES: [usize; 2] = [600, 60];
 
-/// Most bytes of frames that are read: some seconds.
+/// The largest total size of the frames to read, bytes; reading this size takes several seconds.
 const MOST_READ: u64 = 1 << 30;
 
-/// What the page says of a film; numbers are places in the blob.
+/// The description of an animation for the page. The position fields are positions in the binary data.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Animation {
-    /// Times of the kept frames, s.
+    /// The times of the kept frames, s.
     pub times: Vec<f64>,
-    /// Particles in each.
+    /// The number of particles in each frame.
     pub counts: Vec<usize>,
-    /// Whether each stands for itself, not as a difference from the one before.
+    /// Whether each frame contains full values instead of differences from the previous frame.
     pub alone: Vec<bool>,
-    /// Where the first begins.
+    /// The position of the first frame.
     pub offset: usize,
-    /// The places, then the fields.
+    /// The channels: the coordinates, then the fields.
     pub channels: Vec<QuantisedChannel>,
-    /// Particle spacing, m.
+    /// The particle spacing, m.
     pub dp: f32,
-    /// Distance of the shown particles over dp: more than 1 where some are left out.
+    /// The spacing of the shown particles divided by dp; values above 1 mean that the page omits particles.
     pub apart: usize,
-    /// Frames and water particles of the run.
+    /// The numbers of frames and water particles of the run.
     pub of: [usize; 2],
-    /// Boundary particles of all solids, in the frames of their solids.
+    /// The boundary particles of all solids, each in the local frame of its solid.
     pub skins: BoundaryAnimation,
-    /// The usual range of each field that can be shown.
+    /// The usual range of each field that the page can show.
     pub ranges: Vec<(&'static str, [f64; 2])>,
 }
 
-/// A number that every particle has: value = min + step × whole number.
+/// A quantity of each particle, stored as integers: value = min + step × integer.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct QuantisedChannel {
-    /// Its name.
+    /// The name of the quantity.
     pub name: &'static str,
-    /// Value of 0.
+    /// The value of the integer 0.
     pub min: f32,
-    /// From one whole number to the next.
+    /// The difference in value between successive integers.
     pub step: f32,
 }
 
-/// The boundary particles, and the way of their solids.
+/// The boundary particles and the motion of their solids.
 #[derive(Clone, Debug, Default, Serialize)]
 pub(crate) struct BoundaryAnimation {
-    /// The local coordinates of all.
+    /// The local coordinates of all boundary particles.
     pub channels: Vec<QuantisedChannel>,
-    /// Where each coordinate begins.
+    /// The position of the first value of each coordinate.
     pub offsets: Vec<usize>,
-    /// How many each solid has, one solid after the other.
+    /// The number of boundary particles of each solid, in the order of the solids.
     pub counts: Vec<usize>,
-    /// Where the poses begin: for each frame and solid 3 coordinates and 9 entries of a matrix, row by row.
+    /// The position of the first pose. A pose has 3 coordinates and 9 matrix entries, row by row, for each frame and
+    /// solid.
     pub poses: usize,
 }
 
-/// A frame with what is shown of it.
+/// A frame, reduced to the shown particles and fields.
 struct FrameSamples {
     t: f64,
     id: Vec<u32>,
-    /// As many numbers for each channel as there are particles.
+    /// The values of each channel, with one value for each particle.
     x: Vec<Vec<f32>>,
 }
 
-/// Adds the film of `run` to `blob`: about `samples` times a particle in a frame.
+/// Adds the animation of `run` to `blob`, and returns its description. The total number of particles over all frames is
+/// about `samples`.
 ///
 /// # Errors
 /// `File` if a frame cannot be read.
@@ -100,7 +102,7 @@ pub(crate) fn encode_animation(
     let first = film.water(0)?;
     let all = first.position.len().max(1);
     let frames = film.times().len();
-    // Whole multiples of dp: of a lattice a lattice is left, without gaps.
+    // The sampling distance is a whole multiple of dp, so that a sampled lattice is again a lattice without gaps.
     let left = |apart: usize| (all / apart.pow(dimension as u32)).max(1);
     let fits = |apart: &usize| left(*apart) * FRAMES[1].min(frames) <= samples;
     let apart = if dp > 0.0 { (1..64).find(fits).unwrap_or(64) } else { 1 };
@@ -108,7 +110,7 @@ pub(crate) fn encode_animation(
     let most = (samples / left(apart)).clamp(2, FRAMES[0]).min(readable.max(2)).min(frames);
     let kept: Vec<usize> = (0..most).map(|k| (k * (frames - 1)).checked_div(most - 1).unwrap_or(0)).collect();
     let distance = (apart > 1).then_some((apart as f32, dp));
-    // Into a cropped film come particles that were not there at first.
+    // In cropped frames, particles appear that are absent from the first frame.
     let cropped = set.is_some_and(|set| set.plan.frames.as_ref().is_some_and(|frames| frames.crop.is_some()));
     let chosen: HashSet<u32> =
         subsample(&first, distance).into_iter().filter_map(|i| first.id.get(i).copied()).collect();
@@ -131,8 +133,8 @@ pub(crate) fn encode_animation(
     Ok(Animation { times, counts, alone, offset, channels, dp, apart, of: [frames, all], skins, ranges })
 }
 
-/// Particles about so many dp apart: the first in each cell of that size; all of them without a distance. Cells begin a
-/// quarter of dp beside the places of a lattice.
+/// Returns the indices of particles about `distance` apart: the first particle in each cell of that size, or all
+/// particles without a distance. Cell edges lie a quarter of dp beside the lattice positions.
 fn subsample(cloud: &FramePoints, distance: Option<(f32, f32)>) -> Vec<usize> {
     let finite = |i: &usize| cloud.position[*i].iter().all(|x| x.is_finite());
     let all = (0..cloud.position.len()).filter(finite);
@@ -142,7 +144,7 @@ fn subsample(cloud: &FramePoints, distance: Option<(f32, f32)>) -> Vec<usize> {
     all.filter(|&i| cells.insert(cell(&cloud.position[i]))).collect()
 }
 
-/// The `chosen` particles in the order of their numbers.
+/// Returns the indices of the `chosen` particles, sorted by particle number.
 fn sorted_by_id(cloud: &FramePoints, chosen: impl Fn(&u32) -> bool) -> Vec<usize> {
     let finite = |i: usize| cloud.position[i].iter().all(|x| x.is_finite());
     let mut order: Vec<usize> = (0..cloud.position.len()).filter(|&i| chosen(&cloud.id[i]) && finite(i)).collect();
@@ -150,7 +152,7 @@ fn sorted_by_id(cloud: &FramePoints, chosen: impl Fn(&u32) -> bool) -> Vec<usize
     order
 }
 
-/// What is shown of a frame, in the given `order`.
+/// Returns the shown values of a frame, in the given `order` of particles.
 fn sample_frame(cloud: &FramePoints, t: f64, dimension: usize, order: &[usize]) -> FrameSamples {
     let take = |of: &dyn Fn(usize) -> f32| order.iter().map(|&i| of(i)).collect::<Vec<f32>>();
     let mut x: Vec<Vec<f32>> = (0..dimension).map(|c| take(&|i| cloud.position[i][c])).collect();
@@ -180,7 +182,7 @@ fn channels(shown: &[FrameSamples], first: &FramePoints, dimension: usize, dp: f
     names.into_iter().enumerate().map(channel).collect()
 }
 
-/// The range of the middle of `numbers`, without the share `cut` at either end.
+/// Returns the width of the range of `numbers` without the fraction `cut` at each end.
 fn trimmed_range(mut numbers: Vec<f32>, cut: f64) -> f32 {
     let [low, high] = quantiles(&mut numbers, [cut, 1.0 - cut]);
     high - low
@@ -212,7 +214,7 @@ fn encode_frames(shown: &[FrameSamples], channels: &[QuantisedChannel], blob: &m
                 }
             }
         }
-        // Particles without numbers are in another order in every frame.
+        // Particles without identification numbers have a different order in every frame.
         before = (frame.id.len() < 2 || frame.id[0] != frame.id[1]).then_some((&frame.id[..], rounded));
     }
     alone
@@ -222,8 +224,8 @@ fn quantise(channel: &QuantisedChannel, x: &[f32]) -> Vec<u16> {
     x.iter().map(|x| ((x - channel.min) / channel.step).round() as u16).collect()
 }
 
-/// The usual range of each field: of the pressure and the speed from 0, of what the pressure is more than that of
-/// still water to both sides.
+/// Returns the usual range of each field. The ranges of pressure and speed start at 0; the range of the excess pressure
+/// over hydrostatic pressure is symmetric about 0.
 fn field_ranges(
     shown: &[FrameSamples],
     channels: &[QuantisedChannel],
@@ -253,7 +255,7 @@ fn field_ranges(
     ranges
 }
 
-/// The range with two digits that count at its ends.
+/// Returns the range with both ends rounded to two significant digits.
 fn rounded_range(low: f64, high: f64) -> [f64; 2] {
     let size = low.abs().max(high.abs());
     if size <= 0.0 || !size.is_finite() {
@@ -264,7 +266,8 @@ fn rounded_range(low: f64, high: f64) -> [f64; 2] {
     [clean((low / unit).floor()), clean((high / unit).ceil())]
 }
 
-/// Boundary particles in the frames of their solids, and the poses of these in the `kept` frames.
+/// Adds the boundary particles in the local frames of their solids to `blob`, with the poses of the solids in the
+/// `kept` frames.
 fn encode_boundaries(
     film: &FrameSequence,
     kept: &[usize],
@@ -306,12 +309,12 @@ fn encode_boundaries(
     })
 }
 
-/// The boundary particles of solid `number` among those of all.
+/// Returns the indices of the boundary particles of solid `number` among all boundary particles.
 pub(crate) fn points_of_solid(all: &FramePoints, number: usize) -> Vec<usize> {
     (0..all.solid_index.len()).filter(|&k| all.solid_index[k] as usize == number).collect()
 }
 
-/// Where a solid with the boundary particles `own` is `now`.
+/// Returns the current placement of a solid, from its boundary particles `own` and their positions `now`.
 pub(crate) fn solid_placement(
     fixed: bool,
     start: &Placement,
@@ -322,7 +325,7 @@ pub(crate) fn solid_placement(
     if fixed || own.is_empty() || now.position.len() != first.position.len() {
         return *start;
     }
-    // A few hundred points tell a motion as well as all.
+    // A few hundred points determine the motion as accurately as all points.
     let some = || own.iter().step_by(own.len().div_ceil(400));
     let points = |cloud: &FramePoints| some().map(|&k| cloud.position[k]).collect::<Vec<_>>();
     start.fitted_to(&points(first), &points(now))

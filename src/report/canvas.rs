@@ -1,4 +1,4 @@
-//! The drawing of pictures: panels with particles and solids, metres along their edges, the bar of colours.
+//! Draws the parts of a picture: panels with particles and solids, axes in metres, and the colour bar.
 
 use tiny_skia::{Path, PathBuilder, Pixmap, PixmapPaint, Rect, Stroke, Transform};
 
@@ -10,26 +10,26 @@ use super::{
 };
 use crate::math::format::{decimals, with_minus_sign};
 
-/// Ink of titles.
+/// The colour of titles.
 pub(crate) const TITLE_COLOUR: [u8; 3] = [40, 46, 52];
 const QUIET: [u8; 3] = [110, 118, 126];
 const BODY: [u8; 3] = [203, 196, 186];
 const WALL: [u8; 3] = [226, 228, 230];
 const EDGE: [u8; 3] = [70, 66, 60];
 
-/// A panel's place on the picture.
+/// The position and scale of a panel in the picture.
 pub(crate) struct PanelView {
-    /// Low corner of what it shows on the sheet, m.
+    /// The low corner of the shown part of the picture plane, m.
     pub low: [f64; 2],
-    /// High corner, m.
+    /// The high corner, m.
     pub high: [f64; 2],
-    /// Pixels a metre.
+    /// The scale, pixels per metre.
     pub scale: f64,
-    /// Its upper left corner, pixels.
+    /// The upper left corner of the panel, pixels.
     pub corner: (f32, f32),
-    /// Its width and height, pixels.
+    /// The width and height of the panel, pixels.
     pub size: (f32, f32),
-    /// Size of the letters, pixels.
+    /// The text size, pixels.
     pub em: f32,
 }
 
@@ -39,7 +39,8 @@ impl PanelView {
         (self.corner.0 + across, self.corner.1 + (self.scale * (self.high[1] - x[1])) as f32)
     }
 
-    /// Draws `panel` on a sheet of its own, which cuts what sticks out, and lays it `on` the picture.
+    /// Draws `panel` on a separate image, which clips parts outside the panel, and copies the image to the picture
+    /// `on`.
     pub(crate) fn draw_panel(&self, on: &mut Pixmap, panel: &Panel, map: ColourMap, range: [f64; 2]) {
         let Some(mut own) = Pixmap::new(self.size.0.ceil() as u32, self.size.1.ceil() as u32) else { return };
         let flat = panel.geometry.dimension == 2;
@@ -59,7 +60,7 @@ impl PanelView {
         on.draw_pixmap(x, y, own.as_ref(), &PixmapPaint::default(), Transform::identity(), None);
     }
 
-    /// The line through `points`.
+    /// Returns the line through `points` as a path.
     fn path(&self, points: &[[f64; 2]], closed: bool) -> Option<Path> {
         let mut path = PathBuilder::new();
         for (i, x) in points.iter().enumerate() {
@@ -72,7 +73,7 @@ impl PanelView {
         path.finish()
     }
 
-    /// A line `thick` em thick.
+    /// Draws a line of width `thick`, in em.
     fn draw_line(&self, on: &mut Pixmap, points: &[[f64; 2]], closed: bool, inside: Option<[u8; 3]>, thick: f32) {
         let Some(path) = self.path(points, closed) else { return };
         if let Some(colour) = inside {
@@ -83,7 +84,7 @@ impl PanelView {
         on.stroke_path(&path, &solid_paint(EDGE, cover), &stroke, Transform::identity(), None);
     }
 
-    /// Metres along the lower edge, and along the left one if this is the first panel of its row.
+    /// Draws the scale in metres along the lower edge, and along the left edge of the `first` panel of a row.
     pub(crate) fn draw_ticks(&self, on: &mut Pixmap, ink: &TextRenderer, first: bool) {
         let (em, small) = (self.em, 0.8 * self.em);
         let bottom = self.corner.1 + self.size.1;
@@ -117,7 +118,7 @@ impl PanelView {
     }
 }
 
-/// A particle: a disc, a square where it is but a few pixels wide, and a `ball` with a shade where it is one.
+/// Draws a particle as a disc, as a square if it is only a few pixels wide, or as a shaded sphere if `ball` is true.
 fn draw_particle(on: &mut Pixmap, (x, y): (f32, f32), radius: f32, colour: [u8; 3], ball: bool) {
     if radius < 1.5 {
         let side = (2.0 * radius).max(0.5);
@@ -139,7 +140,7 @@ fn draw_particle(on: &mut Pixmap, (x, y): (f32, f32), radius: f32, colour: [u8; 
     }
 }
 
-/// The colours from one end of the range to the other, with marks.
+/// Draws the colour bar over the range, with ticks.
 pub(crate) fn draw_colour_bar(
     on: &mut Pixmap,
     ink: &TextRenderer,
@@ -162,14 +163,14 @@ pub(crate) fn draw_colour_bar(
     ink.write(on, field.title(), (bar.0, bar.1 + bar.3 + 2.7 * em), em, Anchor::Start, TITLE_COLOUR);
 }
 
-/// Round numbers between `low` and `high`, about `count` of them.
+/// Returns about `count` round numbers between `low` and `high`.
 fn tick_values(low: f64, high: f64, count: f64) -> Vec<f64> {
     let step = round_step(((high - low) / count).max(1e-300));
     let (first, last) = ((low / step - 1e-9).ceil() as i64, (high / step + 1e-9).floor() as i64);
     (first..=last).map(|i| i as f64 * step).collect()
 }
 
-/// A number at a tick, without the round-off of a multiple of the step.
+/// Returns the label of a tick, without round-off from the multiple of the step.
 fn tick_label(x: f64) -> String {
     with_minus_sign(&decimals(x, 9))
 }

@@ -1,4 +1,5 @@
-//! The series of a run as the page's plots take them: thinned without losing a peak, sorted into charts.
+//! Converts the series of a run for the plots of the page: thins the rows, keeps the peaks and groups the columns into
+//! charts.
 
 use serde::Serialize;
 
@@ -17,121 +18,121 @@ use crate::{
     run::RaoResult,
 };
 
-/// Rows of a table above which it is thinned.
+/// The number of rows above which a table is thinned.
 const MOST_ROWS: usize = 6000;
 
-/// What the page says of a table; numbers are places in the blob.
+/// The description of a table for the page. The position fields are positions in the binary data.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct TablePlots {
-    /// Name of the probe.
+    /// The name of the probe.
     pub name: String,
-    /// What it watches, in a word.
+    /// The measured quantity, as a short text.
     pub what: &'static str,
-    /// Kept rows, and rows of the table.
+    /// The number of kept rows and the number of rows of the table.
     pub rows: [usize; 2],
-    /// Where the times begin.
+    /// The position of the first time.
     pub t: usize,
-    /// Its columns.
+    /// The columns of the table.
     pub columns: Vec<PlotColumn>,
-    /// Which columns stand in one chart.
+    /// The charts, each with its columns.
     pub charts: Vec<Chart>,
-    /// Of a budget or a balance the kinds that are 0 throughout: they are not drawn.
+    /// The kinds of a budget or balance that are 0 at all times; the page does not draw these kinds.
     pub idle: Vec<String>,
-    /// Spectra of what swings of the columns that are shown.
+    /// The spectra of the oscillating columns that the page shows.
     pub spectra: Vec<ColumnSpectrum>,
 }
 
-/// A column.
+/// A column of a table.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct PlotColumn {
-    /// Its name as in the table.
+    /// The name of the column in the table.
     pub name: String,
-    /// Its name in words.
+    /// The label of the column for the reader.
     pub label: String,
-    /// Its unit.
+    /// The unit of the column.
     pub unit: &'static str,
-    /// Where its numbers begin.
+    /// The position of the first value.
     pub x: usize,
 }
 
 /// A chart.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Chart {
-    /// Numbers of its columns.
+    /// The numbers of the columns in the chart.
     pub columns: Vec<usize>,
-    /// Whether it may wait behind a fold.
+    /// Whether the chart is initially collapsed.
     pub folded: bool,
-    /// What stands over it, where that is not the names of its columns.
+    /// The title, if it differs from the names of the columns.
     pub title: Option<String>,
 }
 
 /// The spectrum of a column.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct ColumnSpectrum {
-    /// Number of the column.
+    /// The number of the column.
     pub column: usize,
-    /// Number of frequencies.
+    /// The number of frequencies.
     pub rows: usize,
-    /// Where the frequencies (Hz) begin.
+    /// The position of the first frequency (Hz).
     pub f: usize,
-    /// Where the densities begin.
+    /// The position of the first spectral density.
     pub s: usize,
 }
 
-/// How a motion answers irregular waves.
+/// The response amplitude operator (RAO) of a motion in irregular waves.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct RaoPlot<'a> {
-    /// Name of the statistic.
+    /// The name of the statistic.
     pub name: &'a str,
-    /// The motion, in words.
+    /// The label of the motion for the reader.
     pub label: String,
-    /// Unit of the ratio.
+    /// The unit of the ratio.
     pub unit: &'a str,
-    /// Number of frequencies.
+    /// The number of frequencies.
     pub rows: usize,
-    /// Where the frequencies (Hz) begin.
+    /// The position of the first frequency (Hz).
     pub f: usize,
-    /// Where the ratios begin.
+    /// The position of the first ratio.
     pub rao: usize,
-    /// Where the phases (degrees) begin.
+    /// The position of the first phase (degrees).
     pub phase: usize,
-    /// Where the coherences begin.
+    /// The position of the first coherence.
     pub coherence: usize,
 }
 
 /// A check and its curves.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct CheckPlot {
-    /// The series, as `probe.column`, with when it was set to zero.
+    /// The series, as `probe.column`, with the time at which its value was set to zero.
     pub series: String,
-    /// Its name in words.
+    /// The label of the series for the reader.
     pub label: String,
-    /// Its unit.
+    /// The unit of the series.
     pub unit: &'static str,
-    /// The run as it is.
+    /// The simulated curve without averaging.
     pub sim: CurveData,
-    /// The run as its instrument shows it.
+    /// The simulated curve, averaged as the instrument averages it.
     pub meaned: Option<CurveData>,
-    /// What it is held against.
+    /// The reference curve.
     pub reference: CurveData,
-    /// Whether that is a formula.
+    /// Whether the reference is a formula.
     pub exact: bool,
-    /// The figures in words.
+    /// The numbers of the verdict, as a caption.
     pub caption: String,
 }
 
-/// A curve in the blob.
+/// The positions of a curve in the binary data.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub(crate) struct CurveData {
-    /// Number of samples.
+    /// The number of samples.
     pub rows: usize,
-    /// Where the times begin.
+    /// The position of the first time.
     pub t: usize,
-    /// Where the values begin.
+    /// The position of the first value.
     pub x: usize,
 }
 
-/// Columns that belong together, by their names without units. The first sets are shown, the others wait behind a fold.
+/// Groups of columns by their names without units. The page shows the first groups and collapses the others.
 const FAMILIES: [(&[&str], bool); 16] = [
     (&["surge", "sway", "heave"], false),
     (&["roll", "pitch", "yaw"], false),
@@ -151,7 +152,7 @@ const FAMILIES: [(&[&str], bool); 16] = [
     (&["x", "y", "z"], true),
 ];
 
-/// Adds `table` to `blob`.
+/// Adds `table` to `blob`, and returns the description of the table for the page.
 pub(crate) fn encode_table(table: &ProbeTable, blob: &mut BinaryData) -> TablePlots {
     let rows = thinned_rows(table);
     let t = blob.push_floats(rows.iter().map(|&i| table.times[i] as f32));
@@ -179,7 +180,8 @@ pub(crate) fn encode_table(table: &ProbeTable, blob: &mut BinaryData) -> TablePl
     }
 }
 
-/// The spectra of the columns of `table` that are shown and have waves enough, added to `blob`.
+/// Adds the spectra of the shown columns of `table` to `blob`, and returns their descriptions. A column needs enough
+/// waves.
 fn encode_spectra(table: &ProbeTable, charts: &[Chart], blob: &mut BinaryData) -> Vec<ColumnSpectrum> {
     let shown = charts.iter().filter(|chart| !chart.folded).flat_map(|chart| chart.columns.iter().copied());
     let of = |column: usize| {
@@ -191,7 +193,7 @@ fn encode_spectra(table: &ProbeTable, charts: &[Chart], blob: &mut BinaryData) -
     shown.filter_map(of).collect()
 }
 
-/// The answers of motions over frequency, added to `blob`.
+/// Adds the response amplitude operators over frequency to `blob`, and returns their descriptions.
 pub(crate) fn encode_raos<'a>(answers: &'a [RaoResult], blob: &mut BinaryData) -> Vec<RaoPlot<'a>> {
     let of = |rows: &'a [RaoResult]| {
         let (probe, column) = rows[0].series.split_once('.').unwrap_or(("", &rows[0].series));
@@ -210,7 +212,8 @@ pub(crate) fn encode_raos<'a>(answers: &'a [RaoResult], blob: &mut BinaryData) -
     answers.chunk_by(|a, b| (&a.name, &a.series) == (&b.name, &b.series)).map(of).collect()
 }
 
-/// The rows of a table that its plots need: of each of many equal stretches the least and the largest of every column.
+/// Returns the rows of a table that the plots need: the minimum and maximum of every column in each of many equal
+/// intervals.
 fn thinned_rows(table: &ProbeTable) -> Vec<usize> {
     let all = table.times.len();
     if all <= MOST_ROWS {
@@ -233,9 +236,9 @@ fn thinned_rows(table: &ProbeTable) -> Vec<usize> {
     rows
 }
 
-/// The columns as charts: those that belong together, then every other one by itself.
+/// Returns the charts of the columns: first the groups of related columns, then a separate chart for each other column.
 fn group_columns(columns: &[String]) -> Vec<Chart> {
-    // A row of gauges is one chart, wherever they stand.
+    // All gauges of an array share one chart, wherever the gauges are.
     let names: Vec<String> =
         columns.iter().map(|name| column_label(name.split("_at_").next().unwrap_or(name))).collect();
     let mut left: Vec<usize> = (0..columns.len()).collect();
@@ -243,7 +246,7 @@ fn group_columns(columns: &[String]) -> Vec<Chart> {
     for (family, folded) in FAMILIES {
         let own: Vec<usize> = left.iter().copied().filter(|&i| family.contains(&names[i].as_str())).collect();
         left.retain(|i| !own.contains(i));
-        // What is never shown otherwise is not folded away.
+        // The chart stays open if no other chart would be open.
         let folded = folded && (!charts.is_empty() || !left.is_empty());
         if !own.is_empty() {
             charts.push(Chart { columns: own, folded, title: None });
@@ -256,8 +259,9 @@ fn group_columns(columns: &[String]) -> Vec<Chart> {
     charts
 }
 
-/// The charts of a budget or a balance, one for each direction with all kinds that are not 0 throughout, and those that are. What
-/// is left over is too small to be seen beside the others, and waits behind a fold.
+/// Returns the charts of a budget or balance, and the kinds that are 0 at all times. Each direction has one chart of
+/// its non-zero kinds. The chart of the remainder is initially collapsed, because the remainder is too small to be
+/// visible beside the other kinds.
 fn breakdown_charts(table: &ProbeTable) -> (Vec<Chart>, Vec<String>) {
     let mut charts: Vec<Chart> = Vec::new();
     let mut kinds: Vec<(String, bool)> = Vec::new();
@@ -285,7 +289,8 @@ fn breakdown_charts(table: &ProbeTable) -> (Vec<Chart>, Vec<String>) {
     (charts, kinds.into_iter().filter(|kind| kind.1).map(|kind| kind.0).collect())
 }
 
-/// Folds away the charts of columns `x` that have no numbers, as at a gauge that was dry; something stays to be seen.
+/// Collapses the charts of the columns `x` without numbers, such as those of a dry gauge; at least one chart stays
+/// open.
 fn fold_empty_charts(mut charts: Vec<Chart>, x: &[Vec<f64>]) -> Vec<Chart> {
     let empty = |chart: &Chart| chart.columns.iter().all(|&i| x[i].iter().all(|x| x.is_nan()));
     charts.iter_mut().for_each(|chart| chart.folded |= empty(chart));
@@ -295,7 +300,8 @@ fn fold_empty_charts(mut charts: Vec<Chart>, x: &[Vec<f64>]) -> Vec<Chart> {
     charts
 }
 
-/// The checks of `run` that have curves, added to `blob`; `caption` says the figures of a verdict.
+/// Adds the checks of `run` that have curves to `blob`, and returns their descriptions; `caption` formats the numbers
+/// of a verdict.
 pub(crate) fn encode_checks(
     run: &RunData,
     caption: impl Fn(&Verdict) -> String,

@@ -1,10 +1,10 @@
-//! Numbers in a page: bytes, deflated, in base 64.
+//! Encodes numbers for a page: bytes, compressed with DEFLATE and written in base 64.
 
 use std::io::Write;
 
 use flate2::{Compression, write::DeflateEncoder};
 
-/// Digits of base 64 (RFC 4648).
+/// The digits of base 64 (RFC 4648).
 const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 
 /// Numbers as bytes, little-endian.
@@ -12,14 +12,15 @@ const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz
 pub(crate) struct BinaryData(Vec<u8>);
 
 impl BinaryData {
-    /// Adds single-precision numbers; where they begin, in bytes.
+    /// Appends single-precision numbers, and returns the position of the first number in bytes.
     pub(crate) fn push_floats(&mut self, numbers: impl IntoIterator<Item = f32>) -> usize {
         let begin = self.0.len();
         self.0.extend(numbers.into_iter().flat_map(f32::to_le_bytes));
         begin
     }
 
-    /// Adds whole numbers, first all low bytes, then all high ones, which are alike and pack well; where they begin.
+    /// Appends integers: first all low bytes, then all high bytes, which are similar and compress well. Returns the
+    /// position of the first byte.
     pub(crate) fn push_byte_planes(&mut self, numbers: &[u16]) -> usize {
         let begin = self.0.len();
         self.0.extend(numbers.iter().map(|n| *n as u8));
@@ -27,21 +28,21 @@ impl BinaryData {
         begin
     }
 
-    /// Bytes so far.
+    /// Returns the number of bytes.
     pub(crate) fn len(&self) -> usize {
         self.0.len()
     }
 
-    /// All of it, deflated (without a header) and in base 64.
+    /// Returns all bytes, compressed with DEFLATE (without a header) and in base 64.
     pub(crate) fn to_base64(&self) -> String {
         let mut encoder = DeflateEncoder::new(Vec::new(), Compression::default());
-        // Memory takes every byte.
+        // A write to memory cannot fail.
         let packed = encoder.write_all(&self.0).and_then(|()| encoder.finish()).unwrap_or_default();
         base64(&packed)
     }
 }
 
-/// `bytes` in base 64, padded.
+/// Returns `bytes` in base 64 with padding.
 fn base64(bytes: &[u8]) -> String {
     let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
     for group in bytes.chunks(3) {
@@ -53,7 +54,7 @@ fn base64(bytes: &[u8]) -> String {
     text
 }
 
-/// Differences as whole numbers that are small where the differences are: 0, −1, 1, −2, 2 … become 0, 1, 2, 3, 4 ….
+/// Returns the difference as an integer that is small for small differences: 0, −1, 1, −2, 2 … become 0, 1, 2, 3, 4 ….
 pub(crate) fn zigzag(now: u16, before: u16) -> u16 {
     let d = now.wrapping_sub(before) as i16;
     ((d << 1) ^ (d >> 15)) as u16
@@ -78,7 +79,7 @@ mod tests {
         assert_eq!([zigzag(5, 5), zigzag(4, 5), zigzag(6, 5), zigzag(3, 5)], [0, 1, 2, 3]);
         for (now, before) in [(0, u16::MAX), (u16::MAX, 0), (40_000, 3), (3, 40_000)] {
             let z = zigzag(now, before);
-            // As the page undoes it.
+            // The scripts of the page use the same inverse.
             let back = before.wrapping_add((z >> 1) ^ (z & 1).wrapping_neg());
             assert_eq!(back, now);
         }

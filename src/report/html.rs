@@ -1,11 +1,11 @@
-//! Escaped text and tables in HTML, for all pages of the program.
+//! Escapes text and creates tables in HTML, for all pages of the program.
 
-/// `text` with the signs that HTML means otherwise written out.
+/// Returns `text` with the special characters of HTML escaped.
 pub(crate) fn escape(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
-/// A table; the first row is its head.
+/// Returns a table whose first row is the header.
 pub(crate) fn table(rows: &[Vec<String>]) -> String {
     let row = |cells: &Vec<String>, tag: &str| {
         let cells = cells.iter().map(|cell| {

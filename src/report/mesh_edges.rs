@@ -1,26 +1,26 @@
-//! A mesh as lines: its sharp edges, and cuts through what is smooth of it.
+//! Converts a mesh to lines: its sharp edges, and cross-sections of its smooth parts.
 
 use std::collections::BTreeMap;
 
 use super::outline::Outline;
 use crate::{geometry::Mesh, math::Vector};
 
-/// Two facets that meet at a smaller turn than this are one smooth face, rad.
+/// The dihedral angle below which two adjacent facets form one smooth face, rad.
 const SHARP: f64 = 0.5;
 
-/// Two facets that meet at a smaller turn than this are one flat face, rad.
+/// The dihedral angle below which two adjacent facets form one flat face, rad.
 const FLAT: f64 = 1e-3;
 
-/// Most edges that are drawn; a surface rough all over shows by its cuts.
+/// The largest number of drawn edges; cross-sections represent a mesh with more sharp edges.
 const MOST_EDGES: usize = 3000;
 
-/// Where its longest side is cut, –. Its other sides are cut in the middle.
+/// The positions of the cross-sections along the longest side, –. The other sides have one cross-section in the middle.
 const CUTS: [f64; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
 
-/// An edge by the numbers of its two corners, the lower first.
+/// An edge, as the numbers of its two corners in ascending order.
 type EdgeCorners = [u32; 2];
 
-/// The lines of a mesh: edges at which its faces turn sharply, and unless all faces are flat, cuts across its sides.
+/// Returns the lines of a mesh: its sharp edges, and cross-sections unless all faces are flat.
 pub(crate) fn mesh_lines(mesh: &Mesh) -> Vec<Outline> {
     let turns = dihedral_angles(mesh);
     let sharp: Vec<&EdgeCorners> = turns.iter().filter(|(_, turn)| **turn >= SHARP).map(|(edge, _)| edge).collect();
@@ -41,7 +41,7 @@ pub(crate) fn mesh_lines(mesh: &Mesh) -> Vec<Outline> {
     lines
 }
 
-/// By how much the two facets at each edge are turned against each other, rad.
+/// Returns the angle between the normals of the two facets at each edge, rad.
 fn dihedral_angles(mesh: &Mesh) -> BTreeMap<EdgeCorners, f64> {
     let mut normals: BTreeMap<EdgeCorners, Vec<Vector<3>>> = BTreeMap::new();
     for facet in mesh.facets() {
@@ -62,9 +62,10 @@ fn edge(a: u32, b: u32) -> EdgeCorners {
     [a.min(b), a.max(b)]
 }
 
-/// The closed lines in which the plane across `axis` at `at` (m) cuts a mesh.
+/// Returns the closed lines in which the plane `at` (m) across `axis` intersects a mesh.
 ///
-/// Round each facet that it cuts one edge leads up through it and one down; where one facet has it down, its neighbour has it up.
+/// On each intersected facet, one edge crosses the plane upwards and one edge crosses the plane downwards. A shared
+/// edge has opposite directions on its two facets.
 fn plane_section(mesh: &Mesh, axis: usize, at: f64) -> Vec<Outline> {
     let above = |i: u32| mesh.points()[i as usize][axis] >= at;
     let mut next: BTreeMap<EdgeCorners, EdgeCorners> = BTreeMap::new();

@@ -1,5 +1,5 @@
-//! One page for a run, or for several laid over one another: a file that stands alone and opens anywhere. Reads only
-//! what stands in the runs' folders.
+//! Writes a page for one run, or for a comparison of several runs. The page is a single file without external
+//! resources, and the module reads only the folders of the runs.
 //!
 //! ```no_run
 //! let page = pontoon::report::write("runs/raft".as_ref())?;
@@ -39,37 +39,37 @@ use crate::{
 
 use run_data::RunData;
 
-/// Most bytes of a page.
+/// The largest size of a page, bytes.
 pub const MAX_PAGE_BYTES: usize = 15_000_000;
 
-/// Name of the page in a run's folder.
+/// The file name of the page in the folder of a run.
 pub const REPORT_FILE: &str = "report.html";
 
-/// A page that was written.
+/// A written page.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Page {
-    /// Where.
+    /// The path of the page.
     pub path: PathBuf,
-    /// Its size, B.
+    /// The size of the page, B.
     pub bytes: usize,
-    /// How long it took, s.
+    /// The time to create the page, s.
     pub seconds: f64,
-    /// What could not be read and is not on it.
+    /// The parts of the run that could not be read and are absent from the page.
     pub remarks: Vec<String>,
 }
 
-/// Writes the page of the run in `folder`, however far it came, as `report.html` in it.
+/// Writes the page of the run in `folder` as `report.html` in this folder; the run may be unfinished.
 ///
 /// # Errors
-/// `Restart` if there is no run in `folder`; `File` if a frame cannot be read or the page cannot be written.
+/// `Restart` if `folder` contains no run; `File` if a frame cannot be read or the page cannot be written.
 pub fn write(folder: &Path) -> Result<Page> {
     write_page(&[folder.to_owned()], &folder.join(REPORT_FILE))
 }
 
-/// Writes a page of the runs in `folders`, laid over one another, to `out`.
+/// Writes a page that compares the runs in `folders` to `out`.
 ///
 /// # Errors
-/// `Usage` if there are fewer than two; else as [`write()`].
+/// `Usage` for fewer than two folders; otherwise the errors of [`write()`].
 pub fn compare(folders: &[PathBuf], out: &Path) -> Result<Page> {
     if folders.len() < 2 {
         return Err(Error::new(ErrorKind::Usage, "a comparison needs two runs or more")

@@ -1,4 +1,4 @@
-//! Solids as lines: what a shape looks like when it is drawn.
+//! Converts the shapes of solids to lines for drawing.
 
 use std::f64::consts::{PI, TAU};
 
@@ -10,20 +10,20 @@ use crate::{
     math::{Pose, Vector},
 };
 
-/// Corners of a circle.
+/// The number of corners of the polygon that represents a circle.
 const ROUND: usize = 48;
 
 /// A line of a drawing.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Outline {
-    /// Whether its end is joined to its start; in 2-D it then has an inside.
+    /// Whether the last point joins the first point; a closed line in 2-D encloses an area.
     pub closed: bool,
-    /// Its points, m, in the frame of the solid; in 2-D the third coordinate is zero.
+    /// The points, m, in the local frame of the solid; in 2-D the third coordinate is zero.
     pub points: Vec<[f64; 3]>,
 }
 
-/// The lines of `shape`: its outline in 2-D, its edges in 3-D. None of a shape that has no lines of its own: then its
-/// boundary particles show it.
+/// Returns the lines of `shape`: its outline in 2-D, its edges in 3-D. The list is empty for a shape without lines; its
+/// boundary particles represent such a shape.
 pub(crate) fn outlines<const D: usize>(shape: &Shape<D>) -> Vec<Outline> {
     match shape {
         Shape::Box { size } => box_lines(&(size * -0.5), &(size * 0.5)),
@@ -40,12 +40,12 @@ pub(crate) fn outlines<const D: usize>(shape: &Shape<D>) -> Vec<Outline> {
     }
 }
 
-/// A vector with a third coordinate.
+/// Returns the vector with three coordinates.
 pub(crate) fn to_3d<const D: usize>(x: &Vector<D>) -> [f64; 3] {
     std::array::from_fn(|i| if i < D { x[i] } else { 0.0 })
 }
 
-/// The lines of a part that is placed so in its solid.
+/// Returns the lines of a part after the transformation by its pose in the solid.
 fn transformed<const D: usize>(pose: &Pose<D>, mut lines: Vec<Outline>) -> Vec<Outline> {
     for x in lines.iter_mut().flat_map(|line| &mut line.points) {
         *x = to_3d(&pose.point(&Vector::from_fn(|i, _| x[i])));
@@ -57,7 +57,7 @@ fn closed(points: impl IntoIterator<Item = [f64; 3]>) -> Outline {
     Outline { closed: true, points: points.into_iter().collect() }
 }
 
-/// The edges of a box from `low` to `high`.
+/// Returns the edges of a box from `low` to `high`.
 fn box_lines<const D: usize>(low: &Vector<D>, high: &Vector<D>) -> Vec<Outline> {
     let (a, b) = (to_3d(low), to_3d(high));
     let ring = |z: f64| closed([[a[0], a[1], z], [b[0], a[1], z], [b[0], b[1], z], [a[0], b[1], z]]);
@@ -69,7 +69,7 @@ fn box_lines<const D: usize>(low: &Vector<D>, high: &Vector<D>) -> Vec<Outline> 
     [ring(a[2]), ring(b[2])].into_iter().chain(corners.map(|[x, y]| upright(x, y))).collect()
 }
 
-/// The circle around `centre` in the plane of the axes `u` and `v`.
+/// Returns the circle around `centre` in the plane of the axes `u` and `v`.
 fn circle(centre: &[f64; 3], radius: f64, u: usize, v: usize) -> Outline {
     arc(centre, radius, (u, v), 0.0, TAU, ROUND, true)
 }
@@ -98,7 +98,7 @@ fn ball_outlines(centre: &[f64; 3], radius: f64, dimension: usize) -> Vec<Outlin
     planes.iter().map(|&(u, v)| circle(centre, radius, u, v)).collect()
 }
 
-/// The outline of a straight part with round ends in the plane of its `axis` and the axis `v`.
+/// Returns the outline of a straight part with round ends, in the plane of its `axis` and the axis `v`.
 fn stadium(length: f64, radius: f64, axis: usize, v: usize) -> Outline {
     let end = |centre: &[f64; 3], from: f64| arc(centre, radius, (axis, v), from, PI, ROUND / 2, false).points;
     let [low, high] = ends(length, axis);
@@ -138,14 +138,14 @@ fn cylinder(length: f64, radius: f64, axis: usize) -> Vec<Outline> {
     lines
 }
 
-/// The cut through the walls and the bottom of a tank.
+/// Returns the cross-section of the walls and the bottom of a tank.
 fn tank(width: f64, height: f64, wall: f64) -> Outline {
     let outer = [[-wall, height], [-wall, -wall], [width + wall, -wall], [width + wall, height]];
     let inner = [[width, height], [width, 0.0], [0.0, 0.0], [0.0, height]];
     closed(outer.iter().chain(&inner).map(|x| [x[0], x[1], 0.0]))
 }
 
-/// The corners of a wall `thickness` thick on the right of the line through `points`.
+/// Returns the corners of a wall of `thickness` on the right of the line through `points`.
 fn wall<const D: usize>(points: &[Vector<D>], thickness: f64) -> Vec<Vector<D>> {
     let right = |a: &Vector<D>, b: &Vector<D>| {
         let mut n = Vector::<D>::zeros();
@@ -156,7 +156,7 @@ fn wall<const D: usize>(points: &[Vector<D>], thickness: f64) -> Vec<Vector<D>> 
     let offset = |i: usize| {
         let (before, after) = (normals[i.saturating_sub(1)], normals[i.min(normals.len() - 1)]);
         let middle = before + after;
-        // The mitre of a sharp corner would be as long as one likes.
+        // The limit on the mitre prevents arbitrarily long mitres at sharp corners.
         points[i] + middle * (2.0 * thickness / middle.norm_squared().max(1.0))
     };
     points.iter().copied().chain((0..points.len()).rev().map(offset)).collect()

@@ -1,4 +1,4 @@
-//! The page: words and tables in HTML, then the numbers of players and plots, then what moves them.
+//! Assembles the page: text and tables in HTML, the data of players and plots, and the scripts.
 
 use serde::Serialize;
 
@@ -26,17 +26,18 @@ const SCRIPT: [&str; 6] = [
     include_str!("assets/plots.js"),
 ];
 
-/// Samples (a particle in a frame) that a page has room for: five bytes each, where four were the most that was seen.
+/// The number of samples (a particle in a frame) that fit into a page. Each sample needs at most five bytes; the
+/// largest observed size is four bytes.
 const SAMPLES: f64 = (MAX_PAGE_BYTES - 2_000_000) as f64 / 5.0;
 
-/// What the scripts are told.
+/// The data for the scripts.
 #[derive(Serialize)]
 struct PageData<'a> {
     maps: FieldColourMaps,
     runs: Vec<PageRun<'a>>,
 }
 
-/// A run as the scripts take it.
+/// The data of a run for the scripts.
 #[derive(Serialize)]
 struct PageRun<'a> {
     name: &'a str,
@@ -49,7 +50,7 @@ struct PageRun<'a> {
     answers: Vec<RaoPlot<'a>>,
 }
 
-/// What stands around the water.
+/// The geometry of a scene for the scripts.
 #[derive(Serialize)]
 struct PageScene<'a> {
     dimension: usize,
@@ -83,7 +84,7 @@ impl<'a> From<&'a SceneGeometry> for PageScene<'a> {
     }
 }
 
-/// The page of `runs`.
+/// Returns the page of `runs`.
 ///
 /// # Errors
 /// `File` if a frame cannot be read.
@@ -98,7 +99,7 @@ pub(crate) fn page_html(runs: &[RunData]) -> Result<String> {
     }
 }
 
-/// The page with about so many `samples` a run.
+/// Returns the page with about `samples` samples for each run.
 fn page_with_samples(runs: &[RunData], samples: usize) -> Result<String> {
     let mut blob = BinaryData::default();
     let mut told = PageData { maps: FIELD_COLOUR_MAPS, runs: Vec::new() };
@@ -129,7 +130,8 @@ fn page_with_samples(runs: &[RunData], samples: usize) -> Result<String> {
         ("{{data}}", data),
         ("{{blob}}", blob.to_base64()),
     ];
-    // One after the other from the front: what a user wrote is never searched for the next sign.
+    // The placeholders are replaced in order from the front, so that text of the user is never searched for a
+    // placeholder.
     let (mut text, mut rest) = (String::new(), FRAME);
     for (sign, part) in parts {
         let (before, after) = rest.split_once(sign).unwrap_or((rest, ""));
@@ -149,7 +151,7 @@ fn section(id: &str, title: &str, body: &str) -> String {
     )
 }
 
-/// The place of the players.
+/// Returns the HTML of the players.
 fn player_html(told: &[PageRun]) -> String {
     let reels: Vec<(&str, &Animation)> = told.iter().filter_map(|run| Some((run.name, run.reel.as_ref()?))).collect();
     if reels.is_empty() {

@@ -1,4 +1,4 @@
-//! Single pictures of frames, without a browser: runs side by side, times below one another, at equal scales.
+//! Draws pictures of frames without a browser: runs side by side and times one below another, at equal scales.
 
 use std::path::{Path, PathBuf};
 
@@ -16,53 +16,53 @@ use crate::{
     output::{FramePoints, FrameSequence, require_parent_folder, write_atomically},
 };
 
-/// What the particles of a picture are coloured by.
+/// The field that determines the colour of the particles in a picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ColourField {
     /// The pressure, Pa.
     #[default]
     Pressure,
-    /// The pressure beyond that of still water at the place, Pa.
+    /// The excess over the hydrostatic pressure at the same position, Pa.
     ExcessPressure,
     /// The speed, m/s.
     Speed,
 }
 
-/// What a picture is to show.
+/// The content of a picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PictureOptions {
-    /// Times, s: of each the nearest frame. The last frame if there is none.
+    /// The times, s; the picture shows the nearest frame to each time. An empty list selects the last frame.
     pub times: Vec<f64>,
-    /// What colours the particles.
+    /// The field that determines the colour of the particles.
     pub field: ColourField,
-    /// Values of the two ends of the colours; by default the usual range of all that is shown.
+    /// The values at the two ends of the colour scale; the default is the usual range of all shown values.
     pub range: Option<[f64; 2]>,
-    /// Width of the picture, pixels.
+    /// The width of the picture, pixels.
     pub width: u32,
-    /// What stands over the columns, one for each run; the names of the runs' folders if there is none.
+    /// The titles of the columns, one for each run; an empty list selects the names of the run folders.
     pub column_titles: Vec<String>,
 }
 
-/// How near a point is to who looks, its place on the sheet (m), and its value.
+/// The nearness of a point to the viewer, its position in the picture plane (m), and its value.
 type DepthPoint = (f64, [f64; 2], Option<f64>);
 
-/// A line on the sheet (m), whether it is closed, and whether its solid moves.
+/// A line in the picture plane (m), whether the line is closed, and whether its solid moves.
 type DrawnLine = (Vec<[f64; 2]>, bool, bool);
 
-/// A frame of a run as it is drawn.
+/// A frame of a run, prepared for drawing.
 pub(crate) struct Panel<'a> {
-    /// Its scene.
+    /// The geometry of the scene.
     pub geometry: &'a SceneGeometry,
-    /// Its time, s.
+    /// The time of the frame, s.
     pub t: f64,
-    /// Points on the sheet (m), from the back to the front, and their values; those of bodies have none.
+    /// The points in the picture plane (m) from back to front, with their values; points of bodies have no value.
     pub points: Vec<([f64; 2], Option<f64>)>,
-    /// Lines of solids on the sheet: whether they are closed, and whether their solid moves.
+    /// The lines of the solids in the picture plane, with whether the line is closed and whether its solid moves.
     pub lines: Vec<DrawnLine>,
 }
 
 impl ColourField {
-    /// Its colours.
+    /// Returns the colour map of the field.
     pub(crate) fn colour_map(self) -> ColourMap {
         match self {
             Self::Pressure => FIELD_COLOUR_MAPS.pressure,
@@ -71,7 +71,7 @@ impl ColourField {
         }
     }
 
-    /// What stands at the bar of colours.
+    /// Returns the title of the colour bar.
     pub(crate) fn title(self) -> &'static str {
         match self {
             Self::Pressure => "pressure, Pa",
@@ -80,7 +80,7 @@ impl ColourField {
         }
     }
 
-    /// The value of particle `i` of `water`.
+    /// Returns the value of the field at particle `i` of `water`.
     fn value(self, water: &FramePoints, i: usize, set: &SceneGeometry) -> f64 {
         let pressure = || f64::from(water.pressure[i]);
         match self {
@@ -101,12 +101,12 @@ impl ColourField {
     }
 }
 
-/// Draws the runs in `folders` side by side, `shot.times` below one another, to the PNG file `out`; the size of the
-/// picture in pixels.
+/// Draws the runs in `folders` side by side and the times of `shot` one below another, to the PNG file `out`. Returns
+/// the size of the picture in pixels.
 ///
 /// # Errors
-/// `Restart` if a folder holds no run; `Usage` if it has no frames, its frames lack the field, or the picture would be
-/// too large; `File` if a frame cannot be read or `out` not be written.
+/// `Restart` if a folder contains no run; `Usage` if a run has no frames, its frames lack the field, or the picture is
+/// too large; `File` if a frame cannot be read or `out` cannot be written.
 pub fn write_picture(folders: &[PathBuf], shot: &PictureOptions, out: &Path) -> Result<(u32, u32)> {
     require_parent_folder(out)?;
     let runs = RunData::read_all(folders)?;
@@ -126,7 +126,7 @@ pub fn write_picture(folders: &[PathBuf], shot: &PictureOptions, out: &Path) -> 
     Ok((sheet.width(), sheet.height()))
 }
 
-/// The frame of `run` nearest to time `t` (s).
+/// Reads the frame of `run` nearest to time `t` (s).
 fn read_panel(run: &RunData, t: f64, field: ColourField) -> Result<Panel<'_>> {
     let refused = |what: &str| Error::new(ErrorKind::Usage, format!("{}: {what}", run.folder.display()));
     let film = run.frames.as_ref().ok_or_else(|| {
@@ -156,7 +156,8 @@ fn read_panel(run: &RunData, t: f64, field: ColourField) -> Result<Panel<'_>> {
     Ok(Panel { geometry: set, t: film.times()[number], points, lines })
 }
 
-/// The boundary particles of moving solids in frame `number` of a 3-D film: depth and place on the sheet.
+/// Returns the depth and position in the picture plane of the boundary particles of moving solids, in frame `number` of
+/// a 3-D run.
 fn solid_points(film: &FrameSequence, number: usize, set: &SceneGeometry) -> Result<Vec<DepthPoint>> {
     let cloud = film.solids(number)?;
     let moves = |k: usize| set.solids.get(cloud.solid_index[k] as usize).is_some_and(|solid| solid.role != "fixed");
@@ -165,7 +166,7 @@ fn solid_points(film: &FrameSequence, number: usize, set: &SceneGeometry) -> Res
     Ok(own.map(|(on, depth)| (depth, on, None)).collect())
 }
 
-/// The lines of all solids in frame `number`.
+/// Returns the lines of all solids in frame `number`.
 fn solid_lines(film: &FrameSequence, number: usize, set: &SceneGeometry, flat: bool) -> Result<Vec<DrawnLine>> {
     let (first, now) = (film.solids(0)?, film.solids(number)?);
     let mut lines = Vec::new();
@@ -180,7 +181,8 @@ fn solid_lines(film: &FrameSequence, number: usize, set: &SceneGeometry, flat: b
     Ok(lines)
 }
 
-/// Where a point lies on the sheet (m), and how near it is to who looks: 3-D from the front, turned and from above.
+/// Returns the position of a point in the picture plane (m) and its nearness to the viewer. A 3-D view is from the
+/// front, rotated and from above.
 fn project(x: &[f64; 3], flat: bool) -> ([f64; 2], f64) {
     if flat {
         return ([x[0], x[1]], 0.0);
@@ -190,7 +192,7 @@ fn project(x: &[f64; 3], flat: bool) -> ([f64; 2], f64) {
     ([right, sp * back + cp * x[2]], sp * x[2] - cp * back)
 }
 
-/// The usual range of the values in `rows`, round, from 0 or to both sides of it.
+/// Returns the usual range of the values in `rows`, rounded; the range starts at 0 or is symmetric about 0.
 fn range(rows: &[Vec<Panel>], field: ColourField) -> [f64; 2] {
     let all = rows.iter().flatten().flat_map(|panel| panel.points.iter().filter_map(|(_, x)| Some(x.as_ref()?.abs())));
     let mut all: Vec<f64> = all.filter(|x| x.is_finite()).collect();
@@ -204,7 +206,7 @@ fn range(rows: &[Vec<Panel>], field: ColourField) -> [f64; 2] {
     if field == ColourField::ExcessPressure { [-high, high] } else { [0.0, high] }
 }
 
-/// The part of the sheet that every panel shows: low and high corner, m.
+/// Returns the part of the picture plane that every panel shows, as its low and high corner, m.
 fn bounds(rows: &[Vec<Panel>]) -> [[f64; 2]; 2] {
     let mut around = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
     let mut dp = 0.0_f64;

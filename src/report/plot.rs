@@ -1,67 +1,67 @@
-//! Plots as SVG: lines, points, error bars and labels over linear or logarithmic axes, with a legend above.
+//! Draws plots as SVG: lines, points, error bars and labels on linear or logarithmic axes, with a legend above.
 
 use std::ops::Range;
 
 use super::html::escape;
 use crate::math::format::{decimals, with_minus_sign};
 
-/// Colours that remain distinct to colour-blind readers (Okabe & Ito), the dark ones first.
+/// Colours that remain distinct for colour-blind readers (Okabe & Ito), with the dark colours first.
 const COLOURS: [&str; 7] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#000000"];
 
-/// Colour of axes and their text.
+/// The colour of the axes and their text.
 const AXIS_COLOUR: &str = "#3c3c3c";
 
-/// Width of a plot and height of its part below the legend.
+/// The width of a plot, and the height of the part below the legend.
 const SIZE: [f64; 2] = [760.0, 420.0];
 
-/// Space beside the axes: left, right, above and below.
+/// The margins around the axes: left, right, above and below.
 const MARGINS: [f64; 4] = [82.0, 24.0, 14.0, 58.0];
 
-/// Height of a row of the legend.
+/// The height of a row of the legend.
 const LEGEND_ROW: f64 = 22.0;
 
-/// Size of the numbers at the axes and of the legend.
+/// The text size of the axis numbers and of the legend.
 const TICK_SIZE: f64 = 14.0;
 
-/// Size of the titles of the axes.
+/// The text size of the axis titles.
 const TITLE_SIZE: f64 = 15.0;
 
-/// Size of the labels of points.
+/// The text size of the point labels.
 const LABEL_SIZE: f64 = 13.0;
 
-/// Width of a letter over the size of the text, about.
+/// The approximate width of a letter divided by the text size.
 const LETTER_WIDTH: f64 = 0.56;
 
-/// How a line is drawn.
+/// The style of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LineStyle {
     /// A line with a dot at each point.
     Dotted,
-    /// Dots alone, as of a measurement.
+    /// Dots without a line, for measurements.
     Dots,
-    /// A line alone.
+    /// A line without dots.
     Plain,
 }
 
 /// A line of a plot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlotLine {
-    /// Its name in the legend; an empty one has no entry.
+    /// The name in the legend; a line with an empty name has no legend entry.
     pub name: String,
-    /// Number of its colour: lines of one number share it.
+    /// The colour number; lines with the same number share a colour.
     pub colour: usize,
-    /// How it is drawn.
+    /// The drawing style.
     pub style: LineStyle,
-    /// Its points; the line is broken where one is not finite.
+    /// The points; a point that is not finite interrupts the line.
     pub points: Vec<(f64, f64)>,
-    /// Labels of the points; may be empty.
+    /// The labels of the points; may be empty.
     pub labels: Vec<String>,
-    /// Lower and upper ends of the error bars of the points; may be empty.
+    /// The lower and upper ends of the error bars; may be empty.
     pub spans: Vec<(f64, f64)>,
 }
 
 impl PlotLine {
-    /// A line without labels and error bars.
+    /// Returns a line without labels or error bars.
     pub fn new(name: impl Into<String>, colour: usize, style: LineStyle, points: Vec<(f64, f64)>) -> Self {
         Self { name: name.into(), colour, style, points, labels: vec![], spans: vec![] }
     }
@@ -71,21 +71,23 @@ impl PlotLine {
     }
 }
 
-/// `lines` over linear axes with `titles`, as SVG.
+/// Returns a plot of `lines` on linear axes with `titles`, as SVG.
 pub fn line_plot(titles: [&str; 2], lines: &[PlotLine]) -> String {
     let (x, y) = (x_range(lines).unwrap_or(0.0..1.0), y_range(lines).unwrap_or(0.0..1.0));
     let margin = 0.05 * (y.end - y.start);
     draw(titles, lines, &[PlotAxis::Linear(x), PlotAxis::Linear(y.start - margin..y.end + margin)])
 }
 
-/// `lines` over logarithmic axes with `titles`, as SVG; points that are not above 0 are left out.
+/// Returns a plot of `lines` on logarithmic axes with `titles`, as SVG. The plot omits points with a coordinate of 0 or
+/// below.
 pub fn log_log_plot(titles: [&str; 2], lines: &[PlotLine]) -> String {
     let lines: Vec<PlotLine> = lines.iter().map(positive).collect();
     let (x, y) = (x_range(&lines).unwrap_or(0.1..1.0), y_range(&lines).unwrap_or(0.1..1.0));
     draw(titles, &lines, &[PlotAxis::Log(x.start / 1.5..x.end * 1.5), PlotAxis::Log(y.start / 1.3..y.end * 1.3)])
 }
 
-/// `line` without points that are not above 0; an error bar that reaches 0 ends at its point.
+/// Returns `line` without the points that have a coordinate of 0 or below. An error bar that reaches 0 ends at its
+/// point.
 fn positive(line: &PlotLine) -> PlotLine {
     let kept = |i: &usize| line.points[*i].0 > 0.0 && line.points[*i].1 > 0.0;
     let kept: Vec<usize> = (0..line.points.len()).filter(kept).collect();
@@ -101,18 +103,19 @@ fn positive(line: &PlotLine) -> PlotLine {
     }
 }
 
-/// The range of all points along the first axis.
+/// Returns the range of all points along the first axis.
 fn x_range(lines: &[PlotLine]) -> Option<Range<f64>> {
     range(lines.iter().flat_map(|line| &line.points).map(|p| p.0))
 }
 
-/// The range of all points and error bars along the second axis.
+/// Returns the range of all points and error bars along the second axis.
 fn y_range(lines: &[PlotLine]) -> Option<Range<f64>> {
     let points = lines.iter().flat_map(|line| &line.points).map(|p| p.1);
     range(points.chain(lines.iter().flat_map(|line| &line.spans).flat_map(|&(low, high)| [low, high])))
 }
 
-/// The least range that holds the finite ones of `values`, with some space around a single value; `None` without values.
+/// Returns the smallest range of the finite `values`, with a margin around a single value, or `None` if no value is
+/// finite.
 fn range(values: impl Iterator<Item = f64>) -> Option<Range<f64>> {
     let (low, high) = values
         .filter(|x| x.is_finite())
@@ -124,14 +127,14 @@ fn range(values: impl Iterator<Item = f64>) -> Option<Range<f64>> {
     }
 }
 
-/// An axis with round numbers at its ticks: 1, 2, 5 and their multiples by ten.
+/// An axis with round numbers at its ticks: 1, 2, 5 and their multiples by powers of ten.
 enum PlotAxis {
     Linear(Range<f64>),
     Log(Range<f64>),
 }
 
 impl PlotAxis {
-    /// Where `value` lies: 0 at the start of the axis, 1 at its end.
+    /// Returns the relative position of `value`: 0 at the start of the axis, 1 at its end.
     fn fraction(&self, value: f64) -> f64 {
         match self {
             Self::Linear(r) => (value - r.start) / (r.end - r.start),
@@ -160,22 +163,22 @@ impl PlotAxis {
     }
 }
 
-/// The least of 1, 2, 5 times a power of ten that is not below `step`.
+/// Returns the smallest product of 1, 2 or 5 and a power of ten that is at least `step`.
 pub(super) fn round_step(step: f64) -> f64 {
     let ten = 10_f64.powf(step.log10().floor());
     [1.0, 2.0, 5.0, 10.0].into_iter().map(|x| x * ten).find(|x| *x >= step * 0.999).unwrap_or(10.0 * ten)
 }
 
-/// A number at a tick.
+/// Returns the label of a tick.
 fn tick_label(value: f64) -> String {
     with_minus_sign(&match value.abs() {
         x if x != 0.0 && !(1e-4..1e6).contains(&x) => format!("{value:.0e}"),
-        // Multiples of a step carry round-off in their last digits.
+        // The last digits of multiples of a step contain round-off errors.
         _ => decimals(value, 7),
     })
 }
 
-/// A plot of `lines` over the `axes`, which hold all points.
+/// Returns a plot of `lines` on the `axes`, which contain all points.
 fn draw(titles: [&str; 2], lines: &[PlotLine], axes: &[PlotAxis; 2]) -> String {
     let (legend, legend_height) = legend(lines);
     let [left, right, above, below] = MARGINS;
@@ -188,7 +191,7 @@ fn draw(titles: [&str; 2], lines: &[PlotLine], axes: &[PlotAxis; 2]) -> String {
     svg_document([width, height], &(body + &legend))
 }
 
-/// The rectangle between the axes: coordinates of their starts and ends.
+/// The rectangle between the axes, as the coordinates of both ends of each axis.
 struct Area {
     x: Range<f64>,
     y: Range<f64>,
@@ -204,7 +207,7 @@ impl Area {
     }
 }
 
-/// Axes with their grid, numbers and titles.
+/// Returns the axes with their grid, numbers and titles.
 fn axes_svg(titles: [&str; 2], axes: &[PlotAxis; 2], area: &Area) -> String {
     let [(left, right), (bottom, top)] = [(area.x.start, area.x.end), (area.y.start, area.y.end)];
     let (mut grid, mut text) = (String::new(), String::new());
@@ -226,7 +229,7 @@ fn axes_svg(titles: [&str; 2], axes: &[PlotAxis; 2], area: &Area) -> String {
         + &text
 }
 
-/// A line with its error bars, points and labels.
+/// Returns a line with its error bars, points and labels.
 fn line_svg(line: &PlotLine, axes: &[PlotAxis; 2], area: &Area) -> String {
     let place = |p: &(f64, f64)| (area.x(&axes[0], p.0), area.y(&axes[1], p.1));
     let places: Vec<(f64, f64)> = line.points.iter().map(place).collect();
@@ -252,7 +255,7 @@ fn line_svg(line: &PlotLine, axes: &[PlotAxis; 2], area: &Area) -> String {
         let dots: String = places.iter().filter(finite).map(|(x, y)| dot([*x, *y])).collect();
         svg += &format!("<g fill=\"{}\">{dots}</g>\n", line.colour());
     }
-    // Neighbouring lines have their labels above and below.
+    // Successive lines have their labels alternately above and below.
     let shift = if line.colour.is_multiple_of(2) { -8.0 } else { 17.0 };
     for ((x, y), label) in places.iter().zip(&line.labels).filter(|(p, _)| finite(p)) {
         let fits = x + 8.0 + text_width(label, LABEL_SIZE) < area.x.end + MARGINS[1];
@@ -262,7 +265,7 @@ fn line_svg(line: &PlotLine, axes: &[PlotAxis; 2], area: &Area) -> String {
     svg
 }
 
-/// The legend and its height: an entry for each name and colour, row by row.
+/// Returns the legend and its height. The legend has an entry for each pair of name and colour, arranged in rows.
 fn legend(lines: &[PlotLine]) -> (String, f64) {
     let (mut svg, mut x, mut row) = (String::new(), MARGINS[0], 0.0);
     let mut named: Vec<&PlotLine> = Vec::new();
@@ -301,12 +304,12 @@ fn dot([x, y]: [f64; 2]) -> String {
     format!("<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"4\"/>")
 }
 
-/// The width of a text, about.
+/// Returns the approximate width of a text.
 fn text_width(words: &str, size: f64) -> f64 {
     LETTER_WIDTH * size * words.chars().count() as f64
 }
 
-/// A text at a place; `anchor` is its point there: start, middle or end.
+/// Returns a text at a position; `anchor` is the point of the text at that position: start, middle or end.
 pub(crate) fn svg_text([x, y]: [f64; 2], anchor: &str, size: f64, colour: &str, words: &str) -> String {
     format!(
         "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\" font-size=\"{size}\" fill=\"{colour}\">{}</text>\n",
@@ -314,7 +317,7 @@ pub(crate) fn svg_text([x, y]: [f64; 2], anchor: &str, size: f64, colour: &str, 
     )
 }
 
-/// A drawing of this width and height on white.
+/// Returns an SVG document of the given width and height on a white background.
 pub(crate) fn svg_document([width, height]: [f64; 2], body: &str) -> String {
     format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" \

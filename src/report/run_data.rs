@@ -1,4 +1,4 @@
-//! What stands in a run's folder, read for a page. Whatever is missing there is missing here, with a remark.
+//! Reads the folder of a run for a page. Missing or unreadable parts are omitted, with a remark.
 
 use std::{
     fs,
@@ -21,81 +21,81 @@ use crate::{
     solid::Role,
 };
 
-/// A run's folder.
+/// The contents of the folder of a run.
 pub(crate) struct RunData {
-    /// The folder.
+    /// The path of the folder.
     pub folder: PathBuf,
-    /// A short name, told apart from those of the runs beside it.
+    /// A short name that differs from the names of the other runs on the page.
     pub name: String,
-    /// Its manifest.
+    /// The manifest of the run.
     pub manifest: Manifest,
-    /// When the manifest was written last.
+    /// The time of the last change to the manifest.
     pub written: Option<SystemTime>,
-    /// The words of the scene as the user wrote them.
+    /// The text of the scene as the user wrote it.
     pub scene_text: String,
-    /// What was watched and what stands around the water; none if the kept scene cannot be built again.
+    /// The probes and the solids, or `None` if the saved scene cannot be rebuilt.
     pub geometry: Option<SceneGeometry>,
-    /// Its frames.
+    /// The frames of the run.
     pub frames: Option<FrameSequence>,
-    /// Its tables.
+    /// The tables of the run.
     pub tables: Vec<ProbeTable>,
-    /// What is said of its series.
+    /// The statistics of the series.
     pub statistics: RunStatistics,
-    /// Its checks with their curves; as many as the manifest has verdicts if the run has finished.
+    /// The checks with their curves. A finished run has as many checks as its manifest has verdicts.
     pub checks: Vec<(ReferenceCheck, Option<CheckCurves>)>,
-    /// What could not be read, and why.
+    /// The parts that could not be read, with the reasons.
     pub remarks: Vec<String>,
 }
 
-/// What stands around the water.
+/// The geometry around the water.
 pub(crate) struct SceneGeometry {
-    /// 2 or 3.
+    /// The dimension, 2 or 3.
     pub dimension: usize,
     /// Particle spacing, m.
     pub dp: f64,
-    /// Level of the still water, m.
+    /// The still-water level, m.
     pub level: f64,
-    /// Density at rest, kg/m³.
+    /// The reference density, kg/m³.
     pub rho0: f64,
-    /// Weight of a mass down the last axis, m/s²; 0 where gravity is otherwise.
+    /// The gravitational acceleration along the negative last axis, m/s²; 0 if gravity has another direction.
     pub g: f64,
     /// The solids at the start.
     pub solids: Vec<DrawnSolid>,
-    /// What is watched, judged and kept.
+    /// The probes, the checks and the output settings.
     pub plan: Plan,
 }
 
-/// A solid as it is drawn.
+/// A solid, prepared for drawing.
 pub(crate) struct DrawnSolid {
-    /// Its name.
+    /// The name of the solid.
     pub name: String,
-    /// `fixed`, `driven` or `free`.
+    /// The role: `fixed`, `driven` or `free`.
     pub role: &'static str,
-    /// Its lines, in its own frame.
+    /// The outlines of the solid, in its local frame.
     pub lines: Vec<Outline>,
-    /// Pose of that frame at the start.
+    /// The pose of the local frame at the start.
     pub start: Placement,
 }
 
 /// A table of a probe.
 pub(crate) struct ProbeTable {
-    /// Name of the probe.
+    /// The name of the probe.
     pub name: String,
-    /// What it watches, in a word.
+    /// The measured quantity, as a short text.
     pub what: &'static str,
-    /// Names of the columns after the time.
+    /// The names of the columns after the time column.
     pub columns: Vec<String>,
-    /// Times, s.
+    /// The times, s.
     pub times: Vec<f64>,
-    /// A row of numbers for each column; NaN where there was nothing to measure.
+    /// The values of each column; NaN if the probe had nothing to measure.
     pub values: Vec<Vec<f64>>,
 }
 
 impl RunData {
-    /// The run in `folder`.
+    /// Reads the run in `folder`.
     ///
     /// # Errors
-    /// `Restart` if it holds no run. All else that cannot be read is left out with a remark.
+    /// `Restart` if the folder contains no run. Other unreadable parts are omitted with a remark.
     pub(crate) fn read(folder: &Path) -> Result<Self> {
         let manifest = Manifest::read(folder)?;
         let file = run_folder::scene_file(&folder.join("scene"));
@@ -147,7 +147,7 @@ impl RunData {
         })
     }
 
-    /// The runs in `folders`, with names that differ.
+    /// Reads the runs in `folders` and gives each run a distinct name.
     ///
     /// # Errors
     /// As [`Kept::read`], for the first that is none.
@@ -163,7 +163,7 @@ impl RunData {
     }
 }
 
-/// The tables in the folder `series`: first those of the plan, in its order.
+/// Returns the names of the tables in the folder `series`. The tables of the plan come first, in the order of the plan.
 fn names(series: &Path, plan: Option<&Plan>) -> Vec<String> {
     let mut names: Vec<String> = plan.iter().flat_map(|p| &p.probes).map(|probe| probe.name.clone()).collect();
     names.retain(|name| series.join(format!("{name}.csv")).is_file());
@@ -204,14 +204,15 @@ impl SceneGeometry {
         Ok(Self { dimension: D, dp: scene.dp, level: still_water.level, rho0: model.rho0, g, solids, plan })
     }
 
-    /// Where gauges stand: the name of each, what it measures, and its place (m) with as many coordinates as it has.
+    /// Returns the gauges: the name of each gauge, its measured quantity, and its position (m) with as many coordinates
+    /// as the gauge has.
     pub(crate) fn gauges(&self) -> impl Iterator<Item = (&str, &'static str, &[f64])> {
         self.plan.probes.iter().flat_map(|probe| {
             let (what, places) = match probe.kind.location() {
                 Some(ProbeLocation::Points(places) | ProbeLocation::Columns(places)) => (probe.kind.key(), places),
                 _ => ("", &[][..]),
             };
-            // A row bears its name once.
+            // Only the first gauge of an array carries the name.
             let name = move |i: usize| if i == 0 { probe.name.as_str() } else { "" };
             places.iter().enumerate().map(move |(i, at)| (name(i), what, &at[..]))
         })
@@ -219,12 +220,13 @@ impl SceneGeometry {
 }
 
 impl ProbeTable {
-    /// Whether it is a budget or a balance: an entry for each kind, most of which a run does not have.
+    /// Returns whether the table is a budget or a balance. Such a table has an entry for each kind, and most kinds are
+    /// absent from a run.
     pub(crate) fn is_breakdown(&self) -> bool {
         matches!(self.what, "energy budget" | "loads by kind")
     }
 
-    /// Whether a column was measured and is 0 throughout.
+    /// Returns whether a column has values and all are 0.
     pub(crate) fn is_zero(&self, column: usize) -> bool {
         let mut known = self.values[column].iter().filter(|x| x.is_finite()).peekable();
         known.peek().is_some() && known.all(|x| *x == 0.0)

@@ -1,4 +1,4 @@
-//! What a page says in words and tables: it reads so without a script, and on paper.
+//! Creates the text and tables of a page, which are readable without scripts and in print.
 
 use std::{fs, time::SystemTime};
 
@@ -14,7 +14,7 @@ use crate::{
     output::{Manifest, manifest::RunStatus},
 };
 
-/// How a run stands, in a word, and the class of its badge.
+/// Returns the state of a run as text, and the CSS class of its badge.
 pub(crate) fn status_badge(manifest: &Manifest) -> (&'static str, &'static str) {
     match manifest.status {
         RunStatus::Finished if manifest.checks.iter().any(|check| check.passed == Some(false)) => {
@@ -27,13 +27,13 @@ pub(crate) fn status_badge(manifest: &Manifest) -> (&'static str, &'static str) 
     }
 }
 
-/// Date and time, UTC.
+/// Returns the date and time, UTC.
 fn date(time: SystemTime) -> String {
     let text = humantime::format_rfc3339_seconds(time).to_string();
     text.replace('T', " ").trim_end_matches('Z').chars().take(16).collect::<String>() + " UTC"
 }
 
-/// The facts under the title: each a word and a value.
+/// Returns the facts below the title, each as a label and a value.
 pub(crate) fn facts(run: &RunData) -> Vec<(&'static str, String)> {
     let m = &run.manifest;
     let mut facts = Vec::new();
@@ -56,7 +56,7 @@ pub(crate) fn facts(run: &RunData) -> Vec<(&'static str, String)> {
     facts
 }
 
-/// Version and commit.
+/// Returns the version and commit of the program.
 fn program_version(m: &Manifest) -> String {
     match &m.commit {
         Some(commit) => format!("pontoon {}, commit {commit}", m.version),
@@ -64,7 +64,7 @@ fn program_version(m: &Manifest) -> String {
     }
 }
 
-/// The head of a page of one run.
+/// Returns the header of a page of one run.
 pub(crate) fn page_head(run: &RunData) -> String {
     let (word, class) = status_badge(&run.manifest);
     let facts =
@@ -78,7 +78,7 @@ pub(crate) fn page_head(run: &RunData) -> String {
     )
 }
 
-/// Why a run did not come to its end, with the report of the particle or body.
+/// Returns the reason for the early end of a run, with the report on the particle or body.
 fn failure(m: &Manifest) -> String {
     let reached = format!("It reached t = {} s of {} s.", four_digits(m.simulated_s), m.until_s);
     let said = match m.status {
@@ -104,7 +104,7 @@ fn failure(m: &Manifest) -> String {
     format!("<div class=\"note bad\" role=\"alert\"><p>{said}</p>{fault}</div>\n")
 }
 
-/// Warnings of the run and remarks of the page.
+/// Returns the warnings of the runs and the remarks of the page.
 pub(crate) fn warnings(runs: &[RunData]) -> String {
     let all: Vec<String> = runs
         .iter()
@@ -120,7 +120,7 @@ pub(crate) fn warnings(runs: &[RunData]) -> String {
     format!("<div class=\"note odd\"><p><strong>Warnings</strong></p><ul>{items}</ul></div>\n")
 }
 
-/// The figures of a verdict in words.
+/// Returns the numbers of a verdict as a caption.
 pub(crate) fn caption(verdict: &Verdict) -> String {
     let rows = format_verdicts::verdict_rows(&[(&[], verdict)], &[]);
     let figures = rows[0].iter().zip(&rows[1]).skip(1).filter(|(_, figure)| !figure.is_empty() && *figure != "–");
@@ -128,12 +128,12 @@ pub(crate) fn caption(verdict: &Verdict) -> String {
     with_minus_sign(&said.join("; "))
 }
 
-/// A table that scrolls where the page is narrow.
+/// Returns a table that scrolls horizontally on a narrow page.
 pub(crate) fn scrolling_table(rows: &[Vec<String>]) -> String {
     format!("<div class=\"wide\" tabindex=\"0\">{}</div>\n", table(rows))
 }
 
-/// The verdicts of all runs.
+/// Returns the verdicts of all runs.
 pub(crate) fn verdicts(runs: &[RunData]) -> String {
     let names: Vec<[String; 1]> = runs.iter().map(|run| [run.name.clone()]).collect();
     let several = runs.len() > 1;
@@ -153,7 +153,7 @@ pub(crate) fn verdicts(runs: &[RunData]) -> String {
     scrolling_table(&format_verdicts::verdict_rows(&pairs, if several { &["run"] } else { &[] })) + said
 }
 
-/// What the scene asks for of its series; empty if it asks for nothing.
+/// Returns the statistics of the series that the scene requests, or an empty text without requests.
 pub fn statistics(run: &RunData) -> String {
     let mut rows =
         vec![["statistic", "series", "figure", "value", "unit", "from, s", "until, s"].map(String::from).to_vec()];
@@ -167,7 +167,7 @@ pub fn statistics(run: &RunData) -> String {
     table + &remarks.collect::<String>()
 }
 
-/// Energies and where they went; empty without a table of them.
+/// Returns the energies and the energy budget, or an empty text if the run has no such table.
 pub(crate) fn energy(run: &RunData) -> String {
     let budgets = run
         .tables
@@ -178,7 +178,7 @@ pub(crate) fn energy(run: &RunData) -> String {
         .collect()
 }
 
-/// What was run: the scene's words, every value in force, the machine.
+/// Returns the text of the scene, all parameter values of the run, and the machine.
 pub(crate) fn scene_and_values(run: &RunData) -> String {
     let m = &run.manifest;
     let machine = &m.machine;
@@ -212,7 +212,7 @@ pub(crate) fn scene_and_values(run: &RunData) -> String {
     )
 }
 
-/// Where the files are.
+/// Returns the paths of the files of the run.
 pub(crate) fn files(run: &RunData) -> String {
     let folder = run.folder.canonicalize().unwrap_or_else(|_| run.folder.clone());
     let mut rows = vec![["file", "size"].map(String::from).to_vec()];
@@ -231,7 +231,7 @@ pub(crate) fn files(run: &RunData) -> String {
     format!("<p>In <code>{}</code>:</p>\n{}", escape(&folder.display().to_string()), scrolling_table(&rows))
 }
 
-/// What of a film the page shows, and what it leaves out.
+/// Returns a note on the shown and omitted parts of an animation.
 pub(crate) fn animation_note(reel: &Animation) -> String {
     let [frames, particles] = reel.of;
     let kept = (reel.times.len(), reel.counts.first().copied().unwrap_or(0));
@@ -254,7 +254,7 @@ pub(crate) fn animation_note(reel: &Animation) -> String {
             1/600 of their usual range; frames.pvd has all of it."
 }
 
-/// What differs between the values in force of several runs: a row for each key.
+/// Returns the differences between the parameter values of several runs, with a row for each key.
 pub(crate) fn differences(runs: &[RunData]) -> String {
     let mut keys: Vec<&str> = Vec::new();
     for value in runs.iter().flat_map(|run| &run.manifest.values) {
@@ -279,14 +279,14 @@ pub(crate) fn differences(runs: &[RunData]) -> String {
     scrolling_table(&rows)
 }
 
-/// The names of the runs that have the table called `table` and, if one is named, a column of it.
+/// Returns the names of the runs that have the table `table` and, if given, the column `column`.
 fn runs_with_series<'a>(runs: &'a [RunData], table: &str, column: Option<&str>) -> Vec<&'a str> {
     let holds =
         |t: &ProbeTable| t.name == table && column.is_none_or(|column| t.columns.iter().any(|own| own == column));
     runs.iter().filter(|run| run.tables.iter().any(holds)).map(|run| run.name.as_str()).collect()
 }
 
-/// Whether several runs have no series in common.
+/// Returns whether there are several runs and they have no common series.
 pub(crate) fn no_common_series(runs: &[RunData]) -> bool {
     let common = |t: &ProbeTable| {
         t.columns.iter().any(|column| runs_with_series(runs, &t.name, Some(column)).len() == runs.len())
@@ -294,7 +294,8 @@ pub(crate) fn no_common_series(runs: &[RunData]) -> bool {
     runs.len() > 1 && !runs[0].tables.iter().any(common)
 }
 
-/// Which series not all of several runs have, and who has them; empty if all have all.
+/// Returns the series that some runs lack, with the runs that have each series, or an empty text if all runs have all
+/// series.
 pub(crate) fn missing_series(runs: &[RunData]) -> String {
     let mut groups: Vec<(Vec<&str>, Vec<String>)> = Vec::new();
     for table in runs.iter().flat_map(|run| &run.tables) {
@@ -319,7 +320,7 @@ pub(crate) fn missing_series(runs: &[RunData]) -> String {
     }
 }
 
-/// The facts of several runs side by side.
+/// Returns the facts of several runs side by side.
 pub(crate) fn facts_table(runs: &[RunData]) -> String {
     let all: Vec<Vec<(&str, String)>> = runs
         .iter()

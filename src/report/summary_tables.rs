@@ -1,4 +1,4 @@
-//! Figures of series in tables: extremes, means, waves; the budget of energies.
+//! Creates tables of statistics of series (extremes, means, waves) and of the energy budget.
 
 use super::run_data::ProbeTable;
 use crate::{
@@ -10,14 +10,14 @@ use crate::{
     probe::relative_residual,
 };
 
-/// The numbers of the column `x` over `t` (s) as a series; none if there are less than two.
+/// Returns the column `x` over `t` (s) as a series, or `None` if the column has fewer than two numbers.
 pub(super) fn column_series(t: &[f64], x: &[f64]) -> Option<TimeSeries> {
     let (t, x): (Vec<f64>, Vec<f64>) = t.iter().zip(x).filter(|(_, x)| x.is_finite()).unzip();
     TimeSeries::new(t, x).ok()
 }
 
-/// The figures of all columns of `tables`, a row for each, but for entries of a budget or a balance that are 0 throughout; the first
-/// row is the head.
+/// Returns the statistics of all columns of `tables`, with a header row and a row for each column. The table omits the
+/// entries of a budget or balance that are 0 at all times.
 pub(crate) fn summary_rows(tables: &[ProbeTable]) -> Vec<Vec<String>> {
     let head = ["series", "unit", "least", "at, s", "largest", "at, s", "mean", "std", "last", "waves", "period, s"];
     let mut rows =
@@ -52,8 +52,8 @@ pub(crate) fn summary_rows(tables: &[ProbeTable]) -> Vec<Vec<String>> {
     rows
 }
 
-/// The budget of an energy table: what each part was at the start and the end, and its extremes; and what it comes to
-/// in words. None of any other table.
+/// Returns the summary of an energy table: each energy at the start and the end with its extremes, and a sentence on
+/// the result. Returns `None` for any other table.
 pub(crate) fn energy_summary(table: &ProbeTable) -> Option<(Vec<Vec<String>>, String)> {
     if table.what != "energy" {
         return None;
@@ -83,8 +83,8 @@ pub(crate) fn energy_summary(table: &ProbeTable) -> Option<(Vec<Vec<String>>, St
     Some((rows, said))
 }
 
-/// What a budget table comes to at the end: each entry, and its share of all that was turned over; and how well it closes, in
-/// words. None of any other table.
+/// Returns the summary of a budget table at the end: each entry with its share of the total turnover, and a sentence on
+/// the closure error. Returns `None` for any other table.
 pub(crate) fn budget_summary(table: &ProbeTable) -> Option<(Vec<Vec<String>>, String)> {
     if table.what != "energy budget" {
         return None;

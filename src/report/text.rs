@@ -1,47 +1,47 @@
-//! Words in pictures: glyphs of an embedded font, filled like any other outline.
+//! Draws text in pictures. The glyph outlines come from an embedded font and are filled like any other path.
 
 use tiny_skia::{Color, FillRule, Paint, Path, PathBuilder, Pixmap, Transform};
 use ttf_parser::{Face, OutlineBuilder};
 
 use crate::error::{Error, ErrorKind, Result};
 
-/// A part of Inter Regular (Latin, Greek, signs), under the SIL Open Font License: `assets/LICENSE-inter.txt`.
+/// A subset of Inter Regular (Latin, Greek, symbols), under the SIL Open Font License: `assets/LICENSE-inter.txt`.
 const FONT: &[u8] = include_bytes!("assets/inter.otf");
 
-/// A pen.
+/// Draws text with the embedded font.
 pub(crate) struct TextRenderer {
     face: Face<'static>,
 }
 
-/// Where a text stands by its place.
+/// The alignment of a text relative to its position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Anchor {
-    /// It begins there.
+    /// The text begins at the position.
     Start,
-    /// Its middle is there.
+    /// The middle of the text is at the position.
     Middle,
-    /// It ends there.
+    /// The text ends at the position.
     End,
 }
 
 impl TextRenderer {
-    /// The pen of the embedded font.
+    /// Loads the embedded font.
     ///
     /// # Errors
-    /// `File` if the font is damaged, which a test rules out.
+    /// `File` if the font is damaged; a test excludes this error.
     pub(crate) fn new() -> Result<Self> {
         let face =
             Face::parse(FONT, 0).map_err(|why| Error::new(ErrorKind::File, format!("the embedded font: {why}")))?;
         Ok(Self { face })
     }
 
-    /// Width of `text` of `size`, both in pixels.
+    /// Returns the width of `text` at font size `size`, both in pixels.
     pub(crate) fn width(&self, text: &str, size: f32) -> f32 {
         let advance = |c: char| self.face.glyph_index(c).and_then(|g| self.face.glyph_hor_advance(g)).unwrap_or(0);
         text.chars().map(|c| f32::from(advance(c))).sum::<f32>() * self.scale(size)
     }
 
-    /// Writes `text` of `size` with its baseline at (`x`, `y`), in pixels.
+    /// Draws `text` at font size `size` with its baseline at (`x`, `y`), in pixels.
     pub(crate) fn write(
         &self,
         on: &mut Pixmap,
@@ -72,19 +72,19 @@ impl TextRenderer {
     }
 }
 
-/// Fills `path` with `colour` of `cover` (0 … 255).
+/// Fills `path` with `colour` at opacity `cover` (0 … 255).
 pub(crate) fn fill_path(on: &mut Pixmap, path: &Path, colour: [u8; 3], cover: u8) {
     on.fill_path(path, &solid_paint(colour, cover), FillRule::Winding, Transform::identity(), None);
 }
 
-/// A paint of `colour` and `cover` (0 … 255).
+/// Returns a paint of `colour` at opacity `cover` (0 … 255).
 pub(crate) fn solid_paint(colour: [u8; 3], cover: u8) -> Paint<'static> {
     let mut paint = Paint { anti_alias: true, ..Paint::default() };
     paint.set_color(Color::from_rgba8(colour[0], colour[1], colour[2], cover));
     paint
 }
 
-/// Glyphs on their way to a path.
+/// Converts glyph outlines to a path.
 struct GlyphOutline {
     path: PathBuilder,
     x: f32,

@@ -1,4 +1,5 @@
-//! What a scene would run, without running it: the pre-flight's facts and findings, a short timing, every value in force.
+//! Inspection of a scene without a run: the facts and findings of the pre-flight, a short timing and every value in
+//! force.
 
 use std::{path::Path, time::Instant};
 
@@ -18,68 +19,68 @@ use crate::{
     solid::Dim,
 };
 
-/// How long a timing lasts at most, s: no step is begun after it.
+/// Longest duration of a timing, s; no step begins after it.
 const LASTS: f64 = 1.0;
 
-/// What an inspection is asked for beside its scene.
+/// The options of an inspection in addition to its scene.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct InspectOptions {
-    /// Keys of the scene and the values that replace the scene's own.
+    /// Scene keys and the values that replace the values of the scene.
     pub overrides: Vec<(String, String)>,
-    /// Threads; by default one for each processor.
+    /// Number of threads; the default is one for each processor.
     pub threads: Option<usize>,
-    /// Whether to step for up to a second, to tell how long a run will take on this machine.
+    /// Whether to step for up to a second, in order to estimate the duration of a run on this machine.
     pub timing: bool,
 }
 
-/// What a scene would run.
+/// The results of an inspection.
 #[derive(Clone, Debug, Serialize)]
 pub struct InspectReport {
-    /// Its caption.
+    /// Caption of the scene.
     pub title: String,
     /// Simulated time at the end, s.
     pub until_s: f64,
-    /// What it will cost and what looks wrong.
+    /// The expected cost of the run and the findings.
     #[serde(flatten)]
     pub preflight: Preflight,
-    /// Where the speed of sound comes from: key, value and who said it.
+    /// The key and the value that determine the speed of sound, and the source of the value.
     pub sound_from: Option<ValueInForce>,
-    /// How fast this machine is, if it was asked for.
+    /// The timing on this machine, if the options ask for it.
     pub timing: Option<StepTiming>,
     /// The solids.
     pub solids: Vec<SolidSummary>,
-    /// Files of the probes, lists last.
+    /// The files of the probes, followed by the contact lists.
     pub series: Vec<SeriesColumns>,
-    /// Every value in force and where it comes from.
+    /// Every value in force and its source.
     pub values: Vec<ValueInForce>,
 }
 
 /// A solid and its boundary particles.
 #[derive(Clone, Debug, Serialize)]
 pub struct SolidSummary {
-    /// Its name.
+    /// Name of the solid.
     pub name: String,
     /// `fixed`, `driven` or `free`.
     pub role: &'static str,
     /// Number of its boundary particles.
     pub particles: usize,
-    /// What it is as a mesh, if it is one.
+    /// The properties of its mesh, if the solid has a mesh.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mesh: Option<MeshSummary>,
 }
 
-/// A solid from a mesh, measured.
+/// The measured properties of a solid from a mesh.
 #[derive(Clone, Debug, Serialize)]
 pub struct MeshSummary {
-    /// Number of its facets.
+    /// Number of facets.
     pub facets: usize,
-    /// Its volume, m³.
+    /// Volume, m³.
     pub volume_m3: f64,
-    /// Its surface, m².
+    /// Surface area, m².
     pub surface_m2: f64,
-    /// Its centroid in the file's frame, m.
+    /// Centroid in the frame of the file, m.
     pub centroid_m: Vec<f64>,
-    /// The edges of the box around it, m.
+    /// Edge lengths of the bounding box, m.
     pub size_m: Vec<f64>,
 }
 
@@ -98,27 +99,28 @@ impl MeshSummary {
 pub struct SeriesColumns {
     /// Stem of the file.
     pub name: String,
-    /// Its columns beside the time.
+    /// Names of its columns, except for the time.
     pub columns: Vec<String>,
 }
 
-/// Some steps of the scene, timed. Nothing was written.
+/// A timing of some steps of the scene, without output.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct StepTiming {
-    /// Threads.
+    /// Number of threads.
     pub threads: usize,
-    /// Steps timed.
+    /// Number of timed steps.
     pub steps: usize,
-    /// Wall time of a step, s.
+    /// Wall time per step, s.
     pub step_s: f64,
-    /// Wall time of the whole run at that pace, s; outputs come on top.
+    /// Wall time of the whole run at that rate, s, without the outputs.
     pub run_s: f64,
 }
 
-/// Reads, resolves and builds the scene at `path` with the changes of `asked`; writes nothing.
+/// Reads, resolves and builds the scene at `path` with the options `asked`, and returns its inspection. It writes
+/// nothing.
 ///
 /// # Errors
-/// Those that [`run`](super::run) would meet before its first step.
+/// The errors that [`run`](super::run) would return before its first step.
 pub fn inspect(path: &Path, asked: &InspectOptions) -> Result<InspectReport> {
     let scene = Scene::read(&run_folder::scene_file(path), &asked.overrides)?;
     with_threads(asked.threads, || match scene.dimension {
@@ -136,7 +138,7 @@ where
 {
     let values: Vec<ValueInForce> = scene.resolve()?.into_iter().map(ValueInForce::from).collect();
     let BuiltScene { setup, plan, removed_by_solids, still_water, .. } = scene.build::<D>()?;
-    // The timing tells the first alarm, which a run would answer by going back.
+    // The timing reports the first alarm; a run would return to an earlier state instead.
     let mut sim = Simulation::new(setup).map_err(|e| scene.with_location(e))?.without_rollback();
     let probes = probe_factory::probes_from_plan(&plan, &mut sim)?;
     probe_factory::checks_from_plan(&plan, &probes)?;
@@ -154,13 +156,14 @@ where
     let lists = plan.contacts.iter().map(|words| (&words.name, probe::ContactList::columns::<D>()));
     let series = series.chain(lists).map(|(name, columns)| SeriesColumns { name: name.clone(), columns }).collect();
     let timing = if timed { time_steps(&mut sim, &mut preflight) } else { None };
-    // What was said wins over what follows from it.
+    // A value that the scene sets takes precedence over a derived value.
     let of_sound = values.iter().filter(|v| v.key == "model.c0" || v.key == "model.c0_factor");
     let sound_from = of_sound.min_by_key(|v| v.source.starts_with("default")).cloned();
     Ok(InspectReport { title: plan.title, until_s: plan.until, preflight, sound_from, timing, solids, series, values })
 }
 
-/// Steps for up to a second, the first step left out unless it takes all the time: it begins with cold caches.
+/// Times steps for up to a second. The first step is excluded because it begins with cold caches, unless it takes all
+/// the time.
 fn time_steps<const D: usize>(sim: &mut Simulation<D>, preflight: &mut Preflight) -> Option<StepTiming> {
     let begun = Instant::now();
     let mut times = Vec::new();

@@ -1,7 +1,7 @@
-//! What a run writes while it goes on, and when: tables of the probes, frames, checkpoints.
+//! The outputs that a run writes while it proceeds, and their times: tables of the probes, frames, checkpoints.
 //!
-//! An output is due at the multiples of its interval, and is written at the first step at or past them, so
-//! that it never bends a time step; a table records the true time.
+//! An output is due at the multiples of its interval. The run writes it at the first step at or past its due time, so
+//! that an output never changes a time step. A table records the true time.
 
 use std::{
     fs,
@@ -24,9 +24,9 @@ struct OutputSchedule {
 }
 
 impl OutputSchedule {
-    /// Whether the next one is reached at time `t` (s); if so, moves past it and all that are missed.
+    /// Returns whether time `t` (s) reaches the next multiple; if so, advances past this and all missed multiples.
     fn advance_if_due(&mut self, t: f64) -> bool {
-        // A time that should be a multiple may lie a few last bits below it.
+        // Round-off may leave a time slightly below the multiple that it should equal.
         let reached = t * (1.0 + 1e-12);
         if reached < self.next as f64 * self.every {
             return false;
@@ -36,20 +36,20 @@ impl OutputSchedule {
     }
 }
 
-/// A probe, its table, and when it is read.
+/// A probe, its table and its reading times.
 struct ProbeOutput<const D: usize> {
     probe: Box<dyn Probe<D>>,
     table: CsvTable,
     due: OutputSchedule,
-    /// What it has read since the last row, at every step, if it takes means.
+    /// The readings of every step since the last row, if the probe takes means.
     mean: Option<IntervalMean>,
 }
 
 impl<const D: usize> ProbeOutput<D> {
-    /// Reads if it must, and writes a row if one is `due`.
+    /// Reads the probe if necessary, and writes a row if `due`.
     fn sample(&mut self, sim: &Simulation<D>, due: bool) -> Result<()> {
         let t = sim.time();
-        // The end may be an instant at which a row was due.
+        // A row may already be written at the end time.
         let due = due && self.table.last_row().is_none_or(|(last, _)| last < t);
         let before = match &self.mean {
             Some(mean) => mean.last(),
@@ -78,14 +78,14 @@ impl<const D: usize> ProbeOutput<D> {
     }
 }
 
-/// A list of all contacts, and when it grows.
+/// A list of all contacts and its writing times.
 struct ContactListOutput {
     table: CsvTable,
     due: OutputSchedule,
 }
 
 impl ContactListOutput {
-    /// Writes a row for each pair that touches now, unless there are some of this instant.
+    /// Writes a row for each pair in contact, unless the list already has rows of this instant.
     fn sample<const D: usize>(&mut self, sim: &Simulation<D>) -> Result<()> {
         let t = sim.time();
         match self.table.last_row() {
@@ -95,7 +95,7 @@ impl ContactListOutput {
     }
 }
 
-/// What a look wrote besides rows, or asks for.
+/// The results of writing the outputs of a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct StepOutput {
     /// A frame was written.
@@ -113,11 +113,12 @@ pub(crate) struct Outputs<const D: usize> {
 }
 
 impl<const D: usize> Outputs<D> {
-    /// The outputs that `plan` asks for, in the run's `folder`; `from` where they were at the checkpoint, if there is one.
-    /// `probes` are those of [`probe_factory::probes`](super::looks::probes), in the plan's order.
+    /// Opens the outputs that `plan` asks for, in the run's `folder`. If `from` is present, the outputs continue from
+    /// its positions, which are those of the checkpoint. `probes` are those of
+    /// `probe_factory::probes`, in the plan's order.
     ///
     /// # Errors
-    /// `File` if a file cannot be written; `Restart` if what is there does not fit the checkpoint.
+    /// `File` if a file cannot be written; `Restart` if the existing files do not match the checkpoint.
     pub(crate) fn new(
         plan: &Plan,
         probes: Vec<Box<dyn Probe<D>>>,
@@ -172,7 +173,7 @@ impl<const D: usize> Outputs<D> {
         Ok(Self { probes: watched, contact_lists: contacts, frames, checkpoint })
     }
 
-    /// Writes what is due now, but for the checkpoint.
+    /// Writes the outputs that are due now, except for the checkpoint, and returns which events occurred.
     ///
     /// # Errors
     /// `File` if something cannot be written.
@@ -199,7 +200,7 @@ impl<const D: usize> Outputs<D> {
         Ok(written)
     }
 
-    /// Writes the last row of every table and the last frame, unless they are there already.
+    /// Writes the last row of every table and the last frame, unless they are already written.
     ///
     /// # Errors
     /// `File` if something cannot be written.
@@ -215,7 +216,7 @@ impl<const D: usize> Outputs<D> {
         self.write_last_frame(sim)
     }
 
-    /// Writes a frame of this instant, unless there is one.
+    /// Writes a frame of this instant, unless one is already written.
     ///
     /// # Errors
     /// `File` if it cannot be written.
@@ -228,7 +229,7 @@ impl<const D: usize> Outputs<D> {
         }
     }
 
-    /// The frames so far.
+    /// Returns the totals of the frames written so far.
     pub(crate) fn frame_totals(&self) -> FrameTotals {
         let kept = |(frames, _): &(FrameWriter, OutputSchedule)| FrameTotals {
             count: frames.times().len(),
@@ -237,12 +238,12 @@ impl<const D: usize> Outputs<D> {
         self.frames.as_ref().map_or_else(FrameTotals::default, kept)
     }
 
-    /// The table of the plan's probe number `probe`.
+    /// Returns the table of the probe with number `probe` in the plan.
     pub(crate) fn table(&self, probe: usize) -> &CsvTable {
         &self.probes[probe].table
     }
 
-    /// Paths of the tables, from the run's folder.
+    /// Returns the paths of the tables, relative to the run's folder.
     pub(crate) fn table_paths(&self) -> impl Iterator<Item = String> + '_ {
         let series = self.probes.iter().map(|watched| ("series", &watched.table));
         let lists = self.contact_lists.iter().map(|list| (LISTS, &list.table));
@@ -252,7 +253,7 @@ impl<const D: usize> Outputs<D> {
         series.chain(lists).filter_map(name)
     }
 
-    /// How far the outputs are.
+    /// Returns the present positions of the outputs.
     pub(crate) fn positions(&self) -> OutputPositions {
         let mut due: Vec<u64> = self.probes.iter().map(|w| w.due.next).collect();
         due.push(self.frames.as_ref().map_or(0, |(_, due)| due.next));
@@ -266,11 +267,11 @@ impl<const D: usize> Outputs<D> {
         }
     }
 
-    /// Takes back what was written since the outputs were as `extent` says. The next checkpoint is due when it was: not before
-    /// what ended the course is past.
+    /// Removes all rows and frames written after the positions `extent`. The due time of the next checkpoint is
+    /// unchanged, so that no checkpoint is due before the run has passed the alarm.
     ///
     /// # Errors
-    /// `File` if the disk refuses.
+    /// `File` if the disk reports an error.
     pub(crate) fn roll_back_to(&mut self, extent: &OutputPositions) -> Result<()> {
         let count = self.probes.len();
         for (i, watched) in self.probes.iter_mut().enumerate() {
@@ -289,30 +290,30 @@ impl<const D: usize> Outputs<D> {
         Ok(())
     }
 
-    /// Waits until all that is written is on the disk itself.
+    /// Waits until all written data are stored on the disk.
     ///
     /// # Errors
-    /// `File` if the disk refuses.
+    /// `File` if the disk reports an error.
     pub(crate) fn sync(&mut self) -> Result<()> {
         self.tables().try_for_each(CsvTable::sync)?;
         self.frames.as_mut().map_or(Ok(()), |(frames, _)| frames.sync())
     }
 
-    /// The tables of the probes, then of the lists.
+    /// Returns the tables of the probes, then the tables of the contact lists.
     fn tables(&self) -> impl Iterator<Item = &CsvTable> {
         self.probes.iter().map(|w| &w.table).chain(self.contact_lists.iter().map(|list| &list.table))
     }
 }
 
-/// The folder of the tables in the run's `folder`.
+/// Returns the folder of the tables in the run's `folder`.
 pub(crate) fn series_folder(folder: &Path) -> PathBuf {
     folder.join("series")
 }
 
-/// Where the lists of contacts lie in the run's folder: with many rows at one time, they are no series.
+/// Folder of the contact lists in the run's folder. They have many rows at one time and are therefore not series.
 const LISTS: &str = "lists";
 
-/// The file of the list called `name` in the run's `folder`.
+/// Returns the path of the list called `name` in the run's `folder`.
 pub(crate) fn contact_list_path(folder: &Path, name: &str) -> PathBuf {
     folder.join(LISTS).join(format!("{name}.csv"))
 }

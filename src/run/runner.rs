@@ -35,7 +35,7 @@ pub(crate) struct Runner<const D: usize> {
     plan: Plan,
     manifest: Manifest,
     folder: PathBuf,
-    /// What the next checkpoint says, but for what changes.
+    /// The data of the next checkpoint that do not change during the run.
     checkpoint: Checkpoint,
     /// How far the outputs were at each time (s) to which the simulation may go back, the older first.
     rollback_positions: Vec<(f64, OutputPositions)>,
@@ -117,7 +117,8 @@ where
 }
 
 impl<const D: usize> Runner<D> {
-    /// Runs to the end, or until `watch` says stop; `renamed` are the old names in the scene.
+    /// Steps to the end, or until `watch` requests a stop, and returns the outcome. `renamed` holds the former names in
+    /// the scene.
     pub(crate) fn run(mut self, renamed: &[RenamedName], watch: &mut dyn RunObserver) -> Result<RunOutcome> {
         self.update_manifest();
         self.manifest.write(&self.folder)?;
@@ -145,7 +146,7 @@ impl<const D: usize> Runner<D> {
         }
     }
 
-    /// Steps and writes; says whether the end was reached.
+    /// Steps and writes the outputs, and returns the resulting status.
     fn advance(&mut self, watch: &mut dyn RunObserver) -> Result<RunStatus> {
         if !self.resumed {
             self.outputs.write_due(&self.sim)?;
@@ -160,7 +161,7 @@ impl<const D: usize> Runner<D> {
             let (clock, passes, rescued) = (Instant::now(), self.sim.force_passes(), self.sim.rollbacks().len());
             let stepped = self.sim.step_to(until);
             self.checkpoint.stepping_seconds += clock.elapsed().as_secs_f64();
-            // Dry boundary particles are not moved on and do not count.
+            // Dry boundary particles are not updated and are not counted.
             let moved = self.sim.system().fluid().len() + self.sim.system().boundary_near_fluid_count();
             // A run that went back has made fewer passes than before.
             self.checkpoint.particle_steps += moved as u64 * self.sim.force_passes().saturating_sub(passes);
@@ -228,7 +229,7 @@ impl<const D: usize> Runner<D> {
         self.write_checkpoint(self.sim.save()?, self.outputs.positions())
     }
 
-    /// Writes the checkpoint of the simulation's `state` of now and of `outputs`.
+    /// Writes the checkpoint with the present `state` of the simulation and the positions `outputs`.
     fn write_checkpoint(&mut self, state: Vec<u8>, outputs: OutputPositions) -> Result<()> {
         let (time, wall, cpu) = (self.sim.time(), self.wall_seconds(), self.cpu_seconds());
         let now = Checkpoint { state, time, wall_seconds: wall, cpu_seconds: cpu, outputs, ..self.checkpoint.clone() };
@@ -303,12 +304,12 @@ impl<const D: usize> Runner<D> {
         self.manifest.files = files;
     }
 
-    /// Wall time so far, s.
+    /// Returns the wall time so far, s.
     fn wall_seconds(&self) -> f64 {
         self.checkpoint.wall_seconds + self.started_at.elapsed().as_secs_f64()
     }
 
-    /// Processor time so far, s; where it cannot be read, the time available to all threads.
+    /// Returns the processor time so far, s; if it cannot be read, the processor time available to all threads.
     fn cpu_seconds(&self) -> f64 {
         let threads = rayon::current_num_threads() as f64;
         let available = || threads * self.started_at.elapsed().as_secs_f64();
@@ -330,7 +331,7 @@ impl<const D: usize> Runner<D> {
     }
 }
 
-/// The manifest before the first step.
+/// Returns the manifest before the first step.
 fn initial_manifest<const D: usize>(sim: &Simulation<D>, plan: &Plan, checkpoint: &Checkpoint) -> Manifest {
     Manifest {
         status: RunStatus::Running,
@@ -368,7 +369,7 @@ impl From<ResolvedValue> for ValueInForce {
     }
 }
 
-/// The free bodies as they are now.
+/// Returns the present states of the free bodies.
 fn final_body_states<const D: usize>(sim: &Simulation<D>) -> Vec<FinalBodyState> {
     let free = sim.system().solids().iter().filter(|s| matches!(s.spec.role, Role::Free(_)));
     free.map(|s| FinalBodyState {

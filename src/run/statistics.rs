@@ -1,4 +1,4 @@
-//! What is said of a run's series at its end: `statistics.csv`, a row for each figure.
+//! The statistics of a run's series at its end: `statistics.csv`, with a row for each value.
 
 mod rao_table;
 mod spectra_table;
@@ -21,54 +21,55 @@ use crate::{
 pub use rao_table::{RAO_FILE, RaoResult};
 pub use spectra_table::SPECTRA_FILE;
 
-/// The file, in the run's folder.
+/// Name of the statistics file in the run's folder.
 pub(crate) const STATISTICS_FILE: &str = "statistics.csv";
 
-/// A figure of a series, or of several.
+/// A statistic of one or several series.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Statistic {
-    /// Name of the `[[statistic]]`; empty for what is said of every series.
+    /// Name of the `[[statistic]]`; empty for a statistic that is computed for every series.
     pub name: String,
-    /// Which series, as `probe.column`; of a reflection the first gauge's, of an RAO the motion's.
+    /// Name of the series as `probe.column`: for a reflection the series of the first gauge, for an RAO the series of
+    /// the motion.
     pub series: String,
-    /// Which figure, as `H_max`.
+    /// Name of the quantity, as `H_max`.
     pub quantity: &'static str,
-    /// Its value.
+    /// Value of the quantity.
     pub value: f64,
-    /// Its unit.
+    /// Unit of the value.
     pub unit: String,
-    /// First time that counts, s.
+    /// First time that is evaluated, s.
     pub from_s: f64,
-    /// Last time that counts, s.
+    /// Last time that is evaluated, s.
     pub until_s: f64,
 }
 
-/// What is asked of a run's series beside what its scene asks.
+/// A filter for the statistics of a run.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StatisticsFilter {
-    /// Only of this probe, or of this series.
+    /// The only probe or the only series to evaluate.
     pub series: Option<String>,
-    /// First time that counts, s.
+    /// First time to evaluate, s.
     pub from: Option<f64>,
-    /// Last time that counts, s.
+    /// Last time to evaluate, s.
     pub until: Option<f64>,
 }
 
-/// Figures of a run, and why some are missing.
+/// The statistics of a run, and the reasons for missing statistics.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RunStatistics {
-    /// The figures.
+    /// The statistics.
     pub rows: Vec<Statistic>,
-    /// How motions answer irregular waves over frequency.
+    /// The RAOs of motions in irregular waves, over frequency.
     pub raos: Vec<RaoResult>,
-    /// What could not be formed, in words.
+    /// The reasons for missing statistics.
     pub remarks: Vec<String>,
 }
 
-/// The figures of the run in `folder`, however far it came.
+/// Returns the statistics of the run in `folder`, which may be unfinished.
 ///
 /// # Errors
-/// `Restart` if there is no run in `folder`; `Usage` if it has no such series; else as [`Scene::read`].
+/// `Restart` if `folder` holds no run; `Usage` if the run has no such series; otherwise as [`Scene::read`].
 pub fn statistics(folder: &Path, asked: &StatisticsFilter) -> Result<RunStatistics> {
     let manifest = Manifest::read(folder)?;
     let sets: Vec<(String, String)> = manifest.set.into_iter().collect();
@@ -87,7 +88,7 @@ pub fn statistics(folder: &Path, asked: &StatisticsFilter) -> Result<RunStatisti
     }
 }
 
-/// That the time asked for is not apart from that of the run in `folder`.
+/// Checks that the requested time range overlaps the time range of the run in `folder`.
 fn check_time_range(folder: &Path, plan: &Plan, asked: &StatisticsFilter) -> Result<()> {
     let tables = read_tables(folder, plan);
     let times = || tables.values().flat_map(|table| table.times.first().into_iter().chain(table.times.last()));
@@ -104,10 +105,10 @@ fn check_time_range(folder: &Path, plan: &Plan, asked: &StatisticsFilter) -> Res
     if tables.is_empty() { Ok(()) } else { Err(Error::new(ErrorKind::Usage, what).help(help)) }
 }
 
-/// Writes the figures and the spectra of the run in `folder`; what is missing, in words.
+/// Writes the statistics and the spectra of the run in `folder`, and returns the reasons for missing statistics.
 ///
 /// # Errors
-/// `File` if they cannot be written.
+/// `File` if a file cannot be written.
 pub(super) fn write(folder: &Path, plan: &Plan) -> Result<Vec<String>> {
     let tables = read_tables(folder, plan);
     let RunStatistics { rows, raos, remarks } = from_tables(&tables, plan, &StatisticsFilter::default());
@@ -121,10 +122,10 @@ pub(super) fn write(folder: &Path, plan: &Plan) -> Result<Vec<String>> {
     Ok(remarks)
 }
 
-/// The tables of a run by the names of their probes; those that cannot be read are left out.
+/// The tables of a run by the names of their probes; tables that cannot be read are absent.
 type ProbeTables = BTreeMap<String, SeriesTable>;
 
-/// Reads them.
+/// Reads the tables of the run in `folder`.
 fn read_tables(folder: &Path, plan: &Plan) -> ProbeTables {
     let series = series_folder(folder);
     let read = |name: &String| Some((name.clone(), SeriesTable::read(&series.join(format!("{name}.csv"))).ok()?));
@@ -135,7 +136,7 @@ pub(crate) fn run_statistics(folder: &Path, plan: &Plan, asked: &StatisticsFilte
     from_tables(&read_tables(folder, plan), plan, asked)
 }
 
-/// The figures of these tables.
+/// Returns the statistics of `tables`.
 fn from_tables(tables: &ProbeTables, plan: &Plan, asked: &StatisticsFilter) -> RunStatistics {
     let window = (asked.from.unwrap_or(f64::NEG_INFINITY), asked.until.unwrap_or(f64::INFINITY));
     let meant = |name: &str| {
@@ -165,7 +166,7 @@ fn from_tables(tables: &ProbeTables, plan: &Plan, asked: &StatisticsFilter) -> R
     told
 }
 
-/// The part of a series in the window (s).
+/// Returns the samples of the series `name` in the time window (s).
 fn series_in_window(tables: &ProbeTables, name: &str, (from, until): (f64, f64)) -> Option<TimeSeries> {
     let (probe, column) = name.split_once('.')?;
     tables.get(probe)?.series(column, from, until)
@@ -186,7 +187,7 @@ impl RunStatistics {
         }));
     }
 
-    /// Everything that is said of one series.
+    /// Adds all statistics of one series.
     fn push_series(&mut self, name: &str, of: &str, series: &TimeSeries) {
         let (own, m) = (unit(of), moments(series));
         let plain =
@@ -210,13 +211,13 @@ impl RunStatistics {
         }
     }
 
-    /// How a motion answers irregular waves over frequency.
+    /// Adds the RAO of a motion in irregular waves over frequency.
     fn push_rao(&mut self, name: &str, series: &str, unit: &str, bands: Vec<RaoPoint>) {
         let answer = |band| RaoResult { name: name.into(), series: series.into(), unit: unit.into(), point: band };
         self.raos.extend(bands.into_iter().map(answer));
     }
 
-    /// Says of waves too few for an answer over frequency how many are needed.
+    /// Adds a remark with the number of waves that an RAO over frequency requires, if the series has too few waves.
     fn remark_too_few_waves(&mut self, name: &str, wave: &TimeSeries) {
         if let Some(waves) =
             analysis::zero_crossing_waves(wave).filter(|waves| waves.count < analysis::MIN_WAVES_FOR_RAO)
@@ -230,7 +231,7 @@ impl RunStatistics {
         }
     }
 
-    /// What the scene asks for.
+    /// Adds the statistics that the scene declares.
     fn push_declared(&mut self, tables: &ProbeTables, words: &StatisticPlan, window: (f64, f64)) {
         let found: Option<Vec<TimeSeries>> =
             words.what.series().into_iter().map(|name| series_in_window(tables, name, window)).collect();

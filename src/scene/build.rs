@@ -28,26 +28,26 @@ use crate::{
     system::periodic,
 };
 
-/// Most particles that a scene may ask for: about 100 GB of memory.
+/// Largest number of particles in a scene: they need about 100 GB of memory.
 const MOST_PARTICLES: f64 = 2e8;
 
-/// A scene that was built.
+/// A scene after construction.
 pub struct BuiltScene<const D: usize> {
-    /// The start of a simulation.
+    /// The initial state of a simulation.
     pub setup: Setup<D>,
     /// The probes, files, checks and statistics of a run.
     pub plan: Plan,
-    /// Lattice points left empty because a solid is there.
+    /// Number of lattice points without a particle because they lie in a solid.
     pub removed_by_solids: usize,
-    /// Lattice points left empty because an earlier body of water is there.
+    /// Number of lattice points without a new particle because they lie in an earlier body of water.
     pub removed_by_water: usize,
     /// The water at rest.
     pub still_water: StillWaterLevel,
 }
 
-/// The solids around the water: enough to draw a scene.
+/// The data that a drawing of a scene needs: the solids, the model and the still water level.
 pub struct SceneLayout<const D: usize> {
-    /// The solids, where they start.
+    /// The solids at their initial positions.
     pub solids: Vec<SolidSpec<D>>,
     /// The laws and constants.
     pub model: Model,
@@ -60,27 +60,28 @@ pub struct SceneLayout<const D: usize> {
 pub struct SizeEstimate {
     /// 2 or 3.
     pub dimension: usize,
-    /// Particles of water.
+    /// Number of water particles.
     pub fluid: f64,
-    /// Boundary particles.
+    /// Number of boundary particles.
     pub boundary: f64,
     /// The largest time step that sound and the Courant number allow, s.
     pub dt: f64,
-    /// Steps to the end at that step; a run takes some more.
+    /// Number of steps to the end with the time step `dt`. A run takes slightly more steps.
     pub steps: f64,
-    /// Evaluations of the forces a step.
+    /// Number of force evaluations in a step.
     pub passes: f64,
 }
 
 impl SizeEstimate {
-    /// Water particles × force evaluations: about proportional to the time of a run.
+    /// Returns the number of water particles × force evaluations. It is about proportional to the computing time of a
+    /// run.
     pub fn particle_passes(&self) -> f64 {
         self.fluid * self.steps * self.passes
     }
 }
 
 impl Scene {
-    /// Opens the files that the scene names and makes the start of a
+    /// Opens the files that the scene names. Returns the initial state of a
     /// [`Simulation`](crate::simulation::Simulation) and the plan of the run.
     ///
     /// # Errors
@@ -108,7 +109,7 @@ impl Scene {
         require_affordable(ctx, &water, &solids)?;
         let regions: Vec<WaterRegion<D>> =
             water.iter().map(|b| WaterRegion { shape: b.region.shape.clone(), pose: b.region.pose }).collect();
-        // A driven solid starts where its motion puts it.
+        // The initial position of a driven solid follows from its motion.
         let starts: Vec<Pose<D>> = solids.iter().map(|s| s.initial_kinematics().pose).collect();
         let solid_shapes: Vec<(&Shape<D>, &Pose<D>)> =
             solids.iter().zip(&starts).map(|(s, start)| (&s.shape, start)).collect();
@@ -120,7 +121,7 @@ impl Scene {
             return Err(no_water_error(ctx, &water, &solids));
         }
         let plan = scene.resolved_plan(&still)?;
-        // Packing may have moved a particle a little way out of its water.
+        // The packing algorithm can move a particle slightly out of its body of water.
         let nearest = |x: &Vector<D>| water.iter().min_by(|a, b| a.distance(x).total_cmp(&b.distance(x)));
         let level = |x: &Vector<D>| nearest(x).map_or(still.level, |body| body.level);
         let levels = filled.r.iter().map(level).collect();
@@ -154,10 +155,10 @@ impl Scene {
         })
     }
 
-    /// The solids and the water at rest; makes no particles.
+    /// Returns the solids and the water at rest without creating particles.
     ///
     /// # Errors
-    /// As [`Scene::build`].
+    /// The same errors as [`Scene::build`].
     pub fn layout<const D: usize>(&self) -> Result<SceneLayout<D>> {
         let (scene, _) = self.with_defaults()?;
         let water = scene.water_bodies::<D>()?;
@@ -166,7 +167,7 @@ impl Scene {
         Ok(SceneLayout { solids: scene.solids::<D>(&StillWater::of(&water))?, model, still_water: still })
     }
 
-    /// The probes, files, checks and statistics of a run; makes no particles.
+    /// Returns the probes, files, checks and statistics of a run without creating particles.
     ///
     /// # Errors
     /// `Scene` if the scene is wrong, or a table that a check names is missing or wrong.
@@ -175,7 +176,7 @@ impl Scene {
         scene.resolved_plan(&scene.still_water()?)
     }
 
-    /// Estimated size of a run of this scene.
+    /// Returns the estimated size of a run of this scene.
     ///
     /// # Errors
     /// `Scene` if the scene is wrong, a shape is not valid, or the particles are too many.
@@ -199,7 +200,8 @@ impl Scene {
         Ok(SizeEstimate { dimension: D, fluid, boundary, dt, steps: (self.until / dt).ceil(), passes })
     }
 
-    /// About how many particles of water there are, without the space of the solids; 0 if the water cannot be built.
+    /// Returns the approximate number of water particles, without the volume of the solids, or 0 if the water cannot be
+    /// built.
     pub(super) fn water_particles(&self) -> f64 {
         fn count<const D: usize>(scene: &Scene) -> Result<f64> {
             Ok(estimated_counts::<D>(&scene.context(), &scene.water_bodies()?, &[]).0)
@@ -221,20 +223,20 @@ impl Scene {
         self.water.iter().enumerate().map(|(i, water)| water.build(ctx, &format!("water.{i}"))).collect()
     }
 
-    /// The solids in the water `pool`, from whose level drafts are measured.
+    /// Returns the solids. Drafts are measured from the level of the water `pool`.
     fn solids<const D: usize>(&self, pool: &StillWater<D>) -> Result<Vec<SolidSpec<D>>> {
         let ctx = &self.context();
         self.solid.iter().enumerate().map(|(i, solid)| solid.build(ctx, &format!("solid.{i}"), pool)).collect()
     }
 
-    /// The joints, force elements and contact rules of `solids`, which are in the order of the scene.
+    /// Returns the joints, force elements and contact rules of `solids`, which must be in the order of the scene.
     fn constraints<const D: usize>(&self, solids: &[SolidSpec<D>]) -> Result<Constraints<D>> {
         let ctx = &self.context();
         let number = |name: &String| self.solid.iter().position(|solid| solid.name == *name);
         let mut constraints = Constraints::default();
         for (i, joint) in self.joint.iter().enumerate() {
             let key = format!("joint.{i}");
-            // One solid moves against the world.
+            // A joint with one solid connects it to the world.
             let between = match &joint.between[..] {
                 [one] => [None, number(one)],
                 two => [0, 1].map(|k| two.get(k).and_then(number)),
@@ -265,7 +267,7 @@ impl Scene {
         Ok(constraints)
     }
 
-    /// The plan of a run, from a scene with its defaults filled in.
+    /// Returns the plan of a run. The defaults of the scene must be filled in.
     fn resolved_plan(&self, still: &StillWaterLevel) -> Result<Plan> {
         let ctx = &self.context();
         let series = ProbeSeries { probes: &self.probe, names: &self.probe_names() };
@@ -315,7 +317,7 @@ fn require_inside_domain<const D: usize>(
     }
 }
 
-/// The error that no water is left: names the first free body that is larger than the water.
+/// Returns the error that no water is left. Its message names the first free body that is larger than the water.
 fn no_water_error<const D: usize>(ctx: &Context, water: &[WaterBody<D>], solids: &[SolidSpec<D>]) -> Error {
     let boxes = water.iter().map(|body| world_bounds(&body.region.shape, &body.region.pose));
     let room = boxes.fold(Bounds::empty(), |a, b| a.union(&b)).size();
@@ -331,14 +333,14 @@ fn no_water_error<const D: usize>(ctx: &Context, water: &[WaterBody<D>], solids:
     ctx.error_with_help(&format!("solid.{i}.shape"), what, "make it smaller, or the tank and its water larger")
 }
 
-/// About how many particles of water and of skins there will be.
+/// Returns the approximate numbers of water particles and boundary particles.
 fn estimated_counts<const D: usize>(ctx: &Context, water: &[WaterBody<D>], solids: &[SolidSpec<D>]) -> (f64, f64) {
     let (volume, surface) = volume_and_surface(water, solids);
     let dimension = D as i32;
     (volume / ctx.dp.powi(dimension), surface * ctx.layers() as f64 / ctx.dp.powi(dimension - 1))
 }
 
-/// Refuses a scene that asks for more particles than a machine holds, before any is made.
+/// Refuses a scene with more particles than [`MOST_PARTICLES`] before any particle is created.
 fn require_affordable<const D: usize>(ctx: &Context, water: &[WaterBody<D>], solids: &[SolidSpec<D>]) -> Result<()> {
     require_near_origin(ctx, water)?;
     let (fluid, boundary) = estimated_counts(ctx, water, solids);
@@ -347,7 +349,7 @@ fn require_affordable<const D: usize>(ctx: &Context, water: &[WaterBody<D>], sol
         return Ok(());
     }
     let (volume, surface) = volume_and_surface(water, solids);
-    // Six digits: 0.3, not 0.30000000000000004.
+    // Rounds to six digits: 0.3 instead of 0.30000000000000004.
     let volume = format!("{volume:.5e}").parse().unwrap_or(volume);
     let (space, face) = if D == 3 { ("m³", "m²") } else { ("m²", "m") };
     let what = format!(
@@ -362,16 +364,16 @@ fn require_affordable<const D: usize>(ctx: &Context, water: &[WaterBody<D>], sol
     Err(ctx.error_with_help("dp", what, help))
 }
 
-/// Volume of the water (m³; m² in 2-D) and surface of the solids (m²; m).
+/// Returns the volume of the water (m³; m² in 2-D) and the surface of the solids (m²; m).
 fn volume_and_surface<const D: usize>(water: &[WaterBody<D>], solids: &[SolidSpec<D>]) -> (f64, f64) {
     let volume = water.iter().map(|body| body.region.shape.volume_properties().volume).sum();
     (volume, solids.iter().map(|solid| solid.shape.surface_area()).sum())
 }
 
-/// Moves every point by up to `by` (m) in each direction, always to the same place: by its number.
+/// Moves every point by up to `by` (m) in each direction. The displacement depends only on the index of the point.
 fn jitter<const D: usize>(points: &mut [Vector<D>], by: f64) {
     for (n, x) in (1u64..).zip(points.iter_mut().flat_map(|x| x.iter_mut())) {
-        // The mixing of splitmix64 (Steele et al. 2014) makes a number of its place in a row.
+        // The mixing function of splitmix64 (Steele et al. 2014) computes a pseudo-random number from the index.
         let mut z = n.wrapping_mul(0x9e37_79b9_7f4a_7c15);
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);

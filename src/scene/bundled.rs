@@ -3,7 +3,7 @@
 /// A bundled scene: the name of its folder, its `scene.toml`, and the names and texts of the other files.
 pub type BundledScene = (&'static str, &'static str, &'static [(&'static str, &'static str)]);
 
-/// Text of a file in the folder of a scene.
+/// Expands to the text of a file in the folder of a scene.
 macro_rules! text {
     ($scene:literal, $file:literal) => {
         include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/", $scene, "/", $file))
@@ -20,7 +20,7 @@ macro_rules! scene {
     };
 }
 
-/// All bundled scenes.
+/// Returns all bundled scenes.
 pub fn bundled_scenes() -> &'static [BundledScene] {
     &[
         scene!("raft"),

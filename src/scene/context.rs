@@ -1,5 +1,5 @@
-//! The facts of a scene against which its sections are checked and from which they are built; errors with their place;
-//! the record of the defaults.
+//! The properties of a scene that the validation and construction of its sections use. The file also defines errors
+//! with their location and the record of the defaults.
 
 use std::{collections::BTreeMap, path::Path};
 
@@ -9,7 +9,7 @@ use super::{
 };
 use crate::error::{Error, ErrorCode, Result};
 
-/// What a section needs to know of its scene.
+/// The properties of a scene that its sections use.
 pub(crate) struct Context<'a> {
     pub(super) origin: &'a SceneSource,
     /// 2 or 3.
@@ -27,32 +27,32 @@ pub(crate) struct Context<'a> {
 }
 
 impl Context<'_> {
-    /// Folder in which the files that the scene names are looked for.
+    /// Returns the folder of the files that the scene names.
     pub(crate) fn folder(&self) -> &Path {
         &self.origin.folder
     }
 
-    /// Layers of boundary particles: as many as the kernel reaches.
+    /// Returns the number of layers of boundary particles within the kernel radius.
     pub(crate) fn layers(&self) -> usize {
         (2.0 * self.h / self.dp - 1e-9).ceil() as usize
     }
 
-    /// Whether gravity acts.
+    /// Returns whether gravity acts.
     pub(crate) fn has_gravity(&self) -> bool {
         self.gravity.into_iter().flatten().any(|g| *g != 0.0)
     }
 
-    /// `|g|`, m/s².
+    /// Returns `|g|`, m/s².
     pub(crate) fn gravity_norm(&self) -> f64 {
         self.gravity.into_iter().flatten().map(|g| g * g).sum::<f64>().sqrt()
     }
 
-    /// `error` with the place of `key` in the scene.
+    /// Returns `error` with the location of `key` in the scene.
     pub(crate) fn with_location(&self, error: Error, key: &str) -> Error {
         self.origin.with_location(error, key)
     }
 
-    /// The error that `what` is wrong at `key`, with its place and an example.
+    /// Returns an error about `key` with the message `what`, the location of the key and an example.
     pub(crate) fn error_at(&self, key: &str, what: impl Into<String>) -> Error {
         let error = Error::scene(what);
         let error = match diagnostics::example(key) {
@@ -62,17 +62,17 @@ impl Context<'_> {
         self.with_location(error, key)
     }
 
-    /// As [`Context::error_at`], with this help in place of the example.
+    /// Returns the error of [`Context::error_at`] with `help` in place of the example.
     pub(crate) fn error_with_help(&self, key: &str, what: impl Into<String>, help: impl Into<String>) -> Error {
         self.with_location(Error::scene(what).help(help), key)
     }
 
-    /// As [`Context::error_at`], of a number outside its valid range.
+    /// Returns the error of [`Context::error_at`] for a number outside its valid range.
     fn out_of_range(&self, key: &str, what: String) -> Error {
         self.error_at(key, what).with_code(ErrorCode::OutOfRange)
     }
 
-    /// Refuses a number that is given and not positive.
+    /// Refuses a number that is present and not positive.
     pub(crate) fn require_positive(&self, key: &str, x: Option<f64>) -> Result<()> {
         match x {
             Some(x) if !(x > 0.0 && x.is_finite()) => {
@@ -82,7 +82,7 @@ impl Context<'_> {
         }
     }
 
-    /// Refuses a number that is given and not from 0 to `most`.
+    /// Refuses a number that is present and not from 0 to `most`.
     pub(crate) fn require_range(&self, key: &str, x: Option<f64>, most: f64) -> Result<()> {
         match x.filter(|x| !(0.0..=most).contains(x)) {
             Some(x) => {
@@ -94,7 +94,7 @@ impl Context<'_> {
         }
     }
 
-    /// Refuses a vector that has not as many numbers as the scene has dimensions.
+    /// Refuses a vector if its length is not the dimension of the scene.
     pub(crate) fn require_dimension(&self, key: &str, x: &[f64]) -> Result<()> {
         let (d, n) = (self.dimension, x.len());
         if n != d {
@@ -108,7 +108,7 @@ impl Context<'_> {
         }
     }
 
-    /// Refuses a vector without a direction.
+    /// Refuses a vector of zero length.
     pub(crate) fn require_direction(&self, key: &str, x: &[f64]) -> Result<()> {
         self.require_dimension(key, x)?;
         match x.iter().all(|x| x.abs() < 1e-12) {
@@ -117,7 +117,7 @@ impl Context<'_> {
         }
     }
 
-    /// Refuses a name that could not be a file's.
+    /// Refuses a name that is not a valid file name.
     pub(crate) fn require_file_name(&self, key: &str, name: &str) -> Result<()> {
         let good = |c: char| c.is_alphanumeric() || c == '_' || c == '-';
         if name.is_empty() || name.len() > 64 || !name.chars().all(good) {
@@ -127,7 +127,7 @@ impl Context<'_> {
         Ok(())
     }
 
-    /// Refuses an interval of the run's time that is empty.
+    /// Refuses an empty time interval of the run.
     pub(crate) fn require_interval(&self, key: &str, from: Option<f64>, until: Option<f64>, help: &str) -> Result<()> {
         match (from, until) {
             (Some(from), Some(until)) if from >= until => {
@@ -144,7 +144,7 @@ impl Context<'_> {
 pub(crate) struct Defaults(BTreeMap<String, String>);
 
 impl Defaults {
-    /// Puts the default `value` into an empty `slot` and keeps the `reason`.
+    /// Puts the default `value` into an empty `slot` and records the `reason`.
     pub(crate) fn fill<T>(
         &mut self,
         key: impl Into<String>,
@@ -158,23 +158,23 @@ impl Defaults {
         }
     }
 
-    /// The default that stands at `key`.
+    /// Returns the default at `key` as a source, or `None` if `key` has no recorded default.
     pub(crate) fn source(&self, key: &str) -> Option<ValueSource> {
         self.0.get(key).map(|reason| ValueSource::Default(reason.clone()))
     }
 }
 
-/// The names of the keys of `given` that are set.
+/// Returns the names of the keys of `given` that are set.
 pub(crate) fn set_keys<const N: usize>(given: [(&'static str, bool); N]) -> Vec<&'static str> {
     given.into_iter().filter(|(_, given)| *given).map(|(key, _)| key).collect()
 }
 
-/// Keys joined for a sentence.
+/// Returns the keys as a list for a sentence.
 pub(crate) fn quoted_list(keys: &[&str]) -> String {
     if keys.is_empty() { "nothing".into() } else { keys.join(" and ") }
 }
 
-/// The last part of a key.
+/// Returns the last part of a key.
 pub(crate) fn last_part(key: &str) -> &str {
     key.rsplit('.').next().unwrap_or(key)
 }

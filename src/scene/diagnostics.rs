@@ -1,11 +1,11 @@
-//! Errors of the parser in the words of a user: the fault, the nearest valid name, an example.
+//! Translates errors of the parser for users: the fault, the nearest valid name, an example.
 
 use crate::{
     error::{Error, ErrorCode, nearest_name, suggestion},
     probe,
 };
 
-/// Examples by key; the entry with the longest match of the end of the key is shown.
+/// Examples by key. A message shows the entry with the longest match at the end of the key.
 const EXAMPLES: &[(&str, &str)] = &[
     ("title", "title = \"Box in a wave train\""),
     ("dimension", "dimension = 2"),
@@ -158,7 +158,7 @@ const EXAMPLES: &[(&str, &str)] = &[
     ("paper", "paper = { N = 0.355, M = 1.115 }"),
 ];
 
-/// An example for `key`, for the user to copy.
+/// Returns an example for `key` that the user can copy.
 pub(super) fn example(key: &str) -> Option<String> {
     let parts: Vec<&str> = key.split('.').filter(|part| part.parse::<usize>().is_err()).collect();
     let tail = |from: usize| parts[from..].join(".");
@@ -172,7 +172,7 @@ fn example_help(example: &str) -> String {
     format!("write  {}", example.replace('\n', "\n       "))
 }
 
-/// The names in backticks in the `message` of the parser.
+/// Returns the names in backticks in the `message` of the parser.
 fn quoted(message: &str) -> Vec<&str> {
     message.split('`').skip(1).step_by(2).collect()
 }
@@ -181,12 +181,12 @@ fn list(words: &[&str]) -> String {
     words.join(", ")
 }
 
-/// The kind of thing that `key` holds, for a sentence: its last part that is not a number.
+/// Returns the noun for the value of `key` in a sentence: the last part of the key that is not a number.
 fn key_noun(key: &str) -> &str {
     key.rsplit('.').find(|part| part.parse::<usize>().is_err()).unwrap_or(key)
 }
 
-/// The error of the parser's `message` about `key`, and the key that it is about.
+/// Returns the error for the parser's `message` about `key`, and the key that the error concerns.
 pub(super) fn explain(message: &str, key: &str) -> (Error, String) {
     let words = quoted(message);
     let with = |error: Error, lines: Vec<String>| match lines.is_empty() {
@@ -194,13 +194,13 @@ pub(super) fn explain(message: &str, key: &str) -> (Error, String) {
         false => error.help(lines.join("\n")),
     };
     if let (true, [word, known @ ..]) = (message.starts_with("unknown field"), &words[..]) {
-        // The key is the unknown one or, where its words are told apart by their form, the one above it.
+        // `key` is the unknown key or, for an untagged type, the key above it.
         let above = if key == *word { Some("") } else { key.strip_suffix(&format!(".{word}")) };
         let parent = above.unwrap_or(key);
         let error = Error::scene(format!("unknown key \"{word}\"{}", suggestion(word, known.iter().copied())))
             .with_code(ErrorCode::UnknownKey);
         let shown = if parent.is_empty() { word.to_string() } else { format!("{parent}.{word}") };
-        // Of the same parent: a water's velocity is not a probe's.
+        // The example must have the same parent: the velocity of water differs from the velocity key of a probe.
         let near = nearest_name(word, known.iter().copied()).and_then(|near| example(&format!("{parent}.{near}")));
         let guess = near.or_else(|| example(parent));
         let known = format!("known here: {}", list(known));
@@ -238,7 +238,7 @@ pub(super) fn explain(message: &str, key: &str) -> (Error, String) {
     (with(error, example(key).into_iter().collect()), key.to_string())
 }
 
-/// The value that the parser found, in plain words.
+/// Returns a plain description of the value that the parser found.
 fn translated_found(found: &str) -> String {
     let (kind, rest) = found.split_once(' ').unwrap_or((found, ""));
     let rest = rest.trim_start_matches("point ").replace('`', "");
@@ -251,7 +251,7 @@ fn translated_found(found: &str) -> String {
     }
 }
 
-/// A type that the parser expects, in plain words.
+/// Returns a plain description of the type that the parser expects.
 fn translated_type(wanted: &str) -> &str {
     match wanted {
         "f64" => "a number",
@@ -264,7 +264,7 @@ fn translated_type(wanted: &str) -> &str {
     }
 }
 
-/// Advice on TOML itself.
+/// Returns advice on TOML syntax for `message`.
 pub(super) fn toml_help(message: &str) -> &'static str {
     if message.contains("duplicate") {
         "each key once; several solids are several [[solid]] sections, with two brackets"

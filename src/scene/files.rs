@@ -10,7 +10,7 @@ use crate::{
 /// Size of the largest table, B.
 const MOST_BYTES: u64 = 256 << 20;
 
-/// The file `name` beside the scene in `folder`.
+/// Returns the path of the file `name` beside the scene in `folder`.
 ///
 /// # Errors
 /// `Scene` if the name, or a link, leads out of the folder, or no file is there.
@@ -39,10 +39,10 @@ pub fn path_beside(folder: &Path, name: &str) -> Result<PathBuf> {
     Ok(full)
 }
 
-/// The table `name` beside the scene in `folder`.
+/// Opens the table `name` beside the scene in `folder`.
 ///
 /// # Errors
-/// As [`path_beside`]; `Scene` if the table is too large, `File` if it cannot be read.
+/// The errors of [`path_beside`]; `Scene` if the table is too large, `File` if it cannot be read.
 pub fn open_table(folder: &Path, name: &str) -> Result<TableReader> {
     let path = path_beside(folder, name)?;
     if std::fs::metadata(&path).is_ok_and(|file| file.len() > MOST_BYTES) {
@@ -52,7 +52,8 @@ pub fn open_table(folder: &Path, name: &str) -> Result<TableReader> {
     TableReader::open(&path)
 }
 
-/// The error of a table with its line in the message, because the location of the error is that of a key in the scene.
+/// Returns the error of a table with the line of the table in the message, because the location of the error is a key
+/// of the scene.
 pub fn with_line_in_message(mut error: Error) -> Error {
     if let Some(place) = error.location.take()
         && let Some((line, _)) = place.line_column
@@ -63,7 +64,7 @@ pub fn with_line_in_message(mut error: Error) -> Error {
     error
 }
 
-/// Whether the file at `full`, links followed, lies in `folder`; true if there is no such file.
+/// Returns whether the file at `full` lies in `folder` after resolving links, or true if there is no such file.
 pub fn is_within(folder: &Path, full: &Path) -> bool {
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     match (folder.canonicalize(), full.canonicalize()) {
@@ -72,7 +73,7 @@ pub fn is_within(folder: &Path, full: &Path) -> bool {
     }
 }
 
-/// Names of the files in `folder` with the extension of `path`.
+/// Returns the names of the files in `folder` with the extension of `path`.
 fn neighbours(folder: &Path, path: &Path) -> Vec<String> {
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();

@@ -21,10 +21,10 @@ const LONGEST: usize = 10_000;
 /// Corners, in the file's unit, and facets.
 type Facets = (Vec<Vector<3>>, Vec<[u32; 3]>);
 
-/// The solid in the file at `path`, whose unit is `unit` (m); `flip` reverses its facets.
+/// Reads the solid in the file at `path`, whose unit is `unit` (m). `flip` reverses the facets.
 ///
 /// # Errors
-/// `File` if it cannot be read; `Scene` if it is neither STL nor OBJ, too large, damaged, or no solid.
+/// `File` if the file cannot be read; `Scene` if the file is neither STL nor OBJ, too large, damaged, or not a solid.
 pub(crate) fn read(path: &Path, unit: f64, flip: bool) -> Result<Mesh> {
     let kind = path.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
     let load = match kind.as_str() {
@@ -44,10 +44,10 @@ pub(crate) fn read(path: &Path, unit: f64, flip: bool) -> Result<Mesh> {
     Mesh::new(&points, &facets).map_err(|e| Error { message: format!("{}: {}", path.display(), e.message), ..e })
 }
 
-/// The bytes of the file at `path`.
+/// Returns the bytes of the file at `path`.
 ///
 /// # Errors
-/// `File` if it cannot be read, `Scene` if it is too large.
+/// `File` if the file cannot be read, `Scene` if the file is too large.
 pub(crate) fn bytes(path: &Path) -> Result<Vec<u8>> {
     let mut bytes = Vec::new();
     let opened = File::open(path).and_then(|file| file.take(MOST_BYTES + 1).read_to_end(&mut bytes));
@@ -63,19 +63,19 @@ fn damaged(path: &Path, why: impl std::fmt::Display) -> Error {
     Error::scene(format!("{} cannot be read: {why}", path.display())).help("export it again; a mesh is STL or OBJ")
 }
 
-/// The error of too many facets, which are not counted.
+/// Returns the error that the mesh has too many facets, without their number.
 fn too_many(path: &Path) -> Error {
     Error::scene(format!("{} has more than {MAX_FACETS} facets", path.display()))
         .help("thin it out (\"decimate\"): what is finer than dp cannot be seen")
 }
 
-/// Whether all lines are short enough for the loaders.
+/// Returns whether the file is text whose lines are short enough for the loaders.
 fn is_text(bytes: &[u8]) -> bool {
     bytes.split(|b| *b == b'\n').all(|line| line.len() <= LONGEST)
 }
 
 fn stl(path: &Path, mut bytes: Vec<u8>) -> Result<Facets> {
-    // 84 bytes and 50 for each facet: binary, even if it begins with the word by which text is known.
+    // A file of 84 bytes plus 50 bytes for each facet is binary, even if it begins with the keyword of the text format.
     let count = bytes.get(80..84).and_then(|c| c.try_into().ok()).map_or(0, |c| u32::from_le_bytes(c) as usize);
     let binary = bytes.len() >= 84 && bytes.len() - 84 >= 50 * count.min(bytes.len());
     let begun = bytes.iter().position(|b| !b.is_ascii_whitespace()).unwrap_or(0);
@@ -85,7 +85,7 @@ fn stl(path: &Path, mut bytes: Vec<u8>) -> Result<Facets> {
         if !is_text(&bytes) {
             return Err(damaged(path, format!("it has a line of more than {LONGEST} bytes")));
         }
-        // The loader wants small letters, and a name after the first word.
+        // The loader requires lower case and a name after the first keyword.
         let text = bytes[begun..].to_ascii_lowercase();
         let rest = text.iter().position(|b| *b == b'\n').map_or(&[][..], |end| &text[end..]);
         bytes = [b"solid mesh", rest].concat();

@@ -1,11 +1,12 @@
 //! Scenes: reading, checking, filling in the defaults, building.
 //!
 //! `toml_source` reads a [`Scene`] from TOML, `overrides` puts the values of `--set` into it and `diagnostics` explains the errors of
-//! the parser. A file of `section` holds a section of the scene: configuration, validation, defaults, construction. `resolve`
-//! and `build` put the sections together.
+//! the parser. Each file of `section` contains the configuration, validation, defaults and construction of a section of
+//! the scene. `resolve` and `build` combine the sections.
 //!
-//! An absent key is `None`; [`resolve`](Scene::resolve) names its default and the reason. A vector is a list of as many numbers as
-//! the scene has dimensions. Units are SI; keys that end in `_deg` are in degrees. `docs/reference/scene.md` explains every key.
+//! An absent key is `None`; [`resolve`](Scene::resolve) returns its default and the reason. A vector is a list of two
+//! numbers in 2-D and three numbers in 3-D. Units are SI; keys that end in `_deg` are in degrees.
+//! `docs/reference/scene.md` explains every key.
 
 mod build;
 mod bundled;
@@ -69,7 +70,7 @@ pub use {
     section::wave::WaveConfig,
     untagged::TimeValueConfig,
 };
-// Parts of the configuration that the constructors above fill.
+// Parts of the configuration that the constructors of the types above fill in.
 #[doc(hidden)]
 pub use {
     crate::math::{BoxConfig, NumberOrArray},
@@ -96,7 +97,7 @@ pub use {
     untagged::{DraftChoice, FieldFormulaConfig, LengthUnit, PolylineConfig, TimeFunctionConfig, TimeVectorConfig},
 };
 
-/// Most bytes of a scene's text; the longest bundled one has 3,000.
+/// Largest size of the text of a scene, B. The longest bundled scene has 3,000 B.
 const MOST_TEXT: u64 = 1 << 20;
 
 /// A scene, as `scene.toml` describes it.
@@ -115,7 +116,7 @@ pub struct Scene {
     pub gravity: Option<Vec<f64>>,
     /// Largest random offset of a water particle from its lattice point at the start, in each direction, over dp.
     pub jitter: Option<f64>,
-    /// Box that nothing may leave.
+    /// Box that water and moving solids must not leave.
     pub domain: Option<BoxConfig>,
     /// Periodic sides.
     pub periodic: Option<PeriodicConfig>,
@@ -130,7 +131,7 @@ pub struct Scene {
     /// Solids.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub solid: Vec<SolidConfig>,
-    /// Joints between them.
+    /// Joints of the solids.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub joint: Vec<JointConfig>,
     /// Springs and mooring lines.
@@ -154,7 +155,7 @@ pub struct Scene {
     /// Probes.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub probe: Vec<ProbeConfig>,
-    /// FramesChoice for ParaView.
+    /// Frames for ParaView.
     pub frames: Option<FramesChoice>,
     /// Checkpoints.
     pub checkpoint: Option<CheckpointConfig>,
@@ -164,14 +165,14 @@ pub struct Scene {
     /// Statistics of series.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub statistic: Vec<StatisticConfig>,
-    /// Where each key was written.
+    /// Source location of each key.
     #[serde(skip)]
     origin: SceneSource,
 }
 
 impl Scene {
-    /// A scene of `dimension` 2 or 3, particle spacing `dp` (m), that ends at `until` (s), without water and solids. Keys that are not
-    /// set have the defaults of a TOML scene.
+    /// Creates a scene of `dimension` 2 or 3 with particle spacing `dp` (m) that ends at `until` (s), without water and
+    /// solids. Keys that are not set have the defaults of a TOML scene.
     ///
     /// ```
     /// use pontoon::scene::{PlacementConfig, ProbeConfig, Scene, ShapeConfig, SolidConfig, SpringConfig};
@@ -189,13 +190,13 @@ impl Scene {
         Self { dimension, dp, until, ..Self::default() }
     }
 
-    /// The same scene with a caption.
+    /// Returns the same scene with a caption.
     pub fn title(mut self, title: impl Into<String>) -> Self {
         self.title = Some(title.into());
         self
     }
 
-    /// The same scene with water in the box from corner `min` to corner `max` (m) too.
+    /// Returns the scene with an additional box of water from corner `min` to corner `max` (m).
     pub fn water_box(mut self, min: impl Into<Vec<f64>>, max: impl Into<Vec<f64>>) -> Self {
         let corners = Some(BoxConfig { min: min.into(), max: max.into() });
         let fill = FillConfig { corners, ..FillConfig::default() };
@@ -203,71 +204,71 @@ impl Scene {
         self
     }
 
-    /// The same scene with one more solid.
+    /// Returns the same scene with one more solid.
     pub fn solid(mut self, solid: SolidConfig) -> Self {
         self.solid.push(solid);
         self
     }
 
-    /// The same scene with these laws.
+    /// Returns the scene with the given model.
     pub fn model(mut self, model: ModelConfig) -> Self {
         self.model = model;
         self
     }
 
-    /// The same scene with one more probe.
+    /// Returns the same scene with one more probe.
     pub fn probe(mut self, probe: ProbeConfig) -> Self {
         self.probe.push(probe);
         self
     }
 
-    /// The same scene without frames.
+    /// Returns the same scene without frames.
     pub fn without_frames(mut self) -> Self {
         self.frames = Some(FramesChoice::Off);
         self
     }
 
-    /// The same scene with one more sponge layer.
+    /// Returns the same scene with one more sponge layer.
     pub fn damping(mut self, layer: SpongeLayerConfig) -> Self {
         self.damping.push(layer);
         self
     }
 
-    /// The same scene with one more joint.
+    /// Returns the same scene with one more joint.
     pub fn joint(mut self, joint: JointConfig) -> Self {
         self.joint.push(joint);
         self
     }
 
-    /// The same scene with one more spring or mooring line.
+    /// Returns the same scene with one more spring or mooring line.
     pub fn spring(mut self, spring: SpringConfig) -> Self {
         self.spring.push(spring);
         self
     }
 
-    /// The same scene with one more rope.
+    /// Returns the same scene with one more rope.
     pub fn rope(mut self, rope: RopeConfig) -> Self {
         self.rope.push(rope);
         self
     }
 
-    /// The same scene with one more prescribed force.
+    /// Returns the same scene with one more prescribed force.
     pub fn force(mut self, force: ForceConfig) -> Self {
         self.force.push(force);
         self
     }
 
-    /// The same scene with contact properties of one more pair.
+    /// Returns the same scene with contact properties of one more pair.
     pub fn contact(mut self, contact: ContactConfig) -> Self {
         self.contact.push(contact);
         self
     }
 
-    /// Reads the scene at `path`, a file or a folder that holds `scene.toml`; `sets` are keys and values
-    /// that replace those of the file, as in `("model.viscosity", "none")` or `("solid.box.free.density", "500")`.
+    /// Reads the scene at `path`, a file or a folder that contains `scene.toml`. `sets` are keys with values that
+    /// replace the values of the file, as in `("model.viscosity", "none")` or `("solid.box.free.density", "500")`.
     ///
     /// # Errors
-    /// `File` if nothing can be read there; `Scene` with line, column and advice if a key or value is wrong.
+    /// `File` if no scene can be read at `path`; `Scene` with line, column and advice if a key or value is wrong.
     pub fn read(path: &Path, sets: &[(String, String)]) -> Result<Self> {
         let file = if path.is_dir() { path.join("scene.toml") } else { path.to_path_buf() };
         let mut text = String::new();
@@ -285,28 +286,28 @@ impl Scene {
         Self::from_toml(&text, &file.display().to_string(), &folder, sets)
     }
 
-    /// Reads a scene from `text`; the files that it names are looked for in `folder`.
+    /// Reads a scene from `text`. The files that the scene names must be in `folder`.
     ///
     /// # Errors
-    /// `Scene`, as [`Scene::read`].
+    /// `Scene`, as in [`Scene::read`].
     pub fn parse(text: &str, folder: &Path, sets: &[(String, String)]) -> Result<Self> {
         Self::from_toml(text, "scene.toml", folder, sets)
     }
 
-    /// Reads a scene from `text`; messages call it `file`.
+    /// Reads a scene from `text`. Error messages use the file name `file`.
     fn from_toml(text: &str, file: &str, folder: &Path, sets: &[(String, String)]) -> Result<Self> {
         let (mut scene, origin): (Self, SceneSource) = toml_source::read(text, file, folder, sets)?;
         scene.origin = origin;
         Ok(scene)
     }
 
-    /// The keys and values that the scene writes with an old name.
+    /// Returns the keys and values for which the scene uses an old name.
     pub fn renamed_names(&self) -> &[RenamedName] {
         &self.origin.renamed
     }
 
-    /// An error of a simulation that this scene was built into, with the file and the line of the key that it names, if it
-    /// names one.
+    /// Returns an error of a simulation of this scene with the file and the line of the key that the error names, if
+    /// any.
     pub fn with_location(&self, mut error: Error) -> Error {
         match error.location.take() {
             Some(place) if place.file.is_empty() => self.origin.with_location(error, &place.key),
@@ -314,7 +315,7 @@ impl Scene {
         }
     }
 
-    /// The scene as TOML, for a file or a manifest.
+    /// Returns the scene as TOML, for a file or a manifest.
     ///
     /// # Errors
     /// `Scene` if a number cannot be written.

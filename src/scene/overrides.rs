@@ -9,7 +9,7 @@ use toml::{
 
 use crate::error::{Error, ErrorCode, Result, suggestion};
 
-/// Keys whose value is one choice out of several laws.
+/// Keys whose value selects one of several laws.
 pub(super) const CHOICES: [&str; 9] = [
     "model.kernel",
     "model.viscosity",
@@ -22,12 +22,12 @@ pub(super) const CHOICES: [&str; 9] = [
     "time.scheme",
 ];
 
-/// The key `part` inside the key `path`.
+/// Returns the key `part` inside the key `path`.
 pub(super) fn subkey(path: &str, part: impl std::fmt::Display) -> String {
     if path.is_empty() { part.to_string() } else { format!("{path}.{part}") }
 }
 
-/// The locations of the keys of `--set`: beyond the text, one for each key.
+/// The locations of the keys of `--set`. Each key has a location beyond the end of the text.
 pub(super) struct OverrideLocations {
     /// The first location.
     first: usize,
@@ -36,29 +36,29 @@ pub(super) struct OverrideLocations {
 }
 
 impl OverrideLocations {
-    /// None yet, for an override of `text`.
+    /// Creates an empty list of locations for overrides of `text`.
     pub(crate) fn after(text: &str) -> Self {
         Self { first: text.len() + 1, keys: Vec::new() }
     }
 
-    /// A new location for `key`.
+    /// Returns a new location for `key`.
     pub(crate) fn place(&mut self, key: &str) -> Range<usize> {
         let place = self.first + self.keys.len();
         self.keys.push(key.into());
         place..place
     }
 
-    /// The key at a location; `None` if that is in the text.
+    /// Returns the key at a location, or `None` if the location is in the text.
     pub(crate) fn key(&self, place: usize) -> Option<String> {
         self.keys.get(place.checked_sub(self.first)?).cloned()
     }
 }
 
-/// Puts the value written as `text` at `key` and locates its parts by `marks`; text that is no TOML value is a string.
-/// Returns the key with numbers in place of names.
+/// Puts the value written as `text` at `key` and assigns locations from `marks` to its parts. A text that is not a TOML
+/// value counts as a string. Returns the key with numbers in place of names.
 ///
 /// # Errors
-/// `Scene` if `key` is no key, or names an entry of a list that is not there.
+/// `Scene` if `key` is not a valid key, or names a list entry that does not exist.
 pub(super) fn apply_override<'i>(
     root: &mut DeTable<'i>,
     key: &'i str,
@@ -78,7 +78,7 @@ pub(super) fn apply_override<'i>(
     put_in(root, &parts, "", value, marks)
 }
 
-/// Puts `value` into the table at `path`; `parts` has one part or more.
+/// Puts `value` into the table at `path`. `parts` has at least one part.
 fn put_in<'i>(
     table: &mut DeTable<'i>,
     parts: &[&'i str],
@@ -120,7 +120,7 @@ fn insert_value<'i>(
     }
 }
 
-/// The number of the entry of a list that `word` names, by its `name` or by its number.
+/// Returns the index of the list entry that `word` identifies by its `name` or by its number.
 fn entry_index(path: &str, items: &[Spanned<DeValue>], word: &str) -> Result<usize> {
     let name = |item: &Spanned<DeValue>| {
         item.get_ref().as_table().and_then(|t| t.get("name")).and_then(|n| n.get_ref().as_str()).map(String::from)
@@ -135,7 +135,7 @@ fn entry_index(path: &str, items: &[Spanned<DeValue>], word: &str) -> Result<usi
     })
 }
 
-/// The value of `key` with a location of its own for each of its parts.
+/// Returns the value of `key` with a separate location for each of its parts.
 fn with_locations<'i>(value: DeValue<'i>, key: &str, marks: &mut OverrideLocations) -> Spanned<DeValue<'i>> {
     let place = marks.place(key);
     let value = match value {

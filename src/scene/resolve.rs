@@ -32,7 +32,7 @@ impl fmt::Display for ResolvedValue {
     }
 }
 
-/// The names of all entries of a list, from one field of each.
+/// Expands to the names of all entries of a list, read from one field of each entry.
 macro_rules! names {
     ($list:expr) => {
         $list.iter().map(|entry| entry.name.as_str()).collect::<Vec<_>>()
@@ -40,7 +40,7 @@ macro_rules! names {
 }
 
 impl Scene {
-    /// The facts of the scene against which its sections are checked and from which they are built.
+    /// Returns the properties of the scene that the validation and construction of its sections use.
     pub(super) fn context(&self) -> Context<'_> {
         Context {
             origin: &self.origin,
@@ -53,7 +53,7 @@ impl Scene {
         }
     }
 
-    /// Refuses a scene that is wrong; opens no file.
+    /// Refuses an invalid scene without opening files.
     fn verify(&self) -> Result<()> {
         let ctx = &self.context();
         if !(2..=3).contains(&self.dimension) {
@@ -96,7 +96,7 @@ impl Scene {
         each(&self.statistic, "statistic", |statistic, key| statistic.verify(ctx, key, &series))
     }
 
-    /// The scene with every default filled in, and their reasons.
+    /// Returns the scene with every default filled in, and the reasons of the defaults.
     ///
     /// # Errors
     /// `Scene` if the scene is wrong.
@@ -154,10 +154,10 @@ impl Scene {
         Ok((scene, defaults))
     }
 
-    /// Every value in force and its source, in the order of `docs/reference/scene.md`.
+    /// Returns every value in force and its source, in the order of `docs/reference/scene.md`.
     ///
     /// # Errors
-    /// `Scene` if the scene is wrong, or a file that gives a shape is missing or wrong.
+    /// `Scene` if the scene is wrong, or a file with a shape is missing or wrong.
     pub fn resolve(&self) -> Result<Vec<ResolvedValue>> {
         let (scene, defaults) = self.with_defaults()?;
         let values = toml::Table::try_from(&scene).unwrap_or_default();
@@ -212,7 +212,8 @@ impl Scene {
         }
     }
 
-    /// The source of `key`: the default above it, its line, or else the default of the law or shape.
+    /// Returns the source of `key`: the default of a key above it, its line, or otherwise the default of the law or
+    /// shape.
     fn source(&self, key: &str, defaults: &Defaults) -> ValueSource {
         let above = |key: &str| key.rsplit_once('.').map(|(parent, _)| parent.to_string());
         let mut place = Some(key.to_string());
@@ -230,7 +231,7 @@ impl Scene {
         if self.origin.file.is_empty() { ValueSource::Program } else { self.inherited(key) }
     }
 
-    /// The source of a value that was not written itself, but whose table may have been.
+    /// Returns the source of a value that the scene does not contain, although it may contain the table of the value.
     fn inherited(&self, key: &str) -> ValueSource {
         let written = |parent: &str| self.origin.source(parent);
         match key.rsplit_once('.') {

@@ -1,7 +1,8 @@
 //! The keys of a scene as a JSON schema, for editors, generated from the types that read them.
 //!
-//! It states where exactly one key of several is required (`fixed`, `driven`, `free` of a solid) and where only `true` is valid
-//! (`fixed`). It does not state other dependences between keys (as many numbers as dimensions).
+//! The schema requires exactly one of several alternative keys (`fixed`, `driven`, `free` of a solid), and the value
+//! `true` where no other value is valid (`fixed`). It does not contain other dependences, such as that of the length of
+//! a vector on the dimension.
 
 use schemars::generate::SchemaSettings;
 use serde_json::{Map, Value, json};
@@ -21,7 +22,7 @@ const CHOICES: [&str; 9] = [
     "TimeScheme",
 ];
 
-/// A type, and which of its keys are alternatives, of which exactly one is given.
+/// The name of a type, and a function that selects its alternative keys. A scene sets exactly one alternative.
 type Kinds = (&'static str, fn(&str) -> bool);
 
 /// The alternatives of a solid, of the mass of a body, of the region of water, of a probe and of a statistic.
@@ -33,7 +34,7 @@ const KINDS: [Kinds; 5] = [
     ("StatisticConfig", |key| !matches!(key, "name" | "period" | "depth" | "from" | "until")),
 ];
 
-/// The JSON schema (draft 2020-12) of a scene.
+/// Returns the JSON schema (draft 2020-12) of a scene.
 pub fn schema() -> Value {
     let settings = SchemaSettings::draft2020_12().for_deserialize();
     let mut schema = settings.into_generator().into_root_schema_for::<Scene>().to_value();
@@ -52,14 +53,14 @@ pub fn schema() -> Value {
     schema
 }
 
-/// Requires exactly one of the keys of a type that are alternatives.
+/// Requires exactly one of the alternative keys of a type.
 fn require_one_of(words: &mut Value, is_kind: fn(&str) -> bool) {
     let keys = words["properties"].as_object().into_iter().flatten().map(|(key, _)| key);
     let kinds: Value = keys.filter(|key| is_kind(key)).map(|key| json!({ "required": [key] })).collect();
     words["oneOf"] = kinds;
 }
 
-/// Removes null as a value of a key: TOML has none.
+/// Removes null as a value of a key, because TOML has no null.
 fn required_only(schema: &mut Value) {
     match schema {
         Value::Object(map) => {
@@ -71,7 +72,7 @@ fn required_only(schema: &mut Value) {
             }
             if let Some(Value::Array(kinds)) = map.get_mut("anyOf") {
                 kinds.retain(|kind| *kind != json!({ "type": "null" }));
-                // What is left of a choice between something and nothing is no choice.
+                // A choice with a single remaining alternative is replaced by this alternative.
                 if let [Value::Object(one)] = &kinds[..] {
                     let one = one.clone();
                     map.remove("anyOf");
@@ -88,7 +89,7 @@ fn required_only(schema: &mut Value) {
     }
 }
 
-/// Accepts the alias of a word, which its type states as `also`, beside the word.
+/// Accepts the alias of a value, which its type declares as `also`, in addition to the value.
 fn expand_aliases(schema: &mut Value) {
     match schema {
         Value::Object(map) => {

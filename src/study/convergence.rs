@@ -1,22 +1,22 @@
-//! How an error falls with the spacing: observed order and grid-convergence index.
+//! Computes the convergence of an error with the particle spacing: observed order and grid-convergence index.
 
 use serde::Serialize;
 
-/// The safety factor of the index where three grids or more are known, –.
+/// The safety factor of the index for three or more grids, –.
 const FACTOR: f64 = 1.25;
 
-/// Convergence of a figure over three spacings.
+/// The convergence of a metric over three particle spacings.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Convergence {
-    /// Observed order, –.
+    /// The observed order, –.
     pub order: f64,
-    /// Grid-convergence index of the finest, relative to its figure, –.
+    /// The grid-convergence index of the finest spacing, relative to the value at that spacing, –.
     pub index: f64,
 }
 
-/// The observed order q of e ∝ dp^q: slope of log e over log dp by least squares.
+/// Returns the observed order q of e ∝ dp^q: the least-squares slope of log e over log dp.
 ///
-/// `points`: spacing (m) and error (any unit, above 0). None with fewer than two spacings.
+/// `points` contains the spacing (m) and the error (any unit, above 0). Returns `None` for fewer than two spacings.
 ///
 /// ```
 /// # use pontoon::study::least_squares;
@@ -33,12 +33,12 @@ pub fn least_squares(points: &[(f64, f64)]) -> Option<f64> {
     (logs.len() >= 2 && across > 0.0).then(|| both / across)
 }
 
-/// Order and index from the three finest of `points`, spacing (m) and figure f:
+/// Returns the order and index from the three finest of `points`, each with the spacing (m) and the value f:
 ///
 ///   (f₃ − f₂)/(f₂ − f₁) = r₂₁^q (r₃₂^q − 1)/(r₂₁^q − 1),   r_ij = dp_i/dp_j, finest first
 ///   GCI = 1.25 |f₂ − f₁| / (|f₁| (r₂₁^q − 1))
 ///
-/// None with fewer than three spacings, or if f does not converge monotonically: then no order can be said.
+/// Returns `None` for fewer than three spacings, or if f does not converge monotonically and so has no order.
 ///
 /// Source: @roache1994.
 /// ```
@@ -54,7 +54,7 @@ pub fn convergence(points: &[(f64, f64)]) -> Option<Convergence> {
     let [(h1, f1), (h2, f2), (h3, f3), ..] = finest[..] else { return None };
     let (r21, r32) = (h2 / h1, h3 / h2);
     let ratio = (f3 - f2) / (f2 - f1);
-    // For q between 0 and 20 the right-hand side grows from ln r₃₂/ln r₂₁.
+    // For q between 0 and 20 the right-hand side increases, starting from ln r₃₂/ln r₂₁.
     let right = |q: f64| r21.powf(q) * (r32.powf(q) - 1.0) / (r21.powf(q) - 1.0);
     let (mut low, mut high) = (1e-6, 20.0);
     if !(ratio > right(low) && ratio < right(high) && r21 > 1.0 && r32 > 1.0) {

@@ -1,4 +1,4 @@
-//! What the cases of one scene cost, beside what they are worth: error over processor time.
+//! Plots the errors of the cases of one scene over processor time.
 
 use super::{
     Job, ResultRow,
@@ -8,11 +8,11 @@ use super::{
 };
 use crate::report::{LineStyle, PlotLine, log_log_plot};
 
-/// The law that tells the colours apart.
+/// The scene key of the model that determines the colours.
 const LAW: &str = "model.viscosity";
 
-/// For every scene of which two or more of `jobs` have finished, and every check with N: N, and N with the
-/// delay taken out, over processor time.
+/// Returns plots over processor time for each scene with at least two finished `jobs` and each check with N. The plots
+/// show N, and N after removal of the delay.
 pub(crate) fn cost_figures(jobs: &[Job], rows: &[ResultRow]) -> String {
     let mut text = String::new();
     for scene in unique(jobs.iter().map(|job| job.group.as_str())) {
@@ -29,7 +29,7 @@ pub(crate) fn cost_figures(jobs: &[Job], rows: &[ResultRow]) -> String {
                     .filter(|(_, of)| of[0].check == check)
                     .filter_map(|(job, of)| Some((*job, CostPoint::new(of, figure)?)))
                     .collect();
-                // Two checks of one series differ in their means alone.
+                // Two checks of one series differ only in their averaging.
                 if points.len() > 1 && !drawn.contains(&points) {
                     text += &plot(scene, check, error, &points, repeat_spread::error_bar_note(rows));
                     drawn.push(points);
@@ -43,7 +43,7 @@ pub(crate) fn cost_figures(jobs: &[Job], rows: &[ResultRow]) -> String {
     }
 }
 
-/// One point for each case, in the colour of its viscosity; `bars` says what its bar is.
+/// Returns a plot with one point for each case, in the colour of its viscosity; `bars` describes the error bars.
 fn plot(scene: &str, check: &str, error: &str, points: &[(&Job, CostPoint)], bars: &str) -> String {
     let laws = unique(points.iter().map(|(job, _)| viscosity(job)));
     let line = |(i, law_of_line): (usize, &&str)| {
@@ -60,17 +60,17 @@ fn plot(scene: &str, check: &str, error: &str, points: &[(&Job, CostPoint)], bar
     title + &html_page::plot_figure(&svg, &caption)
 }
 
-/// The viscosity of a case.
+/// Returns the viscosity of a case.
 fn viscosity(job: &Job) -> &str {
     job.overrides.iter().rev().find(|(key, _)| key == LAW).map_or("that of the scene", |(_, value)| value)
 }
 
-/// The name of a case without that of its scene, where it starts with it.
+/// Returns the name of a case, without the name of its scene if the case name starts with it.
 fn short_name<'a>(name: &'a str, scene: &str) -> &'a str {
     name.strip_prefix(scene).and_then(|rest| rest.strip_prefix('-')).unwrap_or(name)
 }
 
-/// Each of `words` once, in their order.
+/// Returns the distinct `words` in their original order.
 fn unique<'a>(words: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
     let mut found = Vec::new();
     for word in words {

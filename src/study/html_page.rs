@@ -1,4 +1,4 @@
-//! Pages of HTML that stand alone: no script, no file beside them.
+//! Creates self-contained HTML pages without scripts or external files.
 
 use std::time::SystemTime;
 
@@ -14,7 +14,7 @@ td:first-child{white-space:nowrap}\
 code{font-size:.92em}\
 .missed{color:#b00020;font-weight:bold}figure{margin:.5em 0}figcaption{font-size:.9em;color:#444}";
 
-/// The page called `title` with what `body` says.
+/// Returns the page with `title` and the content `body`.
 pub(crate) fn html_page(title: &str, body: &str) -> Vec<u8> {
     let title = escape(title);
     format!(
@@ -24,12 +24,12 @@ pub(crate) fn html_page(title: &str, body: &str) -> Vec<u8> {
     .into_bytes()
 }
 
-/// A plot with its caption.
+/// Returns a plot with its caption.
 pub(crate) fn plot_figure(svg: &str, caption: &str) -> String {
     format!("<figure>{svg}<figcaption>{}</figcaption></figure>\n", escape(caption))
 }
 
-/// How far repeats lie apart, as a part of a page; nothing if no run is repeated.
+/// Returns the page section on the spread of the repeats, or an empty text if no run has repeats.
 pub(crate) fn repeats_section(rows: &[ResultRow]) -> String {
     let told = spread_table(rows);
     match told.is_empty() {
@@ -38,7 +38,7 @@ pub(crate) fn repeats_section(rows: &[ResultRow]) -> String {
     }
 }
 
-/// What ran when and where, as a table.
+/// Returns a table of the command, machine and time of the runs.
 pub(crate) fn provenance_table(command: &str, machine: &Machine, threads: Option<usize>) -> String {
     let Machine { processor, cpus, instructions, os, .. } = machine;
     let instructions = instructions.as_deref().unwrap_or("no lanes");
@@ -55,7 +55,7 @@ pub(crate) fn provenance_table(command: &str, machine: &Machine, threads: Option
     format!("<table>\n{rows}</table>\n")
 }
 
-/// Date and time, UTC.
+/// Returns the current date and time, UTC.
 pub(crate) fn timestamp() -> String {
     humantime::format_rfc3339_seconds(SystemTime::now()).to_string()
 }

@@ -1,4 +1,4 @@
-//! One run of a list: what stands in its folder already, and what is to be done about it.
+//! A job is one run of a list. This module reads the state of the job's folder and starts or resumes the run.
 
 use std::{
     fs,
@@ -13,57 +13,57 @@ use crate::{
     scene::{FramesChoice, FramesConfig, Scene, SizeEstimate, current_key},
 };
 
-/// How far further off its place the water of each repeat starts than that of the one before, dp.
+/// Additional initial displacement of the water from each repeat to the next, dp.
 const REPEAT_OFFSET: f64 = 1e-6;
 
-/// The key that tells repeats apart.
+/// The scene key that distinguishes repeats.
 const JITTER: &str = "jitter";
 
-/// Keys of a scene that change what is kept or judged of a run, never the run.
+/// Scene keys that change only the output or the checks of a run, not its computation.
 const OUTPUT_KEYS: [&str; 4] = ["title", "frames", "checkpoint", "check"];
 
 /// One run of a list.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Job {
-    /// Its name in the list; repeats share it.
+    /// The name of the run in the list; all repeats of the run share this name.
     pub name: String,
-    /// Which of the runs of this name it is: 1, or more where runs are repeated.
+    /// The number of this repeat, counted from 1.
     pub repeat: usize,
-    /// The scene, a folder or a file.
+    /// The path of the scene, which is a folder or a file.
     pub scene: PathBuf,
-    /// Keys of the scene that are changed, and their values.
+    /// The scene keys that the job overrides, with their new values.
     pub overrides: Vec<(String, String)>,
-    /// The run's folder.
+    /// The folder of the run.
     pub folder: PathBuf,
-    /// Jobs of one group have about the same speed.
+    /// The group of the job; jobs of one group run at about the same speed.
     pub group: String,
     /// Particle spacing, m.
     pub dp: f64,
-    /// What else makes this job another than the rest: keys and values.
+    /// The other keys and values that distinguish this job from the other jobs.
     pub varied: Vec<(String, String)>,
 }
 
-/// How a job stands.
+/// The state of a job.
 #[derive(Clone, Debug, PartialEq)]
 pub enum JobState {
-    /// Nothing has been run.
+    /// The run has not started.
     Planned,
-    /// It was asked to stop, and goes on when it is run again.
+    /// The run stopped on request, and resumes when the job runs again.
     Interrupted,
-    /// It reached its end.
+    /// The run reached its end time.
     Finished,
-    /// It could not go on: why.
+    /// The run failed; the string contains the reason.
     Failed(String),
 }
 
-/// A job and what came out of it.
+/// A job and its result.
 #[derive(Clone, Debug)]
 pub struct JobResult {
-    /// How it stands.
+    /// The state of the job.
     pub state: JobState,
-    /// The run's manifest, if there is one.
+    /// The manifest of the run, if the folder contains a manifest.
     pub manifest: Option<Manifest>,
-    /// The run against the references of the scene as it is now.
+    /// The comparison of the run with the references of the current scene.
     pub verdicts: Vec<Verdict>,
 }
 
@@ -74,11 +74,11 @@ impl JobResult {
 }
 
 impl Job {
-    /// This job `times` times over. Each repeat starts with its water moved by a millionth of dp more than the one before,
-    /// the first as the scene says: what then differs between them is chance.
+    /// Returns `times` repeats of this job. The first repeat starts from the unchanged scene. Each further repeat
+    /// displaces the initial water by another millionth of dp, so differences between repeats are random.
     ///
     /// # Errors
-    /// `Usage` for no time, or if the job varies `jitter` itself; those of the scene's words.
+    /// `Usage` if `times` is zero or if the job already varies `jitter`; the errors of reading the scene.
     pub(crate) fn repeated(self, times: usize) -> Result<Vec<Self>> {
         if times == 0 {
             return Err(Error::new(ErrorKind::Usage, "0 repeats run nothing").help("write  --repeat 5"));
@@ -99,7 +99,7 @@ impl Job {
         Ok((1..=times).map(nth).collect())
     }
 
-    /// Its name, with the number of the repeat from the second on.
+    /// Returns the name of the job, with the number of the repeat appended from the second repeat on.
     pub fn display_name(&self) -> String {
         match self.repeat {
             1 => self.name.clone(),
@@ -107,7 +107,7 @@ impl Job {
         }
     }
 
-    /// The scene with the job's changes.
+    /// Returns the scene with the overrides of the job applied.
     ///
     /// # Errors
     /// As [`Scene::read`].
@@ -115,26 +115,26 @@ impl Job {
         Scene::read(&self.scene, &self.overrides)
     }
 
-    /// About how large the run is.
+    /// Returns an estimate of the size of the run.
     ///
     /// # Errors
-    /// Those of the scene's words.
+    /// The errors of reading the scene.
     pub(crate) fn estimated_size(&self) -> Result<SizeEstimate> {
         let scene = self.read_scene()?;
         scene.plan()?;
         scene.estimate_size()
     }
 
-    /// The checks of the scene as it is now, whatever it was when the run was made.
+    /// Returns the checks of the current scene, even if the run used an earlier version of the scene.
     ///
     /// # Errors
-    /// Those of the scene's words and tables.
+    /// The errors of reading the scene and its tables.
     pub(crate) fn checks(&self) -> Result<Vec<ReferenceCheck>> {
         let plan = self.read_scene()?.plan()?;
         plan.checks.iter().map(|words| ReferenceCheck::new(words, &plan.folder)).collect()
     }
 
-    /// The lines of the checks of a run that has finished, none where there is nothing to draw.
+    /// Returns the curves of each check of a finished run; a check without curves has `None`.
     ///
     /// # Errors
     /// As [`Job::checks`].
@@ -143,10 +143,10 @@ impl Job {
         Ok(self.checks()?.iter().map(|check| check.curves(&series).ok()).collect())
     }
 
-    /// What stands in the job's folder; a run of another scene or another version of the program is nothing.
+    /// Returns the result in the folder of the job. A run of another scene or program version counts as no run.
     ///
     /// # Errors
-    /// Those of the scene's words and tables.
+    /// The errors of reading the scene and its tables.
     pub fn existing_result(&self) -> Result<JobResult> {
         match Manifest::read(&self.folder) {
             Ok(manifest) if self.matches(&manifest)? => self.with_verdicts(manifest),
@@ -154,17 +154,18 @@ impl Job {
         }
     }
 
-    /// Runs the job, or goes on with it, or leaves it as it is where it has come to its end. A folder that
-    /// holds a run of another scene or version is set aside as `<folder>.old`.
+    /// Starts the job, or resumes an interrupted run; a run that has already ended stays unchanged. A folder that
+    /// contains a run of another scene or program version is renamed to `<folder>.old`.
     ///
     /// # Errors
-    /// Those of the scene's words and tables. That the run itself fails is no error: the result says so.
+    /// The errors of reading the scene and its tables. A failure of the run itself is not an error; the result contains
+    /// the failure.
     pub fn run_or_resume(&self, threads: Option<usize>, watch: &mut dyn RunObserver) -> Result<JobResult> {
         let before = self.existing_result()?;
         let broke_down = before.manifest.as_ref().is_some_and(|m| m.fault.is_some());
         let outcome = match before.state {
             JobState::Finished => return Ok(before),
-            // The same start breaks down at the same step.
+            // A run from the same initial state breaks down at the same step.
             JobState::Failed(_) if broke_down => return Ok(before),
             JobState::Interrupted => run::resume(&self.folder, &[], threads, watch),
             JobState::Planned | JobState::Failed(_) => self.run_fresh(threads, watch),
@@ -180,7 +181,7 @@ impl Job {
 
     fn run_fresh(&self, threads: Option<usize>, watch: &mut dyn RunObserver) -> Result<run::RunOutcome> {
         if fs::read_dir(&self.folder).is_ok_and(|mut entries| entries.next().is_some()) {
-            // Whoever still runs there keeps the folder.
+            // If another process still runs in the folder, the lock fails and the folder stays in place.
             drop(run::Lock::acquire(&self.folder)?);
             set_aside(&self.folder)?;
         }
@@ -188,12 +189,12 @@ impl Job {
         run::run(&self.scene, &options, watch)
     }
 
-    /// Whether `manifest` is of a run of this scene by this program.
+    /// Returns whether `manifest` belongs to a run of this scene by this program version.
     fn matches(&self, manifest: &Manifest) -> Result<bool> {
         let scene = self.read_scene()?;
         let words = scene.to_toml()?;
         let own = computed_keys(&words);
-        // References are read anew whenever they are needed.
+        // The program rereads the references for each comparison, so changed references do not invalidate a run.
         let references: Vec<&str> = scene.check.iter().filter_map(|check| check.reference.as_deref()).collect();
         Ok(manifest.version == env!("CARGO_PKG_VERSION")
             && has_frames(&scene, manifest)
@@ -217,7 +218,7 @@ impl Job {
     }
 }
 
-/// Whether a run kept the frames that its scene now asks for, if it names their times; there may be others between them.
+/// Returns whether the run saved all frame times that the scene lists. The run may contain additional frames.
 fn has_frames(scene: &Scene, manifest: &Manifest) -> bool {
     let Some(FramesChoice::On(FramesConfig { every: Some(every), .. })) = &scene.frames else { return true };
     let words = manifest.scene.parse::<toml::Table>().ok();
@@ -225,7 +226,7 @@ fn has_frames(scene: &Scene, manifest: &Manifest) -> bool {
     kept.map(|kept| every / kept).is_some_and(|each| each > 0.5 && (each - each.round()).abs() < 1e-6)
 }
 
-/// The words of a scene that decide what a run computes.
+/// Returns the scene keys that determine the computation of a run.
 fn computed_keys(scene: &str) -> Option<toml::Table> {
     let mut words = scene.parse::<toml::Table>().ok()?;
     OUTPUT_KEYS.iter().for_each(|key| {
@@ -234,15 +235,15 @@ fn computed_keys(scene: &str) -> Option<toml::Table> {
     Some(words)
 }
 
-/// Whether the files that the text of a `scene` names, except `ignored` ones, are the same beside its `file` and in the run's
-/// `folder`.
+/// Returns whether the files that `scene` names are identical beside `file` and in the run's `folder`. The comparison
+/// omits the `ignored` files.
 fn files_unchanged(file: &Path, scene: &str, folder: &Path, ignored: &[&str]) -> bool {
     let (beside, kept) = (file.parent().unwrap_or(Path::new("")), folder.join("scene"));
     let same = |name: &String| fs::read(beside.join(name)).ok() == fs::read(kept.join(name)).ok();
     run_folder::referenced_files(scene).iter().filter(|name| !ignored.contains(&name.as_str())).all(same)
 }
 
-/// Renames `folder` to the first free of `<folder>.old`, `<folder>.old-2`, …
+/// Renames `folder` to the first unused name of `<folder>.old`, `<folder>.old-2`, …
 fn set_aside(folder: &Path) -> Result<()> {
     let name = |number: usize| {
         let mut name = folder.as_os_str().to_owned();

@@ -1,8 +1,8 @@
-//! Many runs as one question: a grid over spacing and laws, or a list of cases with references.
+//! Performs sets of runs: a grid over particle spacings and models, or a list of cases with references.
 //!
-//! A [`Job`] is one run in a folder of its own; it is skipped where it has been run, and goes on where it was
-//! interrupted. [`ParameterGrid`] makes the jobs of `pontoon study`, [`ValidationCase`] those of `pontoon validate`; rows, orders
-//! and pages say what came out. [`stress`] makes and judges many short runs in memory.
+//! A [`Job`] is one run in its own folder. The program skips a finished job and resumes an interrupted job.
+//! [`ParameterGrid`] creates the jobs of `pontoon study`, and [`ValidationCase`] those of `pontoon validate`. Tables,
+//! orders of convergence and pages present the results. [`stress`] runs and judges many short runs in memory.
 
 mod validation_cases;
 mod cost_plot;

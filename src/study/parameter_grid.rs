@@ -1,4 +1,4 @@
-//! The grid of a study: every spacing with every combination of values.
+//! Defines the parameter grid of a study: each particle spacing with each combination of values.
 
 use std::path::{Path, PathBuf};
 
@@ -8,46 +8,46 @@ use crate::{
     output::checkpoint::fnv1a,
 };
 
-/// Longest name of a folder that is made of the values themselves.
+/// The largest length of a folder name made from the values.
 const LONGEST: usize = 80;
 
-/// Most frames that a run keeps for a picture.
+/// The largest number of frames that a run saves for pictures.
 const MOST_FRAMES: f64 = 200.0;
 
-/// A key of the scene and the values that it takes.
+/// A scene key and its values in the study.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct VariedKey {
-    /// The key.
+    /// The scene key.
     pub key: String,
-    /// Its values, as TOML.
+    /// The values, as TOML.
     pub values: Vec<String>,
 }
 
 /// A grid of runs of one scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ParameterGrid {
-    /// The scene's name.
+    /// The name of the scene.
     pub name: String,
-    /// The scene, a folder or a file.
+    /// The path of the scene, which is a folder or a file.
     pub scene: PathBuf,
-    /// Spacings, m, the coarsest first.
+    /// The particle spacings, m, from coarse to fine.
     pub dp: Vec<f64>,
-    /// What else is varied.
+    /// The other varied keys.
     pub vary: Vec<VariedKey>,
-    /// Keys that are changed in all runs.
+    /// The scene keys that are overridden in all runs.
     pub overrides: Vec<(String, String)>,
-    /// Simulated time between the frames that each run keeps for a picture, s; without it none are kept.
+    /// The simulated time between the frames for pictures, s; without a value, the runs save no frames for pictures.
     pub frames: Option<f64>,
-    /// How often each run is made, each time from a start that is a hair's breadth another (`Job::repeated`).
+    /// The number of repeats of each run, each with a slightly different initial state (see `Job::repeated`).
     pub repeat: usize,
 }
 
 impl ParameterGrid {
-    /// The jobs, in folders of `out`, with the values of each: cheap ones first, so that a mistake shows
-    /// early.
+    /// Returns the jobs, each with its values and a folder below `out`. The cheapest jobs come first, so that mistakes
+    /// become visible early.
     ///
     /// # Errors
-    /// `Usage` if a spacing or a list of values is empty or given twice; those of `Job::repeated`.
+    /// `Usage` if a spacing or a list of values is empty or repeated; the errors of `Job::repeated`.
     pub(crate) fn jobs(&self, out: &Path) -> Result<Vec<Job>> {
         let mut dp = self.dp.clone();
         dp.sort_by(|a, b| b.total_cmp(a));
@@ -81,7 +81,7 @@ impl ParameterGrid {
         }
     }
 
-    /// Every combination of the varied values; one that is empty if nothing is varied.
+    /// Returns every combination of the varied values, or a single empty combination if nothing varies.
     pub(crate) fn combinations(&self) -> Vec<Vec<(String, String)>> {
         self.vary.iter().fold(vec![vec![]], |all, vary| {
             let with = |before: &Vec<(String, String)>, value: &String| {
@@ -92,8 +92,9 @@ impl ParameterGrid {
     }
 }
 
-/// The longest interval (s) of which all `times` (s) are multiples, to a millisecond, as long as that makes no more than 200
-/// frames in a run of `until` (s); `until` if there is no time but the start.
+/// Returns the longest interval (s) of which all `times` (s) are multiples, to within a millisecond. The interval is
+/// long enough for at most 200 frames in a run of `until` (s). Returns `until` if `times` contains no time after the
+/// start.
 ///
 /// ```
 /// # use pontoon::study::frame_interval;
@@ -113,7 +114,7 @@ pub fn frame_interval(times: &[f64], until: f64) -> f64 {
     }
 }
 
-/// What makes each of `jobs` another than the rest, briefly.
+/// Returns a short label for each of `jobs` that distinguishes the job from the others.
 pub fn distinguishing_labels(jobs: &[Job]) -> Vec<String> {
     let spacings = jobs.windows(2).any(|pair| pair[0].dp != pair[1].dp);
     let head = |job: &Job| {
@@ -126,12 +127,12 @@ pub fn distinguishing_labels(jobs: &[Job]) -> Vec<String> {
     jobs.iter().map(head).collect()
 }
 
-/// A combination in words.
+/// Returns a combination as text.
 pub(crate) fn combination_label(varied: &[(String, String)]) -> String {
     varied.iter().map(|(key, value)| format!("{key} = {value}")).collect::<Vec<_>>().join(", ")
 }
 
-/// `text` at its commas, but for those within brackets, braces and quotes.
+/// Returns the parts of `text` between its commas. Commas within brackets, braces and quotes do not split the text.
 ///
 /// ```
 /// # use pontoon::study::split_values;
@@ -158,7 +159,7 @@ pub fn split_values(text: &str) -> Vec<String> {
     parts
 }
 
-/// The name of a run's folder: its spacing and its values, as far as a file can be called so.
+/// Returns the folder name of a run, made from its spacing and values with characters that are valid in file names.
 fn folder_name(dp: f64, varied: &[(String, String)]) -> String {
     let mut name = format!("dp-{dp}");
     for (key, value) in varied {

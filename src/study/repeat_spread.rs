@@ -1,4 +1,4 @@
-//! How far the repeats of a run lie apart: what of an error is chance.
+//! Computes the spread of the repeats of a run, which is the random part of an error.
 
 use serde::Serialize;
 
@@ -8,7 +8,7 @@ use super::{
 };
 use crate::analysis::format_verdicts;
 
-/// The figures of which a spread is told.
+/// The metrics for which the program reports a spread.
 const SPREAD_METRICS: [Metric; 5] = [
     ("N", |r| r.metrics.relative_l2),
     ("M", |r| r.metrics.amplitude_ratio),
@@ -17,37 +17,37 @@ const SPREAD_METRICS: [Metric; 5] = [
     MAX_ABS_METRIC,
 ];
 
-/// A figure over all repeats of a run that have finished.
+/// The statistics of a metric over all finished repeats of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Spread {
-    /// How many repeats.
+    /// The number of repeats.
     pub runs: usize,
-    /// Their mean.
+    /// The mean of the metric over the repeats.
     pub mean: f64,
-    /// Standard deviation of one run, from the repeats (n − 1); none for a single one.
+    /// The sample standard deviation of the repeats (n − 1), or `None` for a single repeat.
     pub deviation: Option<f64>,
-    /// The least.
+    /// The smallest value.
     pub least: f64,
-    /// The greatest.
+    /// The largest value.
     pub greatest: f64,
 }
 
-/// A run, a check and a figure, and how far the repeats lie apart in it.
+/// The spread of a metric over the repeats of a run, for one check.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RepeatSpread {
-    /// Name of the run.
+    /// The name of the run.
     pub run: String,
-    /// What was compared, as `probe.column`.
+    /// The compared series, as `probe.column`.
     pub check: String,
-    /// Which figure.
+    /// The name of the metric.
     pub figure: &'static str,
-    /// How far the repeats lie apart.
+    /// The spread of the repeats.
     #[serde(flatten)]
     pub spread: Spread,
 }
 
 impl Spread {
-    /// Of `values`; none if there are none.
+    /// Returns the spread of `values`, or `None` without values.
     ///
     /// ```
     /// # use pontoon::study::Spread;
@@ -69,12 +69,12 @@ impl Spread {
         })
     }
 
-    /// In words: mean ± deviation (least to greatest), with numbers as `number` writes them.
+    /// Returns the spread as text: mean ± deviation (least to greatest), with numbers in the format of `number`.
     pub fn format(&self, number: fn(Option<f64>) -> String) -> String {
         let [mean, least, greatest] = [self.mean, self.least, self.greatest].map(|x| number(Some(x)));
         let deviation = match self.deviation {
             None => return mean,
-            // Too small for the digits of the mean.
+            // The deviation is too small for the digits of the mean.
             Some(x) if x > 0.0 && x < 1e-3 * self.mean.abs() => format!("{x:.0e}"),
             x => number(x),
         };
@@ -83,7 +83,8 @@ impl Spread {
     }
 }
 
-/// The finished rows of each run and check, its repeats together, in the order of `rows`.
+/// Returns the finished rows, grouped by run and check so that repeats form one group. The groups are in the order of
+/// `rows`.
 pub fn group_repeats(rows: &[ResultRow]) -> Vec<Vec<&ResultRow>> {
     let mut all: Vec<Vec<&ResultRow>> = Vec::new();
     for row in rows.iter().filter(|row| row.status == "finished") {
@@ -95,12 +96,12 @@ pub fn group_repeats(rows: &[ResultRow]) -> Vec<Vec<&ResultRow>> {
     all
 }
 
-/// How far the rows `of` one run and check lie apart in a figure; none where no row knows it.
+/// Returns the spread of a metric over the rows `of` one run and check, or `None` if no row has a value of the metric.
 pub fn spread_of(of: &[&ResultRow], figure: fn(&ResultRow) -> Option<f64>) -> Option<Spread> {
     Spread::of(of.iter().filter_map(|row| figure(row)))
 }
 
-/// How far the repeats of each run lie apart in each figure; nothing if no run is repeated.
+/// Returns the spread of each metric over the repeats of each run, or an empty list if no run has repeats.
 pub fn repeat_spreads(rows: &[ResultRow]) -> Vec<RepeatSpread> {
     let figure = |of: &[&ResultRow], (figure, value): Metric| {
         Some(RepeatSpread { run: of[0].run.clone(), check: of[0].check.clone(), figure, spread: spread_of(of, value)? })
@@ -109,31 +110,31 @@ pub fn repeat_spreads(rows: &[ResultRow]) -> Vec<RepeatSpread> {
     repeated.flat_map(|of| SPREAD_METRICS.into_iter().filter_map(move |metric| figure(&of, metric))).collect()
 }
 
-/// Whether any run is repeated.
+/// Returns whether any run has repeats.
 pub fn has_repeats(rows: &[ResultRow]) -> bool {
     rows.iter().any(|row| row.repeat > 1)
 }
 
-/// Runs that share a name as one point of a plot of error over processor time.
+/// A point of a plot of error over processor time, from all runs with one name.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CostPoint {
-    /// Mean processor time, s, and mean error.
+    /// The mean processor time, s, and the mean error.
     pub place: (f64, f64),
-    /// The least and the greatest error.
+    /// The smallest and the largest error.
     pub span: (f64, f64),
-    /// Particle spacing, m.
+    /// The particle spacing, m.
     pub dp: f64,
 }
 
 impl CostPoint {
-    /// Of the rows `of` one run and check; none where no error is known, or no processor time.
+    /// Returns the point of the rows `of` one run and check, or `None` if the rows have no error or no processor time.
     pub fn new(of: &[&ResultRow], error: fn(&ResultRow) -> Option<f64>) -> Option<Self> {
         let (cost, error) = (spread_of(of, |row| row.cpu_s)?.mean, spread_of(of, error)?);
         Some(Self { place: (cost, error.mean), span: (error.least, error.greatest), dp: of[0].dp })
     }
 }
 
-/// What must be said of the bars of a plot; nothing if no run is repeated.
+/// Returns the note on the error bars of a plot, or an empty text if no run has repeats.
 pub fn error_bar_note(rows: &[ResultRow]) -> &'static str {
     match has_repeats(rows) {
         true => " A point is the mean of its repeats, its bar goes from the least to the greatest.",
@@ -141,7 +142,8 @@ pub fn error_bar_note(rows: &[ResultRow]) -> &'static str {
     }
 }
 
-/// The spreads as a table in words, a row for each run and check, the first row its head; empty if no run is repeated.
+/// Returns the spreads as a table of text, with a header row and a row for each run and check. The table is empty if no
+/// run has repeats.
 pub fn spread_table(rows: &[ResultRow]) -> Vec<Vec<String>> {
     let all: Vec<Vec<&ResultRow>> = group_repeats(rows).into_iter().filter(|of| of.len() > 1).collect();
     let known = |(_, figure): &Metric| all.iter().any(|of| spread_of(of, *figure).is_some());
@@ -162,7 +164,7 @@ pub fn spread_table(rows: &[ResultRow]) -> Vec<Vec<String>> {
     head.into_iter().chain(all.iter().map(row)).collect()
 }
 
-/// What their table says.
+/// The note below the table of spreads.
 pub const REPEATS_NOTE: &str = "Repeats start with their water moved by a millionth of dp more each time: what differs between them is chance. \
     Mean ± standard deviation of one run (least to greatest). Two laws whose means are nearer than that are not told apart by one run of each.";
 

@@ -1,4 +1,4 @@
-//! A study as a table: one row for each run and check.
+//! The results of a study as a table, with one row for each run and check.
 
 use serde::Serialize;
 
@@ -8,58 +8,58 @@ use crate::{
     error::{Error, ErrorKind, Result},
 };
 
-/// A run under one of its checks; a figure is none where it is not known.
+/// A row for a run and one of its checks; an unknown value is `None`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct ResultRow {
-    /// Name of the run; repeats share it.
+    /// The name of the run; all repeats of the run share this name.
     pub run: String,
-    /// Which repeat of it, from 1.
+    /// The number of the repeat, counted from 1.
     pub repeat: usize,
-    /// Particle spacing, m.
+    /// The particle spacing, m.
     pub dp: f64,
-    /// Keys and values that make this run another than the rest.
+    /// The keys and values that distinguish this run from the others.
     pub varied: Vec<(String, String)>,
-    /// What was compared, as `probe.column`; empty for a run without checks.
+    /// The compared series, as `probe.column`; empty for a run without checks.
     pub check: String,
-    /// What came out.
+    /// The metrics of the check.
     #[serde(flatten)]
     pub metrics: ErrorMetrics,
     /// N of the running mean, –.
     #[serde(rename = "mean_N")]
     pub mean_relative_l2: Option<f64>,
-    /// N with the delay taken out, –.
+    /// N after removal of the delay, –.
     #[serde(rename = "aligned_N")]
     pub aligned_relative_l2: Option<f64>,
-    /// That delay, s.
+    /// The removed delay, s.
     pub delay_s: Option<f64>,
-    /// Whether the bound is kept, where there is one.
+    /// Whether the check meets its bound, or `None` without a bound.
     pub passed: Option<bool>,
-    /// Particles of water.
+    /// The number of water particles.
     pub water: Option<usize>,
-    /// Wall time, s.
+    /// The wall time, s.
     pub wall_s: Option<f64>,
-    /// Processor time, s.
+    /// The processor time, s.
     pub cpu_s: Option<f64>,
-    /// Particles × force passes.
+    /// The number of particles × force passes.
     pub particle_steps: Option<u64>,
-    /// `planned`, `interrupted`, `finished` or `failed`.
+    /// The state: `planned`, `interrupted`, `finished` or `failed`.
     pub status: &'static str,
-    /// Why it failed.
+    /// The reason for the failure of the run.
     pub reason: Option<String>,
 }
 
-/// An error that is plotted: its name, and how a row tells it.
+/// An error for a plot: its name, and the function that returns its value from a row.
 pub(crate) type Metric = (&'static str, fn(&ResultRow) -> Option<f64>);
 
-/// The errors relative to the reference: N, and N with the delay taken out.
+/// The errors relative to the reference: N, and N after removal of the delay.
 pub(crate) const RELATIVE_METRICS: [Metric; 2] =
     [("N", |r| r.metrics.relative_l2), ("aligned N", |r| r.aligned_relative_l2)];
 
-/// The largest distance from the reference, in the unit of its series.
+/// The largest distance from the reference, in the unit of the series.
 pub(crate) const MAX_ABS_METRIC: Metric = ("largest distance", |r| r.metrics.off);
 
-/// The rows of `jobs`, of which the first have `ran`. A run that has not finished has a row for each of
-/// `checks` too.
+/// Returns the rows of `jobs`; `ran` contains the results of the first jobs. An unfinished run also has a row for each
+/// of `checks`.
 pub(crate) fn result_rows(jobs: &[Job], ran: &[JobResult], checks: &[String]) -> Vec<ResultRow> {
     let of = |(i, job): (usize, &Job)| {
         let first = ResultRow {
@@ -86,7 +86,7 @@ pub(crate) fn result_rows(jobs: &[Job], ran: &[JobResult], checks: &[String]) ->
     jobs.iter().enumerate().flat_map(of).collect()
 }
 
-/// Names of checks: their series, with a number from the second of a series on.
+/// Returns the labels of checks. A label is the series, with a number from the second check of a series on.
 pub(crate) fn check_labels(series: impl IntoIterator<Item = impl Into<String>>) -> Vec<String> {
     let all: Vec<String> = series.into_iter().map(Into::into).collect();
     let label = |i: usize| match all[..i].iter().filter(|other| **other == all[i]).count() {
@@ -126,10 +126,10 @@ fn with_verdict(row: ResultRow, verdict: &Verdict) -> ResultRow {
     }
 }
 
-/// The rows as CSV: `keys` are the varied ones, a column each.
+/// Returns the rows as CSV, with a column for each of the varied `keys`.
 ///
 /// # Errors
-/// `File` if the text cannot be made.
+/// `File` if the CSV text cannot be created.
 pub(crate) fn rows_to_csv(rows: &[ResultRow], keys: &[String]) -> Result<Vec<u8>> {
     let broken = |why: csv::Error| Error::new(ErrorKind::File, format!("the table cannot be made: {why}"));
     let mut writer = csv::Writer::from_writer(Vec::new());

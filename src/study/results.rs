@@ -1,4 +1,4 @@
-//! What a study leaves behind, whole after every run: `study.csv`, `study.json`, `study.html`.
+//! Writes the results of a study after every run: `study.csv`, `study.json` and `study.html`.
 
 use std::{fs, path::PathBuf};
 
@@ -25,23 +25,23 @@ pub struct StudyResults {
     keys: Vec<String>,
     checks: Vec<String>,
     out: PathBuf,
-    /// The runs.
+    /// The jobs of the study.
     pub jobs: Vec<Job>,
 }
 
-/// How an error falls with the spacing under one combination.
+/// The convergence of an error with the particle spacing, for one combination of values.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 struct OrderRow {
     check: String,
-    /// Which error.
+    /// The name of the error.
     error: String,
     /// The varied keys and their values.
     varied: String,
-    /// By least squares over all spacings, –.
+    /// The order by least squares over all spacings, –.
     least_squares: Option<f64>,
-    /// From the three finest, –.
+    /// The order from the three finest spacings, –.
     three_finest: Option<f64>,
-    /// Grid-convergence index of the finest, –.
+    /// The grid-convergence index of the finest spacing, –.
     index: Option<f64>,
 }
 
@@ -55,15 +55,15 @@ struct StudyJson<'a> {
     threads: Option<usize>,
     rows: &'a [ResultRow],
     orders: &'a [OrderRow],
-    /// How far repeats lie apart; empty if nothing is repeated.
+    /// The spreads of the repeats; empty if no run has repeats.
     spreads: Vec<RepeatSpread>,
 }
 
 impl StudyResults {
-    /// The sheet of `grid` in the folder `out`, asked for by `command`.
+    /// Returns the results of `grid` in the folder `out`; `command` is the command of the user.
     ///
     /// # Errors
-    /// `Usage` for a grid that is none; those of the scene's words; `File` if the folder cannot be made.
+    /// `Usage` for an invalid grid; the errors of reading the scene; `File` if the folder cannot be created.
     pub fn new(grid: &ParameterGrid, out: PathBuf, command: String) -> Result<Self> {
         let jobs = grid.jobs(&out)?;
         let mut checks = Vec::new();
@@ -74,20 +74,20 @@ impl StudyResults {
         Ok(Self { title: format!("Study of {}", grid.name), command, keys, checks, out, jobs })
     }
 
-    /// A row for each run and check, those to come too.
+    /// Returns a row for each run and check, including the runs that have not started.
     pub fn rows(&self, ran: &[JobResult]) -> Vec<ResultRow> {
         result_rows(&self.jobs, ran, &self.checks)
     }
 
-    /// Files that [`StudyResults::write`] writes.
+    /// Returns the files that [`StudyResults::write`] writes.
     pub fn files(&self) -> [PathBuf; 3] {
         ["study.csv", "study.json", "study.html"].map(|name| self.out.join(name))
     }
 
-    /// Writes all three files; `ran` are the first runs.
+    /// Writes all three files; `ran` contains the results of the first jobs.
     ///
     /// # Errors
-    /// `File` if one cannot be written; each is replaced as a whole.
+    /// `File` if a file cannot be written; each file is replaced as a whole.
     pub fn write(&self, ran: &[JobResult]) -> Result<()> {
         fs::create_dir_all(&self.out).map_err(|why| Error::write(&self.out, "made", &why))?;
         let rows = self.rows(ran);
@@ -112,8 +112,8 @@ impl StudyResults {
         write_atomically(&html, &html_page::html_page(&self.title, &self.body(&rows, &orders, &machine, threads)))
     }
 
-    /// What the rows of `check` tell of its error: N, and N with the delay taken out; the largest distance
-    /// where there is no N.
+    /// Returns the error metrics that the rows of `check` contain: N, and N after removal of the delay. Without N,
+    /// returns the largest distance.
     fn metrics(rows: &[ResultRow], check: &str) -> Vec<Metric> {
         let has = |metric: &Metric| rows.iter().any(|r| r.check == check && metric.1(r).is_some());
         let found: Vec<Metric> = RELATIVE_METRICS.into_iter().filter(has).collect();
@@ -123,7 +123,7 @@ impl StudyResults {
         }
     }
 
-    /// The combinations, in words.
+    /// Returns the labels of the combinations.
     fn groups(&self) -> Vec<String> {
         let mut groups: Vec<String> = Vec::new();
         for job in &self.jobs {
@@ -134,7 +134,7 @@ impl StudyResults {
         groups
     }
 
-    /// The finished rows of a check and combination, one list for each spacing: its repeats.
+    /// Returns the finished rows of a check and combination, with one list of repeats for each spacing.
     fn finished_rows<'a>(&self, rows: &'a [ResultRow], check: &str, group: &str) -> Vec<Vec<&'a ResultRow>> {
         let own = |r: &ResultRow| self.jobs.iter().any(|job| job.name == r.run && job.group == group);
         group_repeats(rows).into_iter().filter(|of| of[0].check == check && own(of[0])).collect()
@@ -183,7 +183,7 @@ impl StudyResults {
         body
     }
 
-    /// Error over processor time.
+    /// Returns a plot of error over processor time.
     fn plot(&self, rows: &[ResultRow], check: &str, error: &str, figure: fn(&ResultRow) -> Option<f64>) -> String {
         let groups = self.groups();
         let line = |(i, group): (usize, &String)| {
@@ -214,7 +214,7 @@ impl StudyResults {
         rows
     }
 
-    /// The rows as a table in words, for a page or a terminal.
+    /// Returns the rows as a table of text, for a page or a terminal.
     pub fn run_rows(&self, rows: &[ResultRow]) -> Vec<Vec<String>> {
         let repeated = repeat_spread::has_repeats(rows);
         let mut head = vec!["dp, mm".to_string()];
@@ -255,7 +255,7 @@ impl StudyResults {
     }
 }
 
-/// A length (m) in millimetres, without the round-off of its last digits.
+/// Returns a length (m) in millimetres as text, without round-off in the last digits.
 fn millimetres(x: f64) -> String {
     decimals(1e3 * x, 6)
 }

@@ -1,30 +1,30 @@
-//! How long a list of runs will take: from the runs that have finished, else from a usual speed.
+//! Estimates the duration of a list of runs from the finished runs, or from a default speed.
 
 use super::{Job, JobResult, JobState};
 use crate::{error::Result, scene::SizeEstimate};
 
-/// Water particles × force passes a second of one thread, in 2-D and 3-D, where no run has told yet: half of what
-/// `pontoon bench` gives on a slow machine with the default laws.
+/// The default speed in 2-D and 3-D: water particles × force passes per second on one thread. The speed is half the
+/// result of `pontoon bench` on a slow machine with the default models.
 pub const DEFAULT_SPEED: [f64; 2] = [4e6, 1.2e6];
 
-/// A job before it is run.
+/// An estimate of a job before its run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TimeEstimate {
-    /// About how large it is.
+    /// The estimated size.
     pub size: SizeEstimate,
-    /// About how long it will take, s; 0 if it has been run.
+    /// The estimated duration, s; 0 if the job has run.
     pub seconds: f64,
-    /// Whether the speed is that of a run that has finished, not the usual one.
+    /// Whether the speed comes from a finished run instead of the default.
     pub measured: bool,
 }
 
-/// The sizes and times of `jobs`, of which `ran` is known, on `threads` threads.
+/// Returns the sizes and durations of `jobs` on `threads` threads; `ran` contains the known results.
 ///
-/// A run's time is taken as proportional to water particles × steps × passes; the speed is that of the
-/// finished runs of the same group, else of the same dimension, else the usual one.
+/// The duration of a run is proportional to water particles × steps × passes. The speed comes from the finished runs of
+/// the same group, otherwise from those of the same dimension, otherwise from the default.
 ///
 /// # Errors
-/// Those of a scene's words: nothing should be run then.
+/// The errors of reading a scene; no job should start after such an error.
 pub fn estimate_times(jobs: &[Job], ran: &[JobResult], threads: usize) -> Result<Vec<TimeEstimate>> {
     let sizes = jobs.iter().map(Job::estimated_size).collect::<Result<Vec<SizeEstimate>>>()?;
     let speed = |same: &dyn Fn(usize) -> bool| {

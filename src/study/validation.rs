@@ -1,4 +1,4 @@
-//! A validation: cases with references, their table and their page.
+//! A validation consists of cases with references. This module creates its table and its page.
 
 use std::{
     fs,
@@ -18,21 +18,22 @@ use crate::{
     report::{LineStyle, PlotLine, line_plot},
 };
 
-/// Cases that are run, quick or full.
+/// A validation with its cases, quick or full.
 pub struct Validation {
     command: String,
     out: PathBuf,
     cases: Vec<ValidationCase>,
     repeat: usize,
-    /// The runs: the repeats of each case, one case after the other.
+    /// The jobs, grouped by case; each group contains the repeats of the case.
     pub jobs: Vec<Job>,
 }
 
 impl Validation {
-    /// The validation of `cases`, each with the place of its scene, in the folder `out`; each is run `repeat` times.
+    /// Returns the validation of `cases`, each with the path of its scene, in the folder `out`. Each case runs `repeat`
+    /// times.
     ///
     /// # Errors
-    /// Those of the scenes' words and of [`Job::repeated`].
+    /// The errors of reading the scenes and of [`Job::repeated`].
     pub fn new(
         cases: Vec<(ValidationCase, &Path)>,
         full: bool,
@@ -45,12 +46,12 @@ impl Validation {
         Ok(Self { command, out, cases: cases.into_iter().map(|(case, _)| case).collect(), repeat, jobs })
     }
 
-    /// Files that [`Validation::write`] writes.
+    /// Returns the files that [`Validation::write`] writes.
     pub fn files(&self) -> [PathBuf; 2] {
         ["validation.html", "validation.csv"].map(|name| self.out.join(name))
     }
 
-    /// The table of the first runs, of which `ran` is known; its first row is its head.
+    /// Returns the table of the first jobs, whose results are `ran`, with a header row.
     pub fn table(&self, ran: &[JobResult]) -> Vec<Vec<String>> {
         let names: Vec<[String; 1]> = self.jobs.iter().map(|job| [job.display_name()]).collect();
         let named: Vec<Vec<Verdict>> = ran.iter().map(labelled_verdicts).collect();
@@ -68,15 +69,15 @@ impl Validation {
         table
     }
 
-    /// A row for each check of the first runs, of which `ran` is known.
+    /// Returns a row for each check of the first jobs, whose results are `ran`.
     pub fn rows(&self, ran: &[JobResult]) -> Vec<ResultRow> {
         result_rows(&self.jobs[..ran.len()], ran, &[])
     }
 
-    /// Writes page and table; `ran` are the first runs.
+    /// Writes the page and the table; `ran` contains the results of the first jobs.
     ///
     /// # Errors
-    /// `File` if one cannot be written; each is replaced as a whole.
+    /// `File` if a file cannot be written; each file is replaced as a whole.
     pub fn write(&self, ran: &[JobResult]) -> Result<()> {
         fs::create_dir_all(&self.out).map_err(|why| Error::write(&self.out, "made", &why))?;
         let first = ran.iter().find_map(|r| r.manifest.as_ref());
@@ -95,13 +96,13 @@ impl Validation {
     }
 }
 
-/// The verdicts of a run, those of one series told apart.
+/// Returns the verdicts of a run, with numbers that distinguish verdicts of the same series.
 fn labelled_verdicts(ran: &JobResult) -> Vec<Verdict> {
     let labels = check_labels(ran.verdicts.iter().map(|v| v.series.as_str()));
     labels.into_iter().zip(&ran.verdicts).map(|(series, verdict)| Verdict { series, ..verdict.clone() }).collect()
 }
 
-/// Wall time, processor time and particle-steps of a run.
+/// Returns the wall time, processor time and particle-steps of a run as text.
 fn cost_cells(ran: &JobResult) -> [String; 3] {
     ran.manifest.as_ref().map_or_else(
         || ["–"; 3].map(String::from),
@@ -109,7 +110,7 @@ fn cost_cells(ran: &JobResult) -> [String; 3] {
     )
 }
 
-/// What a case is, and the curves of its checks, of all of its repeats that have been run.
+/// Returns the section of a case: its description, and the curves of its checks for all repeats that have run.
 fn section(case: &ValidationCase, jobs: &[Job], ran: &[JobResult]) -> Result<String> {
     let mut text = format!("<h2>{}</h2>\n<p>{}</p>\n", html_page::escape(&case.name), html_page::escape(&case.about));
     if !case.note.is_empty() {
@@ -137,7 +138,8 @@ fn section(case: &ValidationCase, jobs: &[Job], ran: &[JobResult]) -> Result<Str
     Ok(text)
 }
 
-/// The runs `known`, the repeats of one case, over their reference; the figures below are of `verdicts`.
+/// Returns a plot of the curves `known` of the repeats of a case with their reference. The metrics of `verdicts` follow
+/// the plot.
 fn plot(known: &[&CheckCurves], verdicts: &[&Verdict]) -> String {
     let (reference, verdict) = (&known[0].reference, verdicts[0]);
     let (first, last) = reference.span();
@@ -146,7 +148,7 @@ fn plot(known: &[&CheckCurves], verdicts: &[&Verdict]) -> String {
         let all = series.times().iter().copied().zip(series.values().iter().copied());
         all.filter(|(t, _)| (first - room..=last + room).contains(t)).collect()
     };
-    // A formula is a line, a measurement its samples.
+    // A formula appears as a line, a measurement as dots.
     let style = if known[0].exact { LineStyle::Plain } else { LineStyle::Dots };
     let runs = if known.len() > 1 { format!("{} runs", known.len()) } else { "run".into() };
     let run = |of: &&CheckCurves| PlotLine::new(runs.as_str(), 0, LineStyle::Plain, points(&of.sim));
@@ -162,7 +164,7 @@ fn plot(known: &[&CheckCurves], verdicts: &[&Verdict]) -> String {
     html_page::plot_figure(&svg, &figures.join(". "))
 }
 
-/// The figures of a check in a line.
+/// Returns the metrics of a check in one line.
 fn metrics_line(verdict: &Verdict) -> String {
     let head_and_row = format_verdicts::verdict_rows(&[(&[], verdict)], &[]);
     let pairs = head_and_row[0].iter().zip(&head_and_row[1]).skip(1).filter(|(_, figure)| !figure.is_empty());

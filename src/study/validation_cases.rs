@@ -1,4 +1,4 @@
-//! The cases of `pontoon validate`: `scenes/validation.toml`, compiled into the program.
+//! Reads the cases of `pontoon validate` from the built-in file `scenes/validation.toml`.
 
 use std::{collections::BTreeMap, path::Path};
 
@@ -13,38 +13,38 @@ use crate::{
 
 const TEXT: &str = include_str!("../../scenes/validation.toml");
 
-/// A scene with some keys changed, run coarse or fine, and what its checks are expected to say.
+/// A scene with overridden keys, a quick and a full resolution, and the expected results of its checks.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ValidationCase {
-    /// Its name.
+    /// The name of the case.
     pub name: String,
-    /// The entry of `[base]` that it starts from.
+    /// The entry of `[base]` that supplies the default values.
     base: Option<String>,
-    /// Name of its scene.
+    /// The name of the scene.
     pub scene: String,
-    /// What it is, in a sentence.
+    /// The subject of the case, in a sentence.
     pub about: String,
-    /// What must be said beside its figures.
+    /// A note that accompanies the results.
     pub note: String,
     set: BTreeMap<String, toml::Value>,
     paper: BTreeMap<String, Score>,
     bound: BTreeMap<String, Score>,
-    /// How it is run in minutes.
+    /// The resolution of the quick run, which takes minutes.
     pub quick: CaseResolution,
-    /// How it is run to be compared with the paper.
+    /// The resolution of the full run, for comparison with the paper.
     pub full: CaseResolution,
 }
 
-/// How fine and how long a case is run.
+/// The particle spacing and the duration of a case.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct CaseResolution {
-    /// Particle spacing, m; the scene's if none.
+    /// The particle spacing, m; without a value, the spacing of the scene applies.
     pub dp: Option<f64>,
-    /// Simulated time at the end, s; the scene's if none.
+    /// The simulated end time, s; without a value, the end time of the scene applies.
     pub until: Option<f64>,
-    /// Whether it belongs to those that are run when none is named.
+    /// Whether the case runs if the user names no case.
     pub usual: bool,
     set: BTreeMap<String, toml::Value>,
     bound: BTreeMap<String, Score>,
@@ -57,10 +57,10 @@ struct CasesFile {
     case: Vec<ValidationCase>,
 }
 
-/// All cases.
+/// Returns all cases.
 ///
 /// # Errors
-/// `Scene` if the list that was compiled in is wrong, which its test rules out.
+/// `Scene` if the built-in list is invalid; a test excludes this error.
 pub fn validation_cases() -> Result<Vec<ValidationCase>> {
     let CasesFile { base, case } =
         toml::from_str(TEXT).map_err(|e| Error::scene(e.message().to_string()).at("validation.toml", None, ""))?;
@@ -77,10 +77,11 @@ pub fn validation_cases() -> Result<Vec<ValidationCase>> {
         .collect()
 }
 
-/// The cases called `names`; if none is named, all, or of the quick ones the usual.
+/// Returns the cases with the given `names`. Without names, returns all cases, or only the usual cases in the quick
+/// mode.
 ///
 /// # Errors
-/// `Usage` if there is no such case: names the nearest.
+/// `Usage` if a case does not exist; the message contains the most similar name.
 pub fn select_cases(names: &[String], full: bool) -> Result<Vec<ValidationCase>> {
     let all = validation_cases()?;
     if names.is_empty() {
@@ -101,7 +102,7 @@ pub fn select_cases(names: &[String], full: bool) -> Result<Vec<ValidationCase>>
 }
 
 impl ValidationCase {
-    /// This case with what it does not say itself from `base`.
+    /// Returns this case, with missing entries taken from `base`.
     fn with_defaults(self, base: &Self) -> Self {
         let text = |own: String, other: &String| if own.is_empty() { other.clone() } else { own };
         Self {
@@ -117,10 +118,10 @@ impl ValidationCase {
         }
     }
 
-    /// The run of this case, quick or `full`, of the scene at `scene`, in a folder of `out`.
+    /// Returns the job of this case, quick or `full`, with the scene at `scene` and a folder below `out`.
     ///
     /// # Errors
-    /// Those of the scene's words; `Scene` if the case names a check that the scene has not.
+    /// The errors of reading the scene; `Scene` if the case names a check that the scene does not contain.
     pub(crate) fn job(&self, full: bool, scene: &Path, out: &Path) -> Result<Job> {
         let extent = if full { &self.full } else { &self.quick };
         let words = Scene::read(scene, &[])?;
@@ -166,7 +167,7 @@ impl CaseResolution {
     }
 }
 
-/// The entries of both; where both have one, that of `own`.
+/// Returns the entries of both maps; for a key in both maps, the entry of `own` applies.
 fn over<T: Clone>(own: BTreeMap<String, T>, base: &BTreeMap<String, T>) -> BTreeMap<String, T> {
     base.iter().map(|(key, value)| (key.clone(), value.clone())).chain(own).collect()
 }

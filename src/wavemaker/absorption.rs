@@ -1,17 +1,20 @@
-//! A paddle that takes the waves which come back to it: it goes on making its own, and yields to the rest.
+//! Active absorption: a paddle makes its own waves and absorbs the waves that return to it.
 //!
-//! A gauge δ before the face reads η; what the paddle's own wave does not explain, e = η − η₀, moves it off its way by x:
+//! A gauge at distance δ from the face measures the elevation η. The paddle's own wave accounts for η₀.
+//! The excess e = η − η₀ shifts the face by x from its prescribed motion:
 //!
 //!   T x″ + x′ + x/τ = −F e
 //!
-//! By linear theory a wave of amplitude a that comes in, and x = Re X e^{iωt}, are at the gauge and far out
+//! By linear theory, an incoming wave of amplitude a and a shift x = Re X e^{iωt} give, at the gauge and in the far
+//! field,
 //!
 //!   η = a (e^{ikδ} + e^{−ikδ}) + (ic e^{−ikδ} + s) X,   a_out = a + icX
 //!
-//! c is the paddle's transfer function, s = Σ sⱼ e^{−κⱼδ} that of the standing waves at its face. Nothing goes out if
-//! X = i η/(c e^{ikδ} + is), and F and T make that so at one period. τ brings the paddle home; it is the longer for not being
-//! seen at that period. The lag T stands for δ and s: so does the law hold back the gauge's noise. In shallow water it is that of
-//! long waves, x′ = −√(g/d) e. @schaffer2000, @altomare2017
+//! c is the paddle's transfer function, and s = Σ sⱼ e^{−κⱼδ} is the contribution of the evanescent modes at the gauge.
+//! No wave leaves the paddle if X = i η/(c e^{ikδ} + is); F and T satisfy this condition at a single period. The time τ
+//! returns the paddle to its mean position; τ is long, so that the return hardly affects the absorption at that period.
+//! The lag T compensates for δ and s, and filters the gauge's noise. In shallow water the law becomes the long-wave law
+//! x′ = −√(g/d) e. @schaffer2000, @altomare2017
 
 use nalgebra::Complex;
 use serde::{Deserialize, Serialize};
@@ -22,62 +25,65 @@ use super::{
 };
 use crate::error::{Error, Result};
 
-/// τ over the period that it is tuned to.
+/// τ over the period of tuning.
 const HOME: f64 = 5.0;
 
-/// The stroke that is let to a paddle over that of its own wave: as much again for what comes back, and as much to spare.
+/// Default stroke over the stroke of the paddle's own wave. Absorption of the returning waves needs the same stroke
+/// again; the rest is reserve.
 const ROOM: f64 = 4.0;
 
-/// Standing waves that are counted: those left out are below 1e-4 of the paddle's motion.
+/// Number of evanescent modes in the sum: the omitted modes are below 1e-4 of the paddle's motion.
 const MODES: usize = 30;
 
-/// kδ beyond which the gauge stands too far off for a wave.
+/// Largest kδ: beyond, the gauge is too far from the face to absorb the wave.
 const FARTHEST: f64 = 1.0;
 
-/// Periods of the own motion that are looked at for its extent, and samples of each.
+/// Number of periods of the own motion that the code samples for the stroke, and samples per period.
 const PERIODS: u32 = 100;
 const SAMPLES: u32 = 40;
 
-/// i.
+/// The imaginary unit.
 const I: Complex<f64> = Complex::new(0.0, 1.0);
 
-/// How a paddle absorbs.
+/// Settings of the absorption.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct AbsorptionSettings {
-    /// The period (s) whose waves it takes whole; none: that of its own wave.
+    /// The period (s) whose waves the paddle absorbs completely; `None`: the period of the paddle's own wave.
     pub period: Option<f64>,
-    /// From the face at rest to the gauge at least, m. A flap's stands as much further off as makes T as long as a wave takes to
-    /// the piston's: what stays at a flap runs ahead of what leaves it.
+    /// Least distance from the face at rest to the gauge, m. For a flap the code increases the distance until T is at
+    /// least the travel time of a long wave to this least distance: the evanescent field of a flap leads the wave that
+    /// leaves it.
     pub gauge_distance: f64,
     /// Height of the still water, m.
     pub water_level: f64,
-    /// How far (m) its face may go from end to end at the still level; none: four times what its own wave takes.
+    /// Stroke limit (m) of the face at the still level; `None`: four times the stroke of the paddle's own wave.
     pub max_stroke: Option<f64>,
-    /// How fast (m/s) that may go; none: four times as fast as its own wave, without one as a sine of that stroke and period.
+    /// Speed limit (m/s) of the face; `None`: four times the speed of the paddle's own wave. A paddle without a wave of
+    /// its own then takes the speed of a sine motion of that stroke and period.
     pub max_speed: Option<f64>,
 }
 
-/// What makes a paddle absorb.
+/// The absorption law of a paddle, with its coefficients.
 #[derive(Clone, Debug)]
 pub(crate) struct Absorber {
     maker: Wavemaker,
     train: LinearWave,
     gauge_distance: f64,
     water_level: f64,
-    /// How far (m) it may go to each side of its place, and how fast, m/s.
+    /// Largest displacement (m) of the face to each side of its mean position, and largest speed, m/s.
     reach: f64,
     speed: f64,
     /// F, 1/s; T and τ, s.
     gain: f64,
     lag: f64,
     home: f64,
-    /// What its own components do at the gauge, in their order.
+    /// The paddle's own components at the gauge, in the order of the tones.
     own: Vec<Own>,
     /// Amplitude (m) of the bound wave of twice the frequency.
     bound: f64,
 }
 
-/// A component at the gauge: a cos(ωt − kx + φ) + s sin(ωt + φ).
+/// A component at the gauge: a cos(ωt − kx + φ) + s sin(ωt + φ), where a is `leaving` and s is `staying`.
 #[derive(Clone, Copy, Debug)]
 struct Own {
     k: f64,
@@ -85,35 +91,36 @@ struct Own {
     staying: f64,
 }
 
-/// How far a paddle has yielded, from one step to the next.
+/// The absorption shift of a paddle, which one step passes to the next.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct AbsorptionState {
-    /// When this held, s.
+    /// Time of this state, s.
     since: f64,
-    /// x, m, and its first and second rate.
+    /// The shift x (m), and its first and second time derivatives.
     x: f64,
     rate: f64,
     change: f64,
 }
 
 impl AbsorptionState {
-    /// x (m) and x′ (m/s) at time `t` (s).
+    /// Returns the shift x (m) and its rate x′ (m/s) at time `t` (s).
     pub(crate) fn offset_and_rate(&self, t: f64) -> (f64, f64) {
         let s = t - self.since;
         (self.x + s * (self.rate + 0.5 * s * self.change), self.rate + s * self.change)
     }
 
-    /// Whether it can be meant.
+    /// Returns whether all values are finite.
     pub(crate) fn is_finite(&self) -> bool {
         (self.since + self.x + self.rate + self.change).is_finite()
     }
 }
 
 impl Absorber {
-    /// What makes the paddle of `maker`, which makes `wave`, absorb.
+    /// Returns the absorption law for the paddle of `maker`, whose own motion is `wave`.
     ///
     /// # Errors
-    /// `Scene` if the gauge is too far off for so short a wave, or the stroke is less than the paddle's own wave takes.
+    /// `Scene` if the gauge is too far from the face for the wavelength, or if the stroke or the speed is too small for
+    /// the paddle's own wave.
     pub(crate) fn new(maker: &Wavemaker, wave: &PaddleMotion, tuning: &AbsorptionSettings) -> Result<Self> {
         let AbsorptionSettings { gauge_distance, water_level, .. } = *tuning;
         let train = match tuning.period {
@@ -153,7 +160,7 @@ impl Absorber {
         Ok(absorber)
     }
 
-    /// F and T for the period: −ω²T + iω + 1/τ = F i (c e^{ikδ} + is).
+    /// Sets F and T for the period of tuning: −ω²T + iω + 1/τ = F i (c e^{ikδ} + is).
     fn tune(&mut self) {
         let (omega, turn) = (self.train.omega, (I * self.train.k * self.gauge_distance).exp());
         let (c, s) = self.answer(&self.train);
@@ -162,11 +169,11 @@ impl Absorber {
         self.lag = (1.0 / self.home - self.gain * wanted.re) / (omega * omega);
     }
 
-    /// What its own `wave` is at the gauge.
+    /// Stores the contribution of the paddle's own `wave` at the gauge.
     fn learn(&mut self, wave: &PaddleMotion) {
         let Course::Tones(tones) = &wave.course else { return };
         let facts = &wave.facts;
-        // The second tone of order 2 makes no wave: it keeps one from being made.
+        // The second tone of order 2 makes no wave: this tone suppresses a free wave.
         let real = if facts.order == 2 { &tones[..1] } else { &tones[..] };
         let own = |tone: &WaveComponent| {
             let train = LinearWave::new(tone.omega, self.maker.depth, self.maker.g);
@@ -179,7 +186,7 @@ impl Absorber {
         }
     }
 
-    /// c and s of a wave, –.
+    /// Returns c and s for a wave, –.
     fn answer(&self, train: &LinearWave) -> (f64, f64) {
         let Wavemaker { depth, g, paddle } = self.maker;
         let stays = evanescent_wave_numbers(train.omega, depth, g, MODES).into_iter().map(|kappa| {
@@ -191,22 +198,22 @@ impl Absorber {
         (paddle.transfer_function(train), stays.sum())
     }
 
-    /// Period (s) whose waves it takes whole.
+    /// Returns the period (s) whose waves the paddle absorbs completely.
     pub(crate) fn period(&self) -> f64 {
         self.train.period()
     }
 
-    /// From the face at rest to the gauge, m.
+    /// Returns the distance from the face at rest to the gauge, m.
     pub(crate) fn gauge_distance(&self) -> f64 {
         self.gauge_distance
     }
 
-    /// How far (m) the face may go from end to end, and how fast, m/s.
+    /// Returns the stroke limit (m) and the speed limit (m/s) of the face.
     pub(crate) fn motion_limits(&self) -> (f64, f64) {
         (2.0 * self.reach, self.speed)
     }
 
-    /// The share of the amplitude of a wave of `period` (s) that goes out again, by linear theory, –.
+    /// Returns the reflected fraction of the amplitude of a wave of `period` (s), by linear theory, –.
     pub(crate) fn reflection_coefficient(&self, period: f64) -> f64 {
         let omega = std::f64::consts::TAU / period;
         let train = LinearWave { omega, k: wave_number(omega, self.maker.depth, self.maker.g), ..self.train };
@@ -218,7 +225,7 @@ impl Absorber {
         (Complex::from(1.0) + I * c * x).norm()
     }
 
-    /// What the gauge would read of the paddle's own `wave` alone at `x` (m) before the face at rest and time `t` (s), m.
+    /// Returns the elevation (m) of the paddle's own `wave` alone at `x` (m) from the face at rest and time `t` (s).
     fn wanted(&self, wave: &PaddleMotion, x: f64, t: f64) -> f64 {
         match &wave.course {
             Course::Tones(tones) => {
@@ -241,8 +248,8 @@ impl Absorber {
         }
     }
 
-    /// How the paddle, which makes `wave` and has yielded `before`, goes on from time `t` (s): `level` is the height (m) of the
-    /// water at the gauge; none: there is none.
+    /// Returns the absorption state from time `t` (s) on, for own motion `wave` and previous state `before`. `level` is
+    /// the height (m) of the water at the gauge, or `None` if the gauge finds no water.
     pub(crate) fn update(
         &self,
         wave: &PaddleMotion,
@@ -254,7 +261,7 @@ impl Absorber {
         let (own, own_rate) = wave.displacement(t);
         let place = own + x;
         let excess = level.map_or(0.0, |z| z - self.water_level - self.wanted(wave, place + self.gauge_distance, t));
-        // Slow enough before the end of the stroke that the lag does not carry it further.
+        // The paddle slows down before the end of the stroke, so that the lag does not carry it beyond the end.
         let room = |left: f64| self.speed.min(left.max(0.0) / (4.0 * self.lag));
         let asked = own_rate - x / self.home - self.gain * excess;
         let allowed = asked.clamp(-room(self.reach + place), room(self.reach - place)) - own_rate;
@@ -262,7 +269,7 @@ impl Absorber {
     }
 }
 
-/// How far (m) the face of a paddle may go from end to end, and how fast, m/s: as was asked, or as is usual.
+/// Returns the stroke limit (m) and the speed limit (m/s) of the face: the values in `tuning`, or the defaults.
 fn allowed_motion(
     maker: &Wavemaker,
     wave: &PaddleMotion,
@@ -285,7 +292,7 @@ fn allowed_motion(
     }
 }
 
-/// How far (m) the own motion of a paddle goes from end to end if as far to both sides, and how fast, m/s.
+/// Returns twice the largest displacement (m) of the paddle's own motion, and its largest speed, m/s.
 fn extent(wave: &PaddleMotion, train: &LinearWave) -> (f64, f64) {
     let step = train.period() / f64::from(SAMPLES);
     let motion = (0..PERIODS * SAMPLES).map(|i| wave.displacement(f64::from(i) * step));

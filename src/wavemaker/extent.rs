@@ -1,22 +1,23 @@
-//! How far and how fast a paddle goes for its wave, whatever the time at which a run ends.
+//! Range and speed of a paddle for its wave, independent of the end time of a run.
 
 use super::{LinearWave, PaddleMotion};
 use crate::error::{Error, Result};
 
-/// Samples of a period, and how many there are at least and at most.
+/// Samples per period, and the least and greatest number of samples.
 const SAMPLES: f64 = 50.0;
 const LEAST: f64 = 500.0;
 const MOST: f64 = 10_000.0;
 
-/// Periods of a sea that are looked at.
+/// Number of periods that the code samples for an irregular sea.
 const PERIODS: f64 = 20.0;
 
-/// Speed of a paddle over that of its crests beyond which small motions are no good theory.
+/// Ratio of paddle speed to crest speed above which small-motion theory is inaccurate.
 pub(crate) const LINEAR_SPEED_RATIO_MAX: f64 = 0.5;
 
 impl PaddleMotion {
-    /// Displacement (m) and rate (m/s) of the face at the still level, one after the other: of a regular wave in full
-    /// motion, of a solitary one all the way, of another to `until` (s), or for twenty periods if that is longer.
+    /// Returns successive samples of the displacement (m) and rate (m/s) of the face at the still level. For a regular
+    /// wave the samples cover the motion at full amplitude; for a solitary wave, the whole motion. For other waves the
+    /// samples extend to `until` (s), or over twenty periods if that is longer.
     pub(crate) fn sample_motion(&self, until: f64) -> Vec<(f64, f64)> {
         let period = self.facts.linear_wave.map_or(f64::INFINITY, |train| train.period());
         let many = until.max(self.ramp + PERIODS * period);
@@ -30,14 +31,14 @@ impl PaddleMotion {
         (0..=steps).map(|i| self.displacement(from + (to - from) * i as f64 / steps as f64)).collect()
     }
 
-    /// Refuses the regular wave of `train` whose paddle would run ahead of its crests.
+    /// Refuses the regular wave `train` if the paddle would move faster than the wave crests allow.
     pub(super) fn check_speed(self, train: &LinearWave) -> Result<Self> {
         let (speed, celerity) =
             (self.sample_motion(0.0).iter().map(|x| x.1.abs()).fold(0.0, f64::max), train.celerity());
         if speed <= celerity {
             return Ok(self);
         }
-        // The first order's speed goes with the height, the second's with its square.
+        // The first-order speed is proportional to the height, the second-order speed to the square of the height.
         let height = LINEAR_SPEED_RATIO_MAX * celerity / speed * self.facts.height;
         let shorter = train.stokes_period_max(self.facts.height).filter(|period| *period < train.period());
         let shorter =

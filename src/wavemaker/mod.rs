@@ -1,13 +1,14 @@
-//! Waves by name: how a paddle has to move so that the waves of a theory leave it.
+//! Wave generation: the paddle motion that makes the waves of a named theory.
 //!
-//! A `Wavemaker` knows the paddle and the water before it, and makes a [`PaddleMotion`]: the displacement of the paddle's face
-//! at the still level, positive where the waves go, with its exact rate. There is no state: a wave is rebuilt from the
-//! same words, and has the same bits at any time of any run. What a paddle yields to other waves is in `absorption`.
+//! A `Wavemaker` describes the paddle and the water in front of it, and makes a [`PaddleMotion`]. The motion is the
+//! displacement of the paddle's face at the still level, positive in the direction of wave propagation, and its exact
+//! rate. The motion has no state: the same scene keys give a bit-identical wave at any time of any run. The module
+//! `absorption` computes how the paddle yields to other waves.
 //!
 //!   X(t) = r(t) Σ Aₙ sin(ωₙ t + φₙ),   η(x, t) = Σ aₙ cos(ωₙ t − kₙ x + φₙ),   Aₙ = aₙ/c(kₙ)
 //!
-//! c is the paddle's transfer function (`paddle`), r goes smoothly from 0 to 1. The waves of order 2 are in `second_order`,
-//! the solitary one is in `solitary`.
+//! c is the paddle's transfer function (`paddle`); the ramp r rises smoothly from 0 to 1. The module `second_order`
+//! treats waves of order 2, and the module `solitary` treats solitary waves.
 
 mod absorption;
 mod extent;
@@ -34,13 +35,13 @@ use crate::{
     math::time_series::TimeSeries,
 };
 
-/// Most components of one wave: their sum is formed at every step.
+/// Largest number of components of a wave: the paddle motion sums all components at every step.
 pub(crate) const COMPONENTS_MAX: usize = 2000;
 
-/// Components of a sea or a group where nobody says how many.
+/// Number of components of a sea or a focused group if the scene does not set the number.
 pub(crate) const COMPONENTS_DEFAULT: usize = 100;
 
-/// The largest displacement of a flap over its arm: 60°.
+/// Largest displacement of a flap over its arm: 60° of rotation.
 const STEEPEST: f64 = 1.7321;
 
 /// A component of the surface: η(x, t) = a cos(ω t − k x + φ), x (m) from the paddle's face at rest.
@@ -54,7 +55,7 @@ pub(crate) struct WaveComponent {
     pub phase: f64,
 }
 
-/// A paddle and the water before it.
+/// A paddle and the water in front of the paddle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Wavemaker {
     /// Depth of the still water at the paddle, m.
@@ -65,20 +66,20 @@ pub(crate) struct Wavemaker {
     pub paddle: Paddle,
 }
 
-/// What a wave is, for those who want to say it.
+/// The properties of a wave, for reports.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct WaveProperties {
-    /// Its kind, in the words of a scene.
+    /// Kind of the wave, as the scene names the kind.
     pub kind: &'static str,
     /// Height, m: significant (4 √m₀) of a sea or a record, twice the crest of a focused group.
     pub height: f64,
     /// Order of the theory, 1 or 2.
     pub order: usize,
-    /// The regular wave of its period or peak period; none of a solitary one.
+    /// The regular wave of the wave's period or peak period; `None` for a solitary wave.
     pub linear_wave: Option<LinearWave>,
-    /// The solitary one.
+    /// The solitary wave; `None` for any other wave.
     pub solitary: Option<SolitaryWave>,
-    /// Distance (m) from the paddle and time (s) of a focused group's crest.
+    /// Distance (m) from the paddle and time (s) of the crest of a focused group; `None` for any other wave.
     pub focus: Option<(f64, f64)>,
 }
 
@@ -87,38 +88,38 @@ pub(crate) struct WaveProperties {
 pub struct PaddleMotion {
     facts: WaveProperties,
     course: Course,
-    /// Time (s) over which the motion comes to its full size.
+    /// Duration (s) of the ramp, over which the motion grows to full amplitude.
     ramp: f64,
-    /// When it has come to rest again, s.
+    /// Time (s) at which the paddle is at rest again.
     end: f64,
     paddle: Paddle,
 }
 
 #[derive(Clone, Debug)]
 enum Course {
-    /// A sin(ω t + φ), A the displacement of the face at the still level.
+    /// Sum of A sin(ω t + φ), where A is the displacement of the face at the still level.
     Tones(Vec<WaveComponent>),
     Solitary(SolitaryWave),
 }
 
 impl PaddleMotion {
-    /// The same wave with another ramp (s).
+    /// Returns the same motion with another ramp duration (s).
     pub(crate) fn with_ramp(mut self, ramp: f64) -> Self {
         self.ramp = ramp;
         self
     }
 
-    /// How long (s) it takes to its full size.
+    /// Returns the ramp duration, s.
     pub(crate) fn ramp_time(&self) -> f64 {
         self.ramp
     }
 
-    /// The paddle that it is for.
+    /// Returns the paddle of this motion.
     pub(crate) fn paddle(&self) -> Paddle {
         self.paddle
     }
 
-    /// Depth of the still water that it is for, m.
+    /// Returns the depth of the still water at the paddle, m.
     pub(crate) fn depth(&self) -> f64 {
         self.facts
             .linear_wave
@@ -127,7 +128,7 @@ impl PaddleMotion {
             .unwrap_or_default()
     }
 
-    /// About how far (m) the face goes from end to end.
+    /// Returns the approximate stroke of the face, m: the distance between its two extreme positions.
     pub(crate) fn stroke(&self) -> f64 {
         match &self.course {
             Course::Tones(tones) => 2.0 * size(tones),
@@ -135,12 +136,13 @@ impl PaddleMotion {
         }
     }
 
-    /// What it is.
+    /// Returns the properties of the wave.
     pub(crate) fn properties(&self) -> &WaveProperties {
         &self.facts
     }
 
-    /// The regular wave of its period or peak period; of a solitary one that is as long and as fast.
+    /// Returns the regular wave of the wave's period or peak period; for a solitary wave, a regular wave of equal
+    /// length and speed.
     fn peak(&self, g: f64) -> LinearWave {
         match (self.facts.linear_wave, self.facts.solitary) {
             (None, Some(own)) => LinearWave::new(std::f64::consts::TAU * own.celerity / own.length(), own.depth, g),
@@ -148,7 +150,7 @@ impl PaddleMotion {
         }
     }
 
-    /// Displacement (m) of the face at the still level and its rate (m/s) at time `t` (s).
+    /// Returns the displacement (m) of the face at the still level and its rate (m/s) at time `t` (s).
     pub(crate) fn displacement(&self, t: f64) -> (f64, f64) {
         if t <= 0.0 || t >= self.end {
             return (0.0, 0.0);
@@ -165,13 +167,13 @@ impl PaddleMotion {
         (x * on * off, v * on * off + x * (on_rate * off - on * off_rate))
     }
 
-    /// What drives the paddle: displacement (m) and rate (m/s) of a piston, angle (rad) and rate (rad/s) of a flap,
-    /// positive where the waves go.
+    /// Returns the coordinate that drives the paddle, and its rate: displacement (m) and rate (m/s) of a piston, angle
+    /// (rad) and rate (rad/s) of a flap. Both are positive in the direction of wave propagation.
     pub(crate) fn coordinate_and_rate(&self, t: f64) -> (f64, f64) {
         self.turned(self.displacement(t))
     }
 
-    /// As [`Wave::coordinate_and_rate`], the face having yielded by `aside` (m and m/s).
+    /// Returns the same as [`Wave::coordinate_and_rate`] for a face that absorption has shifted by `aside` (m and m/s).
     pub(super) fn with_offset(&self, t: f64, aside: (f64, f64)) -> (f64, f64) {
         let (x, v) = self.displacement(t);
         self.turned((x + aside.0, v + aside.1))
@@ -184,8 +186,8 @@ impl PaddleMotion {
         }
     }
 
-    /// The surface (m) at `x` (m) before the paddle's face at rest and time `t` (s) by linear theory, the ramp left
-    /// out; none of a solitary wave.
+    /// Returns the surface elevation (m) by linear theory at `x` (m) from the paddle's face at rest and time `t` (s).
+    /// The elevation ignores the ramp. Returns `None` for a solitary wave.
     pub fn elevation(&self, x: f64, t: f64) -> Option<f64> {
         let (Course::Tones(tones), Some(train)) = (&self.course, &self.facts.linear_wave) else { return None };
         let parts = tones.iter().filter(|tone| self.facts.order == 1 || tone.omega < 1.5 * train.omega).map(|tone| {
@@ -196,7 +198,8 @@ impl PaddleMotion {
     }
 }
 
-/// 0 before 0, 1 after `ramp`, between them the quintic whose first and second rates vanish at both ends; and its rate.
+/// Returns the ramp factor and its rate: 0 before t = 0, 1 after `ramp`, and in between the quintic whose first and
+/// second derivatives vanish at both ends.
 fn smooth(t: f64, ramp: f64) -> (f64, f64) {
     let s = t / ramp;
     match s {
@@ -207,11 +210,11 @@ fn smooth(t: f64, ramp: f64) -> (f64, f64) {
 }
 
 impl Wavemaker {
-    /// The regular wave of `height` (m), `period` (s) and phase (rad) of the surface at the paddle. Order 2 adds the
-    /// motion that keeps the paddle from making free waves of twice the frequency.
+    /// Returns the motion for the regular wave of `height` (m), `period` (s) and `phase` (rad) of the surface at the
+    /// paddle. Order 2 adds the motion that prevents free waves of twice the frequency.
     ///
     /// # Errors
-    /// `Scene` if the wave would break, the paddle outrun it, or the order is neither 1 nor 2.
+    /// `Scene` if the wave would break, the paddle would outrun the wave, or the order is neither 1 nor 2.
     pub(crate) fn regular(&self, height: f64, period: f64, phase: f64, order: usize) -> Result<PaddleMotion> {
         let train = self.train(period)?;
         self.unbroken("a regular wave", height, &train)?;
@@ -221,7 +224,7 @@ impl Wavemaker {
             1 => {}
             2 => {
                 let along = second_order::correction(&self.paddle, &train, tones[0].amplitude);
-                // Theory counts phases from the paddle's cosine.
+                // The second-order theory counts phases from the cosine of the paddle motion.
                 let phase = 2.0 * (phase - FRAC_PI_2) + along.arg() + FRAC_PI_2;
                 tones.push(WaveComponent { amplitude: along.norm(), omega: 2.0 * train.omega, phase });
             }
@@ -230,11 +233,11 @@ impl Wavemaker {
         self.wave("regular", height, order, train, tones).with_ramp(2.0 * period).check_speed(&train)
     }
 
-    /// The irregular waves of significant height `height` (m) and this spectrum: `count` components of equal energy,
-    /// whose phases are drawn from `seed`.
+    /// Returns the motion for irregular waves of significant height `height` (m) and the given spectrum. The waves have
+    /// `count` components of equal energy, with random phases drawn from `seed`.
     ///
     /// # Errors
-    /// `Scene` if even a regular wave of this height would break, or the components are none or too many.
+    /// `Scene` if a regular wave of this height would break, or if the number of components is zero or too large.
     pub(crate) fn irregular(
         &self,
         height: f64,
@@ -253,11 +256,12 @@ impl Wavemaker {
         Ok(self.wave("sea", height, 1, train, self.tones(&components)?))
     }
 
-    /// The group whose crest of `crest` (m) stands at `distance` (m) before the paddle at `time` (s), by linear
-    /// theory: of all groups of this spectrum the likeliest around a high crest (NewWave). @tromans1991
+    /// Returns the motion for a focused group, by linear theory. The group has a crest of height `crest` (m) at
+    /// `distance` (m) from the paddle at `time` (s). The group is the most likely shape around a high crest in this
+    /// spectrum (NewWave). @tromans1991
     ///
     /// # Errors
-    /// `Scene` as [`Wavemaker::irregular`], for a wave of height `crest`.
+    /// `Scene` under the conditions of [`Wavemaker::irregular`], for a wave of height `crest`.
     pub fn focused(
         &self,
         crest: f64,
@@ -279,10 +283,10 @@ impl Wavemaker {
         Ok(wave)
     }
 
-    /// The waves that add up from these components, to first order.
+    /// Returns the motion for the sum of these wave components, to first order.
     ///
     /// # Errors
-    /// `Scene` if there are none or too many, or one of them would break by itself.
+    /// `Scene` if the number of components is zero or too large, or if any single component would break.
     pub(crate) fn components(&self, components: &[WaveComponent]) -> Result<PaddleMotion> {
         counted(components.len())?;
         for component in components {
@@ -296,11 +300,12 @@ impl Wavemaker {
         Ok(self.wave("components", height, 1, train, self.tones(components)?))
     }
 
-    /// The waves that show this `elevation` (m over s) at `distance` (m) before the paddle, `delay` (s) later than it
-    /// says, to first order. Longer and shorter waves than those that hold the middle 99 % of its energy are left out.
+    /// Returns the motion that reproduces `elevation` (m over s) at `distance` (m) from the paddle, to first order. The
+    /// waves arrive `delay` (s) later than in the record. The motion omits the frequencies outside the middle 99 % of
+    /// the record's energy.
     ///
     /// # Errors
-    /// `Scene` if it is too short or still, or as [`Wavemaker::components`].
+    /// `Scene` if the record is too short or constant, or under the conditions of [`Wavemaker::components`].
     pub(crate) fn measured(&self, elevation: &TimeSeries, distance: f64, delay: f64) -> Result<PaddleMotion> {
         let found = record::fourier_components(elevation)?;
         let early = |c: &WaveComponent| WaveComponent {
@@ -314,10 +319,10 @@ impl Wavemaker {
         Ok(wave)
     }
 
-    /// The solitary wave of `height` (m).
+    /// Returns the motion for the solitary wave of `height` (m).
     ///
     /// # Errors
-    /// `Scene` if it would break, or the paddle is a flap, for which there is no theory.
+    /// `Scene` if the wave would break, or if the paddle is a flap: the theory covers only a piston.
     pub fn solitary(&self, height: f64, theory: SolitaryTheory) -> Result<PaddleMotion> {
         if self.paddle != Paddle::Piston {
             return Err(Error::scene("a solitary wave needs a piston: there is no theory of a flap that makes one")
@@ -335,10 +340,10 @@ impl Wavemaker {
         Ok(PaddleMotion { facts, course, ramp: wave.ramp_time(), end: f64::INFINITY, paddle })
     }
 
-    /// No wave at all: the paddle stands still, before waves of `period` (s) that come from elsewhere.
+    /// Returns the motion of a paddle that makes no wave, in front of waves of `period` (s) from another source.
     ///
     /// # Errors
-    /// `Scene` if the period is none.
+    /// `Scene` if `period` is not a valid period.
     pub(crate) fn at_rest(&self, period: f64) -> Result<PaddleMotion> {
         Ok(self.wave("none", 0.0, 1, self.train(period)?, Vec::new()))
     }
@@ -350,7 +355,7 @@ impl Wavemaker {
         }
     }
 
-    /// Refuses a wave that would break as soon as it is made.
+    /// Refuses a wave whose height exceeds the breaking height.
     fn unbroken(&self, what: &str, height: f64, train: &LinearWave) -> Result<()> {
         let most = train.breaking_height();
         if height <= most {
@@ -362,7 +367,8 @@ impl Wavemaker {
         Err(Error::scene(what).help(format!("the highest that does not is {most:.3} m (Miche, McCowan)")))
     }
 
-    /// The paddle's tones for these components of the surface; refuses a flap that would lie down.
+    /// Returns the tones of the paddle motion for these surface components. Refuses a flap whose displacement is too
+    /// large for its arm.
     fn tones(&self, components: &[WaveComponent]) -> Result<Vec<WaveComponent>> {
         let tone = |c: &WaveComponent| {
             let train = LinearWave::new(c.omega, self.depth, self.g);
@@ -401,7 +407,7 @@ impl Wavemaker {
     }
 }
 
-/// √Σ A², m: the amplitude of one tone.
+/// Returns √Σ A², m: the amplitude of a single tone of equal energy.
 fn size(tones: &[WaveComponent]) -> f64 {
     tones.iter().map(|tone| tone.amplitude.powi(2)).sum::<f64>().sqrt()
 }

@@ -1,4 +1,4 @@
-//! A measured elevation as a sum of components: Fourier's, of the record's length.
+//! Decomposition of a measured elevation into Fourier components of the record's length.
 
 use std::f64::consts::TAU;
 
@@ -8,13 +8,13 @@ use crate::{
     math::time_series::TimeSeries,
 };
 
-/// Share of the energy, at either end of the spectrum, that is left out: drift and noise.
+/// Fraction of the energy that the decomposition omits at each end of the spectrum, as drift and noise.
 const LEFT_OUT: f64 = 0.005;
 
-/// The components η = a cos(ω t + φ) of `series` (m over s).
+/// Returns the components η = a cos(ω t + φ) of `series` (m over s).
 ///
 /// # Errors
-/// `Scene` if it has fewer than eight samples or is still.
+/// `Scene` if the series has fewer than eight samples or is constant.
 pub(super) fn fourier_components(series: &TimeSeries) -> Result<Vec<WaveComponent>> {
     let count = series.times().len();
     if count < 8 {

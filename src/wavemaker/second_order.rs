@@ -1,14 +1,16 @@
-//! The second order of a regular wave: the motion of twice the frequency that keeps a paddle from making a free wave.
+//! Second-order theory of a regular wave: the paddle motion of twice the frequency that prevents a free wave.
 //!
-//! To first order the paddle X = Re A e^{iωt} makes Φ = Σ bⱼ Zⱼ(z) e^{i(ωt − kⱼx)}, Z = cosh k(z + d)/cosh kd: j = 0 the
-//! wave that leaves, the others (kⱼ = −iκⱼ) standing waves at the paddle. To second order, with what goes as e^{2iωt}:
+//! To first order, the paddle motion X = Re A e^{iωt} gives Φ = Σ bⱼ Zⱼ(z) e^{i(ωt − kⱼx)}, Z = cosh k(z + d)/cosh kd.
+//! The mode j = 0 is the progressive wave; the others (kⱼ = −iκⱼ) are evanescent modes at the paddle. To second order,
+//! the terms in e^{2iωt} satisfy:
 //!
 //!   at the surface   φ_tt + g φ_z = −∂t |∇Φ|² − η ∂z(Φ_tt + g Φ_z)
 //!   at the paddle    φ_x = f X₂′ − f X Φ_xx + f′ X Φ_z
 //!
-//! The surface's forcing has the bound solution Σ Bⱼₗ cosh (kⱼ + kₗ)(z + d)/cosh (kⱼ + kₗ)d e^{−i(kⱼ + kₗ)x}; what it
-//! and the paddle's displacement leave over at x = 0, projected on the free wave of 2ω, has to be nothing, and that
-//! gives X₂. The problem is that of @schaffer1996; in shallow water the answer is that of @madsen1971.
+//! The surface forcing has the bound solution Σ Bⱼₗ cosh (kⱼ + kₗ)(z + d)/cosh (kⱼ + kₗ)d e^{−i(kⱼ + kₗ)x}. This
+//! solution and the paddle's displacement leave a residual at x = 0. X₂ follows from the condition that the residual's
+//! projection on the free wave of frequency 2ω vanishes. The problem is that of @schaffer1996; in shallow water the
+//! solution becomes that of @madsen1971.
 
 use nalgebra::Complex;
 
@@ -17,13 +19,14 @@ use super::{
     train::{evanescent_wave_numbers, wave_number},
 };
 
-/// Standing waves that are counted: the correction is then good to 1 % of itself up to kd = 3.
+/// Number of evanescent modes in the sum: the correction is then accurate to 1 % up to kd = 3.
 const MODES: usize = 100;
 
-/// kd beyond which the correction is left out: no wave in a tank of particles is as short.
+/// kd above which the code omits the correction: an SPH tank resolves no wave so short.
 const DEEPEST: f64 = 30.0;
 
-/// A₂ (m) of X₂ = Re A₂ e^{2iωt} for a paddle that moves as X = Re A e^{iωt}, A = `amplitude` (m), at the still level.
+/// Returns the amplitude A₂ (m) of X₂ = Re A₂ e^{2iωt}. The paddle moves as X = Re A e^{iωt} at the still level, where
+/// A is `amplitude` (m).
 pub(super) fn correction(paddle: &Paddle, train: &LinearWave, amplitude: f64) -> Complex<f64> {
     let (d, omega, g) = (train.depth, train.omega, train.g);
     if train.kd() > DEEPEST {
@@ -39,7 +42,8 @@ pub(super) fn correction(paddle: &Paddle, train: &LinearWave, amplitude: f64) ->
             Mode { k, b: -(k * d).cosh() * paddle.shape_integral(k, d) * (omega * amplitude) / (k * norm) }
         })
         .collect();
-    // Integrals of products with cosh K(z + d), K the free wave's: halves of sums over k ± K.
+    // Integrals of products with cosh K(z + d), where K belongs to the free wave: half the sum of the integrals for k +
+    // K and k − K.
     let both = |k: Complex<f64>, of: &dyn Fn(Complex<f64>) -> Complex<f64>| (of(k + free) + of(k - free)) * 0.5;
     let shape = |k| paddle.shape_integral(k, d);
     let foot = paddle.hinge_above_bed(d);
@@ -61,14 +65,15 @@ pub(super) fn correction(paddle: &Paddle, train: &LinearWave, amplitude: f64) ->
     (bound - moved) / (Complex::<f64>::i() * (2.0 * omega) * shape(free))
 }
 
-/// A part of the first order's potential.
+/// A mode of the first-order potential.
 struct Mode {
     k: Complex<f64>,
     b: Complex<f64>,
 }
 
 impl Mode {
-    /// B of the product of two modes: iω b b′ (k k′ + (k² + k′²)/4 − 3ω⁴/2g²)/(g(k + k′) tanh (k + k′)d − 4ω²).
+    /// Returns B of the product of two modes:
+    /// iω b b′ (k k′ + (k² + k′²)/4 − 3ω⁴/2g²)/(g(k + k′) tanh (k + k′)d − 4ω²).
     fn bound(&self, other: &Self, train: &LinearWave) -> Complex<f64> {
         let (k, l, omega, g) = (self.k, other.k, train.omega, train.g);
         let forcing = k * l + (k * k + l * l) * 0.25 - 1.5 * omega.powi(4) / (g * g);

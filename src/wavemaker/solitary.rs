@@ -1,25 +1,26 @@
-//! The solitary wave: η = H sech² κ(ct − x), which a piston makes that goes with the water at its face.
+//! The solitary wave η = H sech² κ(ct − x), and the motion of the piston that makes it.
 //!
-//!   X′ = c η/(d + η) at the piston's own place, so that with θ = κ(ct − X) the motion is known in closed form but for t:
+//! The piston moves with the water at its face: X′ = c η/(d + η), with η at the piston's current position. With θ =
+//! κ(ct − X), the motion has a closed form in terms of θ instead of t:
 //!   X = (H/κd)(tanh θ − tanh θ₀),   κct = θ − θ₀ + (H/d)(tanh θ − tanh θ₀)
 //!
-//! c = √(g(d + H)). Boussinesq: κ² = 3H/4d³ @goring1978; Rayleigh: κ² = 3H/4d²(d + H), whose wave keeps its height
+//! c = √(g(d + H)). Boussinesq: κ² = 3H/4d³ @goring1978. Rayleigh: κ² = 3H/4d²(d + H); this wave keeps its height
 //! better @guizien2002.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// −θ₀: the motion starts where the surface at the piston is H sech² 5, 2e-4 of the height.
+/// −θ₀: at the start of the motion, the elevation at the piston is H sech² 5, about 2e-4 of the height.
 const START: f64 = 5.0;
 
-/// Whose wave it is.
+/// Theory of the solitary wave.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum SolitaryTheory {
-    /// Boussinesq's.
+    /// Boussinesq's theory.
     Boussinesq,
-    /// Rayleigh's.
+    /// Rayleigh's theory.
     #[default]
     Rayleigh,
 }
@@ -38,7 +39,7 @@ pub(crate) struct SolitaryWave {
 }
 
 impl SolitaryWave {
-    /// The wave of `height` (m) in water `depth` (m) deep.
+    /// Returns the solitary wave of `height` (m) in water of depth `depth` (m).
     pub(crate) fn new(height: f64, depth: f64, g: f64, theory: SolitaryTheory) -> Self {
         let total = match theory {
             SolitaryTheory::Boussinesq => depth,
@@ -48,39 +49,40 @@ impl SolitaryWave {
         Self { height, depth, celerity: (g * (depth + height)).sqrt(), kappa }
     }
 
-    /// How far (m) the piston goes: 2H/κd.
+    /// Returns the stroke of the piston, m: 2H/κd.
     pub(crate) fn stroke(&self) -> f64 {
         2.0 * self.height / (self.kappa * self.depth)
     }
 
-    /// How long (s) it is on its way, to 2e-4 of its speed.
+    /// Returns the duration (s) of the motion; at its ends the speed is 2e-4 of the largest speed.
     pub(crate) fn duration(&self) -> f64 {
         2.0 * (START + self.height / self.depth) / (self.kappa * self.celerity)
     }
 
-    /// The time (s) over which it is let in: its speed is then 2 % of the largest.
+    /// Returns the duration (s) of the ramp; at its end the piston's speed is 2 % of the largest speed.
     pub(super) fn ramp_time(&self) -> f64 {
         0.5 * START / (self.kappa * self.celerity)
     }
 
-    /// Length (m) between the points at which it is a hundredth of its height.
+    /// Returns the distance (m) between the two points where the elevation is a hundredth of the height.
     pub(crate) fn length(&self) -> f64 {
         2.0 * 10f64.acosh() / self.kappa
     }
 
-    /// When (s) the crest is at `x` (m) before the piston's place at the start.
+    /// Returns the time (s) at which the crest is at `x` (m) from the piston's initial position.
     pub(crate) fn crest_time(&self, x: f64) -> f64 {
         let (d, tanh) = (self.depth, START.tanh());
-        // θ = 0 at the piston's middle place, which the crest leaves at this time.
+        // θ = 0 when the piston is at the middle of its stroke: the crest leaves the piston at this time.
         let time = (START + self.height / d * tanh) / (self.kappa * self.celerity);
         time + (x - self.height / (self.kappa * d) * tanh) / self.celerity
     }
 
-    /// The piston's displacement (m) and speed (m/s) at time `t` (s).
+    /// Returns the piston's displacement (m) and speed (m/s) at time `t` (s).
     pub(super) fn displacement(&self, t: f64) -> (f64, f64) {
         let steep = self.height / self.depth;
         let (low, wanted) = (-START - steep * START.tanh(), self.kappa * self.celerity * t);
-        // θ + (H/d) tanh θ = wanted + low: rises at 1 to 1 + H/d, so that Newton from beyond the bend goes straight there.
+        // Newton's method solves θ + (H/d) tanh θ = wanted + low. The slope lies between 1 and 1 + H/d, so the
+        // iteration converges directly from a start beyond the bend.
         let sought = wanted + low;
         let mut theta = sought / (1.0 + steep);
         for _ in 0..50 {

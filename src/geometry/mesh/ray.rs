@@ -1,17 +1,17 @@
-//! Whether two facets pass through each other.
+//! Intersection test of two facets.
 
 use crate::math::Vector;
 
-/// How far one facet has to reach through another to count, over the size of the smaller: less is the round-off of a
-/// file in single precision.
+/// Least penetration of one facet through another that counts as an intersection, over the size of the smaller facet. A
+/// smaller value is the round-off of a file in single precision.
 const THROUGH: f64 = 1e-5;
 
-/// Whether an edge of one facet goes through the other.
+/// Returns whether an edge of either facet passes through the other facet.
 pub(crate) fn facets_cross(a: &[Vector<3>; 3], b: &[Vector<3>; 3]) -> bool {
     pierces(a, b) || pierces(b, a)
 }
 
-/// Whether an edge of `a` goes through the inside of `b`, farther than round-off.
+/// Returns whether an edge of `a` passes through the interior of `b`, by more than round-off.
 fn pierces(a: &[Vector<3>; 3], b: &[Vector<3>; 3]) -> bool {
     let normal = (b[1] - b[0]).cross(&(b[2] - b[0]));
     let longest = |f: &[Vector<3>; 3]| (0..3).map(|i| (f[(i + 1) % 3] - f[i]).norm()).fold(0.0, f64::max);

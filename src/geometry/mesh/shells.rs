@@ -1,4 +1,5 @@
-//! Whether every shell of a mesh faces as it should: out of the solid, so into the hollow that it is the wall of.
+//! Orientation check of the shells of a mesh: each shell must face out of the solid. The wall of a hollow faces the
+//! hollow.
 
 use std::f64::consts::TAU;
 
@@ -10,25 +11,25 @@ use crate::{
     math::{Bounds, Vector},
 };
 
-/// Part of the whole's volume below which a shell is round-off, and faces neither way.
+/// Fraction of the whole volume below which the code ignores a shell's orientation as round-off.
 const NOTHING: f64 = 1e-9;
 
-/// How near a facet of another shell a place is on it, over the facet's size: more than the round-off of a file in single
-/// precision.
+/// Distance from a facet of another shell below which a point lies on that facet, over the facet's size: more than the
+/// round-off of a file in single precision.
 const ON: f64 = 1e-4;
 
-/// Round-off of the turns round a place, –: on the edge of another shell they are no whole number.
+/// Round-off of the winding number, –: on the edge of another shell the winding number is not an integer.
 const ROUND_OFF: f64 = 1e-6;
 
-/// Facets that hang together by edges.
+/// Facets that share edges.
 struct Shell {
     facets: Vec<[u32; 3]>,
     bounds: Bounds<3>,
     volume: f64,
 }
 
-/// Refuses a shell whose inside counts twice, or is taken off where nothing is. The surface is closed and nowhere crosses
-/// itself.
+/// Refuses a shell whose inside counts twice, and a shell that subtracts volume outside the solid. The function assumes
+/// a closed surface without self-intersection.
 pub(crate) fn check_orientation(points: &[Vector<3>], facets: &[[u32; 3]]) -> Result<()> {
     let shells = shells(points, facets);
     let whole: f64 = shells.iter().map(|shell| shell.volume).sum();
@@ -59,7 +60,8 @@ fn refusal(volume: f64, x: &Vector<3>, turns: f64) -> Error {
     )
 }
 
-/// A place on shell `i`, and how often the others go round it: the solid angle of their facets over that of a sphere.
+/// Returns a point on shell `i` and the winding number of the other shells at this point: the solid angle of their
+/// facets over 4π.
 fn around(i: usize, shells: &[Shell], points: &[Vector<3>]) -> Option<(Vector<3>, f64)> {
     let corners = |facet: &[u32; 3]| facet.map(|p| points[p as usize]);
     let turns = |x: &Vector<3>| -> f64 {
@@ -71,8 +73,8 @@ fn around(i: usize, shells: &[Shell], points: &[Vector<3>]) -> Option<(Vector<3>
     found.next().map(|(x, turns)| (x, turns.round()))
 }
 
-/// The solid angle under which a facet is seen from `x`, sr, positive from its inner side, after van Oosterom and Strackee
-/// (1983); no number from the facet itself.
+/// Returns the solid angle of a facet seen from `x`, sr, positive from its inner side, after van Oosterom and Strackee
+/// (1983). The result is NaN if `x` lies on the facet.
 fn angle(facet: &[Vector<3>; 3], x: &Vector<3>) -> f64 {
     let [a, b, c] = facet.map(|p| p - x);
     let (la, lb, lc) = (a.norm(), b.norm(), c.norm());
@@ -81,14 +83,14 @@ fn angle(facet: &[Vector<3>; 3], x: &Vector<3>) -> f64 {
     if cosine < 0.0 && sine.abs() < ON * all { f64::NAN } else { 2.0 * sine.atan2(cosine) }
 }
 
-/// The shells of a closed surface.
+/// Returns the shells of a closed surface.
 fn shells(points: &[Vector<3>], facets: &[[u32; 3]]) -> Vec<Shell> {
     let sides = |(i, &[a, b, c]): (usize, &[u32; 3])| {
         [(a, b), (b, c), (c, a)].map(|(p, q): (u32, u32)| (p.min(q), p.max(q), i))
     };
     let mut edges: Vec<(u32, u32, usize)> = facets.iter().enumerate().flat_map(sides).collect();
     edges.sort_unstable();
-    // Each facet knows an earlier one of its shell, the first itself.
+    // Each facet refers to an earlier facet of its shell; the first facet refers to itself.
     let mut above: Vec<usize> = (0..facets.len()).collect();
     for pair in edges.chunk_by(|p, q| (p.0, p.1) == (q.0, q.1)).filter(|pair| pair.len() == 2) {
         let (a, b) = (first(&mut above, pair[0].2), first(&mut above, pair[1].2));
@@ -107,7 +109,7 @@ fn shells(points: &[Vector<3>], facets: &[[u32; 3]]) -> Vec<Shell> {
     all.into_iter().filter(|facets| !facets.is_empty()).map(shell).collect()
 }
 
-/// The first facet of the shell of facet `i`; halves the way there.
+/// Returns the first facet of the shell of facet `i`, and shortens the path to it (union-find with path halving).
 fn first(above: &mut [usize], mut i: usize) -> usize {
     while above[i] != i {
         above[i] = above[above[i]];

@@ -1,4 +1,5 @@
-//! The nearest place of a mesh, by parry's tree of boxes; without `dim3` there is none, and no mesh.
+//! Search for the nearest point of a mesh, by parry's tree of boxes. Without the feature `dim3` neither the tree nor a
+//! mesh exists.
 
 #[cfg(feature = "dim3")]
 pub(crate) use with_parry::FacetTree;
@@ -21,10 +22,10 @@ mod with_parry {
         math::Vector,
     };
 
-    /// Facets near one that are held against it, at most.
+    /// Largest number of nearby facets that the code compares with a facet.
     const MOST_NEAR: usize = 200;
 
-    /// The facets in a tree of boxes, with the normals of facets, edges and corners.
+    /// The facets in a tree of bounding boxes, with the normals of facets, edges and corners.
     #[derive(Clone)]
     pub(crate) struct FacetTree(TriMesh);
 
@@ -36,14 +37,14 @@ mod with_parry {
                 .map_err(|why| Error::scene(format!("the mesh is no surface: {why}")))
         }
 
-        /// See [`Mesh::distance_and_normal`].
+        /// Returns the same as [`Mesh::distance_and_normal`].
         pub(crate) fn distance_and_normal(&self, x: &Vector<3>) -> (f64, Vector<3>) {
             let at = Point::from_array((*x).into());
             let (foot, (facet, location)) = self.0.project_local_point_and_get_location(at, false);
             let way = x - Vector::from(foot.point.to_array());
             let distance = way.norm();
             let (sign, turn) = if foot.is_inside { (-1.0, -1.0 / distance) } else { (1.0, 1.0 / distance) };
-            // On the surface the way has no direction: the normal there.
+            // On the surface the vector to the nearest point vanishes, so the code uses the normal at that point.
             let size = self.0.bvh().root_aabb().extents().length();
             let normal = if distance > 1e-12 * size { way * turn } else { self.normal(facet, location) };
             (sign * distance, normal)
@@ -62,7 +63,7 @@ mod with_parry {
             Vector::from(normal.to_array()).try_normalize(1e-12).unwrap_or_else(Vector::zeros)
         }
 
-        /// Two facets without a common corner that pass through each other.
+        /// Returns two facets without a common corner that pass through each other, or `None` if there is no such pair.
         pub(crate) fn find_crossing(&self, mesh: &Mesh) -> Option<(usize, usize)> {
             let apart = |a: usize, b: usize| mesh.facets[a].iter().all(|p| !mesh.facets[b].contains(p));
             (0..mesh.facets.len()).into_par_iter().find_map_first(|a| {
@@ -83,7 +84,7 @@ mod without {
         math::Vector,
     };
 
-    /// There is none.
+    /// A type without values: without the feature `dim3` no mesh exists.
     #[derive(Clone)]
     pub(crate) enum FacetTree {}
 

@@ -1,14 +1,14 @@
-//! Whether facets close round a solid: every edge has two facets, which run along it in opposite senses.
+//! Check that facets enclose a solid: every edge has two facets, which traverse the edge in opposite directions.
 
 use crate::{
     error::{Error, Result},
     math::Vector,
 };
 
-/// An edge from its corner of lower number to the other: which way its facet runs along it.
+/// An edge as (lower corner, higher corner, direction): the direction is true if the facet traverses the edge upwards.
 type Edge = (u32, u32, bool);
 
-/// Refuses an open surface, and facets that are turned over.
+/// Refuses an open surface, and inverted facets.
 pub(crate) fn check_closed(points: &[Vector<3>], facets: &[[u32; 3]]) -> Result<()> {
     if facets.is_empty() {
         return Err(Error::scene("a mesh without a facet").help("give it at least four"));
@@ -46,14 +46,14 @@ pub(crate) fn check_closed(points: &[Vector<3>], facets: &[[u32; 3]]) -> Result<
     faults.into_iter().flatten().next().map_or(Ok(()), Err)
 }
 
-/// The refusal of two facets that pass through each other.
+/// Returns the error for two facets that pass through each other.
 pub(crate) fn crossing_error(a: &[Vector<3>; 3], b: &[Vector<3>; 3]) -> Error {
     let middle = |f: &[Vector<3>; 3]| format_position(&((f[0] + f[1] + f[2]) / 3.0));
     let what = format!("the mesh passes through itself: its facets about {} and {} m cross", middle(a), middle(b));
     Error::scene(what).help("unite its parts (a \"boolean union\") in the program that made it: volume counts once")
 }
 
-/// A place as a user reads it, to a part in ten thousand of a metre or finer.
+/// Formats a position for the user, to one part in ten thousand of a metre or finer.
 pub(crate) fn format_position(x: &Vector<3>) -> String {
     let number = |x: f64| if x != 0.0 && x.abs() < 0.01 { format!("{x:.3e}") } else { format!("{x:.4}") };
     format!("({}, {}, {})", number(x[0]), number(x[1]), number(x[2]))

@@ -17,7 +17,7 @@ use crate::{
     },
 };
 
-/// One `[[check]]`: compares a column of a probe with a column of a reference table, or with a formula.
+/// A section `[[check]]`: compares a column of a probe with a column of a reference table, or with a formula.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[non_exhaustive]
@@ -142,7 +142,7 @@ impl CheckConfig {
         self.verify_figures(ctx, key)
     }
 
-    /// Fills in its defaults.
+    /// Fills in the defaults.
     pub(crate) fn fill(&mut self, defaults: &mut Defaults, key: &str) {
         if self.formula.is_none() {
             defaults.fill(format!("{key}.time"), &mut self.time, "t_s".into(), "the name our own tables have");

@@ -12,7 +12,7 @@ use crate::{
     solid::ContactSpec,
 };
 
-/// One `[[contact]]`: how solids touch, pair by pair; of several of the same pair the last counts.
+/// A section `[[contact]]`: how solids touch, pair by pair; of several of the same pair the last counts.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[non_exhaustive]
@@ -33,17 +33,17 @@ impl ContactConfig {
         Self { between: between.map(String::from).to_vec(), ..Self::default() }
     }
 
-    /// The same contact with its own Coulomb friction coefficient (–).
+    /// Returns the same contact with its own Coulomb friction coefficient (–).
     pub fn friction(self, friction: f64) -> Self {
         Self { friction: Some(friction), ..self }
     }
 
-    /// The same contact with its own restitution coefficient (–).
+    /// Returns the same contact with its own restitution coefficient (–).
     pub fn restitution(self, restitution: f64) -> Self {
         Self { restitution: Some(restitution), ..self }
     }
 
-    /// The same pair without contact: its solids pass through one another.
+    /// Returns the same pair without contact: its solids pass through one another.
     pub fn without_contact(self) -> Self {
         Self { touch: Some(false), ..self }
     }

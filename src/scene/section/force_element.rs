@@ -17,7 +17,7 @@ use crate::{
     solid::{ForceSpec, LineEnd, RopeSpec, SpringSpec, TimeFunction},
 };
 
-/// One `[[spring]]`: a spring, or a mooring line if it bears tension only.
+/// A section `[[spring]]`: a spring, or a mooring line if it bears tension only.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[non_exhaustive]
@@ -40,7 +40,7 @@ pub struct SpringConfig {
     pub tension_only: Option<bool>,
 }
 
-/// One `[[rope]]`: an inextensible line that bears tension only.
+/// A section `[[rope]]`: an inextensible line that bears tension only.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[non_exhaustive]
@@ -57,7 +57,7 @@ pub struct RopeConfig {
     pub length: Option<f64>,
 }
 
-/// One `[[force]]`: a force and a torque on a free solid, as functions of time.
+/// A section `[[force]]`: a force and a torque on a free solid, as functions of time.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[non_exhaustive]
@@ -112,17 +112,17 @@ impl SpringConfig {
         Self { between: vec![solid.into()], tension_only: Some(true), ..spring }
     }
 
-    /// The same spring with a damping (N s/m).
+    /// Returns the same spring with a damping (N s/m).
     pub fn damping(self, damping: f64) -> Self {
         Self { damping: Some(damping), ..self }
     }
 
-    /// The same spring with this length without tension (m).
+    /// Returns the same spring with this length without tension (m).
     pub fn length(self, length: f64) -> Self {
         Self { length: Some(length), ..self }
     }
 
-    /// Fills in its defaults.
+    /// Fills in the defaults.
     pub(crate) fn fill(&mut self, defaults: &mut Defaults, key: &str) {
         defaults.fill(format!("{key}.damping"), &mut self.damping, 0.0, "a spring without loss");
         let length = distance(&self.from, &self.to);
@@ -163,12 +163,12 @@ impl RopeConfig {
         Self { name: name.into(), between, from: from.into(), to: to.into(), length: None }
     }
 
-    /// The same rope with this length (m).
+    /// Returns the same rope with this length (m).
     pub fn length(self, length: f64) -> Self {
         Self { length: Some(length), ..self }
     }
 
-    /// Fills in its defaults.
+    /// Fills in the defaults.
     pub(crate) fn fill(&mut self, defaults: &mut Defaults, key: &str) {
         let length = distance(&self.from, &self.to);
         defaults.fill(format!("{key}.length"), &mut self.length, length, "as it starts");
@@ -195,27 +195,27 @@ impl ForceConfig {
         Self { name: name.into(), on: on.into(), at: None, force: None, torque: None, frame: None }
     }
 
-    /// The same load with a force (N), one component along each axis.
+    /// Returns the same load with a force (N), one component along each axis.
     pub fn force<F: Into<TimeValueConfig>>(self, force: impl IntoIterator<Item = F>) -> Self {
         Self { force: Some(TimeVectorConfig::new(force.into_iter().map(Into::into))), ..self }
     }
 
-    /// The same load with a torque (N m): one axial component in 2-D, three in 3-D.
+    /// Returns the same load with a torque (N m): one axial component in 2-D, three in 3-D.
     pub fn torque<F: Into<TimeValueConfig>>(self, torque: impl IntoIterator<Item = F>) -> Self {
         Self { torque: Some(TimeVectorConfig::new(torque.into_iter().map(Into::into))), ..self }
     }
 
-    /// The same load at this point (m) at the start.
+    /// Returns the same load at this point (m) at the start.
     pub fn at(self, at: impl Into<Vec<f64>>) -> Self {
         Self { at: Some(at.into()), ..self }
     }
 
-    /// The same load with axes of the world, or of the solid.
+    /// Returns the same load with axes of the world, or of the solid.
     pub fn frame(self, frame: ForceFrame) -> Self {
         Self { frame: Some(frame), ..self }
     }
 
-    /// Fills in its defaults.
+    /// Fills in the defaults.
     pub(crate) fn fill(&mut self, defaults: &mut Defaults, key: &str) {
         defaults.fill(format!("{key}.frame"), &mut self.frame, ForceFrame::World, "as wind, not as a thruster");
         for (word, values) in [("force", &mut self.force), ("torque", &mut self.torque)] {

@@ -21,7 +21,7 @@ use crate::{
     solid::{FreeMode, JointKind, JointSpec, Motor},
 };
 
-/// One `[[joint]]`.
+/// A section `[[joint]]`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[non_exhaustive]
@@ -99,32 +99,32 @@ pub struct MotorConfig {
 }
 
 impl MotorConfig {
-    /// The same motor with F₀ (N) of a slider.
+    /// Returns the same motor with F₀ (N) of a slider.
     pub fn force(self, force: impl Into<TimeValueConfig>) -> Self {
         Self { force: Some(force.into()), ..self }
     }
 
-    /// The same motor with F₀ (N m) of a hinge.
+    /// Returns the same motor with F₀ (N m) of a hinge.
     pub fn torque(self, torque: impl Into<TimeValueConfig>) -> Self {
         Self { torque: Some(torque.into()), ..self }
     }
 
-    /// The same motor with x* (m or rad).
+    /// Returns the same motor with x* (m or rad).
     pub fn position(self, position: impl Into<TimeValueConfig>) -> Self {
         Self { position: Some(position.into()), ..self }
     }
 
-    /// The same motor with v* (m/s or rad/s).
+    /// Returns the same motor with v* (m/s or rad/s).
     pub fn velocity(self, velocity: impl Into<TimeValueConfig>) -> Self {
         Self { velocity: Some(velocity.into()), ..self }
     }
 
-    /// The same motor with k (N/m or N m/rad).
+    /// Returns the same motor with k (N/m or N m/rad).
     pub fn stiffness(self, stiffness: impl Into<TimeValueConfig>) -> Self {
         Self { stiffness: Some(stiffness.into()), ..self }
     }
 
-    /// The same motor with c (N s/m or N m s/rad).
+    /// Returns the same motor with c (N s/m or N m s/rad).
     pub fn damping(self, damping: impl Into<TimeValueConfig>) -> Self {
         Self { damping: Some(damping.into()), ..self }
     }
@@ -183,27 +183,27 @@ impl JointConfig {
         }
     }
 
-    /// The same joint along this direction, of a slider, a tow or a generic joint.
+    /// Returns the same joint along this direction, of a slider, a tow or a generic joint.
     pub fn along(self, along: impl Into<Vec<f64>>) -> Self {
         Self { along: Some(along.into()), ..self }
     }
 
-    /// The same joint about this axis, of a hinge in 3-D.
+    /// Returns the same joint about this axis, of a hinge in 3-D.
     pub fn axis(self, axis: impl Into<Vec<f64>>) -> Self {
         Self { axis: Some(axis.into()), ..self }
     }
 
-    /// The same joint with end stops, m or rad from the start.
+    /// Returns the same joint with end stops, m or rad from the start.
     pub fn limits(self, min: f64, max: f64) -> Self {
         Self { limits: Some(LimitsConfig::One(vec![min, max])), ..self }
     }
 
-    /// The same joint with a motor.
+    /// Returns the same joint with a motor.
     pub fn motor(self, motor: MotorConfig) -> Self {
         Self { motor: Some(motor), ..self }
     }
 
-    /// Fills in its defaults.
+    /// Fills in the defaults.
     pub(crate) fn fill(&mut self, defaults: &mut Defaults, key: &str) {
         let why = "solids that a joint connects may overlap";
         defaults.fill(format!("{key}.contacts"), &mut self.contacts, false, why);

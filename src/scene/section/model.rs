@@ -115,7 +115,7 @@ impl ModelConfig {
         }
     }
 
-    /// Fills in its defaults; `usual` are the values of water.
+    /// Fills in the defaults; `usual` are the values of water.
     pub(crate) fn fill(&mut self, ctx: &Context, defaults: &mut Defaults, usual: &Model) {
         let (ratio, why) = default_h_over_dp(ctx.dimension);
         let wendland = "no pairing of particles and less noise than the cubic spline, at the same cost";
@@ -221,7 +221,7 @@ impl TimeSteppingConfig {
         }
     }
 
-    /// Fills in its defaults; `usual` are the values of water.
+    /// Fills in the defaults; `usual` are the values of water.
     pub(crate) fn fill(&mut self, defaults: &mut Defaults, usual: &Model) {
         let why = "second order, without the odd–even mode of Verlet, as exact at the same price";
         defaults.fill("time.scheme", &mut self.scheme, usual.scheme, why);

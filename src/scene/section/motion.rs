@@ -59,7 +59,7 @@ impl DrivenConfig {
         laws.into_iter().filter_map(|(word, law)| Some((word, law.as_ref()?)))
     }
 
-    /// Fills in its defaults.
+    /// Fills in the defaults.
     pub(crate) fn fill(&mut self, defaults: &mut Defaults, key: &str) {
         if let Some(wave) = &mut self.wave {
             wave.fill(defaults, &format!("{key}.wave"));

@@ -239,7 +239,7 @@ impl ShapeConfig {
         }
     }
 
-    /// Fills in its defaults.
+    /// Fills in the defaults.
     pub(crate) fn fill(&mut self, ctx: &Context, defaults: &mut Defaults, key: &str) {
         let thick = "as many dp as the kernel reaches";
         let upright = [AxisName::Y, AxisName::Z][ctx.dimension - 2];
@@ -375,7 +375,7 @@ impl PlacementConfig {
         Self { draft: Some(DraftChoice::Equilibrium), ..Self::point(x) }
     }
 
-    /// The same place with the lowest point of the shape at this height (m).
+    /// Returns the same place with the lowest point of the shape at this height (m).
     pub fn bottom(self, bottom: f64) -> Self {
         Self { bottom: Some(bottom), ..self }
     }

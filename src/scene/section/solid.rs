@@ -32,7 +32,7 @@ const THIN: f64 = 1.5;
 /// Least density over the water's of so thin a body, –.
 const THIN_DENSITY: f64 = 0.2;
 
-/// One `[[solid]]`: a name, a shape, a place, and exactly one of `fixed`, `driven`, `free`.
+/// A section `[[solid]]`: a name, a shape, a place, and exactly one of `fixed`, `driven`, `free`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[non_exhaustive]
@@ -157,22 +157,22 @@ impl SolidConfig {
         Self { free: Some(body), ..Self::new(name, shape) }
     }
 
-    /// The same solid at a place.
+    /// Returns the same solid at a place.
     pub fn at(self, at: PlacementConfig) -> Self {
         Self { at: Some(at), ..self }
     }
 
-    /// The same solid with a Coulomb friction coefficient (–).
+    /// Returns the same solid with a Coulomb friction coefficient (–).
     pub fn friction(self, friction: f64) -> Self {
         Self { friction: Some(friction), ..self }
     }
 
-    /// The same solid with a restitution coefficient (–).
+    /// Returns the same solid with a restitution coefficient (–).
     pub fn restitution(self, restitution: f64) -> Self {
         Self { restitution: Some(restitution), ..self }
     }
 
-    /// The same solid, with contact beginning at this distance (m) from its faces.
+    /// Returns the same solid, with contact beginning at this distance (m) from its faces.
     pub fn contact_skin(self, contact_skin: f64) -> Self {
         Self { contact_skin: Some(contact_skin), ..self }
     }
@@ -196,7 +196,7 @@ impl SolidConfig {
         ctx.require_range(&format!("{key}.restitution"), self.restitution, 1.0)
     }
 
-    /// Fills in its defaults.
+    /// Fills in the defaults.
     pub(crate) fn fill(&mut self, ctx: &Context, defaults: &mut Defaults, key: &str) {
         self.shape.fill(ctx, defaults, &format!("{key}.shape"));
         defaults.fill(

@@ -40,7 +40,7 @@ impl SpongeLayerConfig {
         Self { from: from.into(), to: to.into(), strength: None, power: None }
     }
 
-    /// Fills in its defaults.
+    /// Fills in the defaults.
     pub(crate) fn fill(&mut self, defaults: &mut Defaults, key: &str) {
         let why = "gentle at first, so that little is reflected";
         defaults.fill(format!("{key}.power"), &mut self.power, POWER, why);

@@ -216,7 +216,7 @@ impl WaveConfig {
         Self { absorb: Some(AbsorbChoice::Parameters(config)), ..Self::default() }
     }
 
-    /// The same wave of a paddle that absorbs waves which come back.
+    /// Returns the same wave of a paddle that absorbs waves which come back.
     pub fn absorbing(self) -> Self {
         Self { absorb: Some(AbsorbChoice::Switch(true)), ..self }
     }
@@ -235,7 +235,7 @@ impl WaveConfig {
         ])
     }
 
-    /// Fills in its defaults.
+    /// Fills in the defaults.
     pub(crate) fn fill(&mut self, defaults: &mut Defaults, key: &str) {
         let peaked = "JONSWAP's mean";
         let many = "the spectrum's form, and a sea that does not repeat";

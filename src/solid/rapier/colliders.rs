@@ -1,4 +1,5 @@
-//! The convex parts with which a solid is touched, and who starts inside whom; compiled for each dimension with the world.
+//! The convex parts of a solid for contacts, and the check for solids that overlap at the start; the module is compiled
+//! for each dimension with its world.
 
 use super::super::{
     parts,
@@ -19,10 +20,11 @@ use crate::{
     },
 };
 
-/// A solid's convex parts in its own frame.
+/// Convex parts of a solid in the frame of the solid.
 pub(super) type ConvexParts = Vec<(Frame, SharedShape)>;
 
-/// Adds the convex parts of `shape`, posed in the solid's frame; of a mesh that is `fixed` its surface.
+/// Adds the convex parts of `shape`, posed in the solid's frame, to `found`; a mesh that is `fixed` contributes its
+/// surface.
 pub(super) fn collect_parts(shape: &Shape<D>, pose: &Pose<D>, fixed: bool, found: &mut ConvexParts) -> Result<()> {
     let frame = to_frame(pose);
     let mut cuboid = |min: Vector<D>, max: Vector<D>| {
@@ -61,18 +63,18 @@ pub(super) fn collect_parts(shape: &Shape<D>, pose: &Pose<D>, fixed: bool, found
     Ok(())
 }
 
-/// The box around the parts at `frame`, its least and its largest corner (m), and none of no parts.
+/// Returns the lowest and highest corner (m) of the box around the parts at `frame`, or `None` if there are no parts.
 fn around(parts: &ConvexParts, frame: &Frame) -> Option<(Vector<D>, Vector<D>)> {
     let boxes = parts.iter().map(|(inner, part)| part.compute_aabb(&(*frame * *inner)));
     boxes.reduce(|a, b| a.merged(&b)).map(|whole| (from_point(whole.mins), from_point(whole.maxs)))
 }
 
-/// Smallest edge of the box around the parts, m.
+/// Returns the smallest edge of the box around the parts, m.
 pub(super) fn thickness(parts: &ConvexParts) -> f64 {
     around(parts, &Frame::IDENTITY).map_or(f64::INFINITY, |(min, max)| (max - min).min())
 }
 
-/// The inner room of a tank, or of a polyline whose two ends rise: its least and its largest corner, m.
+/// Returns the lowest and highest corner (m) of the interior of a tank, or of a polyline with two rising ends.
 fn room(shape: &Shape<D>, pose: &Pose<D>) -> Option<(Vector<D>, Vector<D>)> {
     let corners: Vec<Vector<D>> = match shape {
         Shape::Tank { size, .. } => Bounds { min: Vector::zeros(), max: *size }.corners().collect(),
@@ -88,7 +90,7 @@ fn room(shape: &Shape<D>, pose: &Pose<D>) -> Option<(Vector<D>, Vector<D>)> {
     basin.then_some((min, max))
 }
 
-/// What to do about a body that has no room in a tank or basin.
+/// Returns the advice for a body that does not fit into a tank or basin.
 fn cramped(
     (inner, here): PlacedSolid<D>,
     parts: &ConvexParts,
@@ -115,7 +117,7 @@ fn cramped(
     })
 }
 
-/// Refuses a free solid that starts deeper than `allowed` (m) inside another, contact skins counted.
+/// Refuses a free solid that starts deeper than `allowed` (m) inside another solid, including contact skins.
 pub(super) fn check_overlap(
     solids: &[SolidSpec<D>],
     start: &[Kinematics<D>],

@@ -1,7 +1,8 @@
-//! What the engine's contacts did in the last step, compiled for each dimension with the world that they are in.
+//! Contact forces of the engine in the last step; the module is compiled for each dimension with its world.
 //!
-//! A contact along the normal n, from the first solid to the second, gives the second the impulse λ n − Σ τ t and the first the
-//! opposite; λ and τ are the engine's sums over its iterations, t its tangents for the direction −n.
+//! The normal n of a contact points from the first solid to the second. The contact applies the impulse λ n − Σ τ t to
+//! the second solid and the opposite impulse to the first. λ and τ are the engine's sums over its iterations, and t are
+//! its tangents for the direction −n.
 
 use std::collections::BTreeMap;
 
@@ -14,7 +15,7 @@ use crate::{
     solid::{ContactForce, Load},
 };
 
-/// The pairs that pressed on each other, in order of their numbers.
+/// Returns the forces of the pairs with normal force, in order of the solids' numbers.
 pub(super) fn pair_forces(world: &PhysicsWorld, bodies: &[RigidBodyHandle], met: &[Impact]) -> Vec<ContactForce<D>> {
     let mut pairs = Pairs(BTreeMap::new());
     let rate = 1.0 / world.integration_parameters.dt;
@@ -33,7 +34,8 @@ pub(super) fn pair_forces(world: &PhysicsWorld, bodies: &[RigidBodyHandle], met:
                     let force = from_point(impulse(normal, data)) * rate;
                     let (at, other) = (place(first, data.solver_dp1), place(second, data.solver_dp2));
                     let arms = [(first, at), (second, other)].map(|(body, at)| from_point(at - body.center_of_mass()));
-                    // The engine pushes at the second's face, the first's skin and its own before it: it is told where they meet.
+                    // The engine applies the impulse at the face of the second solid, with both contact skins before
+                    // it; the reported point is between the skins.
                     let meet = at - normal * world.colliders[pair.collider2].contact_skin();
                     pairs.add(between, data.impulse * rate, &from_point(meet), arms, force);
                 }
@@ -47,12 +49,13 @@ pub(super) fn pair_forces(world: &PhysicsWorld, bodies: &[RigidBodyHandle], met:
     pairs.0.into_iter().map(mean).collect()
 }
 
-/// Where a contact is whose `arm` of `body` the engine keeps (m): of what is fixed it keeps the place itself.
+/// Returns the position of a contact from the `arm` on `body` that the engine stores (m); for a fixed body the engine
+/// stores the position itself.
 fn place(body: &RigidBody, arm: Point) -> Point {
     if body.is_fixed() { arm } else { body.center_of_mass() + arm }
 }
 
-/// The impulse of a contact on its second solid, N s.
+/// Returns the impulse of a contact on its second solid, N s.
 fn impulse(normal: Point, data: &ContactData) -> Point {
     normal * data.impulse - friction(-normal, data)
 }
@@ -60,8 +63,8 @@ fn impulse(normal: Point, data: &ContactData) -> Point {
 struct Pairs(BTreeMap<[usize; 2], ContactForce<D>>);
 
 impl Pairs {
-    /// Adds a contact of the solids `between`: `pressing` (N) along the normal, `force` (N) on the second, at `arms` (m) from their
-    /// centres.
+    /// Adds a contact of the solids `between`, at `arms` (m) from their centres. `pressing` (N) is the normal force,
+    /// and `force` (N) is the total force on the second solid.
     fn add(&mut self, between: [usize; 2], pressing: f64, at: &Vector<D>, arms: [Vector<D>; 2], force: Vector<D>) {
         let [first, second] = arms;
         let mut loads = [Load::from_force_at(&first, -force), Load::from_force_at(&second, force)];

@@ -1,6 +1,8 @@
-//! The rigid-body engine as the rest sees it: loads in, kinematics out, nothing of rapier.
+//! The interface of the rigid-body engine to the rest of the crate: it takes loads, returns kinematics, and hides the
+//! types of rapier.
 //!
-//! [`Dim`] picks the engine of a dimension: `Dim<2>` has one if the feature `dim2` is on, `Dim<3>` with `dim3`.
+//! [`Dim`] selects the engine of a dimension: the feature `dim2` provides that of `Dim<2>`, and `dim3` that of
+//! `Dim<3>`.
 
 use crate::{
     error::{Error, ErrorCode, ErrorKind, Result},
@@ -8,23 +10,25 @@ use crate::{
     solid::{Constraints, Kinematics, Load, Mobility, SolidSpec},
 };
 
-/// Moves the free solids of one world under weight, water, contacts and the user's pushes.
+/// Moves the free solids of one world under weight, water loads, contact forces and the user's forces.
 ///
-/// Solids are named by their index in the list that the engine was made from. Fixed and driven solids take
-/// part as obstacles; free ones touch those and one another at their true faces, or at the contact skins that they ask for.
+/// An index names a solid: its position in the list from which the engine is made. Fixed and driven solids act as
+/// obstacles. Free solids touch obstacles and one another at their true faces, or at the contact skins that their
+/// specifications set.
 pub trait Engine<const D: usize>: Send + Sync {
-    /// Pose, centre of mass, its velocity, and spin of the free solid `solid`.
+    /// Returns the pose, centre of mass, its velocity, and the spin of the free solid `solid`.
     fn kinematics(&self, solid: usize) -> Kinematics<D>;
 
-    /// Advances every free solid by `dt` (s), once, with the given forces held constant.
+    /// Advances every free solid by one step of `dt` (s); the given forces stay constant during the step.
     ///
-    /// `loads[i]`: the water's force and torque about the centre of solid i, without weight; used for free
-    /// solids only. `driven[i]`: where driven solid i is at the end of the step; `None` for all others.
-    /// Velocities are exact for constant loads, positions first-order: symplectic Euler; exact for what has only its weight.
+    /// `loads[i]` is the force and torque of the water about the centre of solid i, without weight; the engine uses it
+    /// for free solids only. `driven[i]` is the pose and motion of driven solid i at the end of the step, and `None`
+    /// for all other solids. The integrator is symplectic Euler: velocities are exact for constant loads, and positions
+    /// are first-order. Positions of a solid that only its weight acts on are exact.
     ///
     /// # Errors
-    /// An [`EngineFault`] if a load or a driven pose is not finite (nothing has moved then), or if a solid's
-    /// state became so. The engine cannot go on afterwards; restore it or make a new one.
+    /// An [`EngineFault`] if a load or a driven pose is not finite (then no solid has moved), or if the state of a
+    /// solid becomes non-finite. The engine cannot continue afterwards; restore it or make a new one.
     fn step(
         &mut self,
         dt: f64,
@@ -35,89 +39,93 @@ pub trait Engine<const D: usize>: Send + Sync {
     /// Adds the user's `force` (N) at the world point `at` (m) of a free solid, in the next step only.
     fn push(&mut self, solid: usize, force: &Vector<D>, at: &Vector<D>);
 
-    /// Adds a load about the centre of a free solid, in the next step only; without effect on any other.
+    /// Adds a load about the centre of a free solid, in the next step only; the call has no effect on any other solid.
     fn add_load(&mut self, solid: usize, load: &Load<D>);
 
-    /// What the pushes and burdens that wait for the next step come to on a free solid.
+    /// Returns the sum of the user's forces and loads that the next step will apply to a free solid.
     fn applied_push(&self, solid: usize) -> Load<D>;
 
     /// Sets the velocity of the centre of mass (m/s) and the spin (rad/s) of a free solid.
     fn set_velocity(&mut self, solid: usize, velocity: &Vector<D>, spin: &Bivector<D>);
 
-    /// How the solids pressed on one another in the last step, pair by pair in order.
+    /// Returns the contact forces between solids in the last step, pair by pair in order.
     fn contacts(&self) -> Vec<ContactForce<D>>;
 
-    /// Holds a free solid still, or lets it go as it was made.
+    /// Holds a free solid at rest if `held` is true, or else releases it with its original locks.
     fn set_held(&mut self, solid: usize, held: bool);
 
-    /// With which solid, and how deep (m), a `solid` that starts as `start` would overlap most, contact skins counted.
+    /// Returns the solid that `solid`, placed at `start`, would overlap most, and the depth (m) including contact
+    /// skins.
     ///
     /// # Errors
-    /// `Scene` if its shape cannot be touched.
+    /// `Scene` if contacts do not support the shape of `solid`.
     fn deepest_overlap(&self, solid: &SolidSpec<D>, start: &Kinematics<D>) -> Result<Option<(usize, f64)>>;
 
-    /// Lets a solid come that starts as `start`; it gets the next number.
+    /// Adds a solid that starts with the kinematics `start`; the solid gets the next number.
     ///
     /// # Errors
-    /// `Scene` if its shape cannot be touched; nothing has changed then.
+    /// `Scene` if contacts do not support its shape; the engine is unchanged then.
     fn add_body(&mut self, solid: &SolidSpec<D>, start: &Kinematics<D>) -> Result<()>;
 
-    /// Takes a solid out that nothing is tied to: it keeps its number and takes no part any more.
+    /// Removes a solid that no joint or rope holds: the solid keeps its number but has no further effect.
     fn remove_body(&mut self, solid: usize);
 
-    /// What a free solid did in the last step against torques (N m), if it is one that the engine turns by its spin: in space one in
-    /// a joint, on a rope, or with something locked, I(R₀) ΔΩ/Δt less its gyroscopic torque. All others turn by their angular momentum.
+    /// Returns the rate I(R₀) ΔΩ/Δt less the gyroscopic torque (N m) of a free solid in the last step, if the engine
+    /// turns it by its spin. In 3-D the engine does so for a solid in a joint, on a rope, or with a locked axis. It
+    /// turns all other solids by their angular momentum.
     fn gyroscopic_rate(&self, solid: usize) -> Option<Bivector<D>>;
 
-    /// How easily a solid is moved now.
+    /// Returns the present mobility of a solid.
     fn mobility(&self, solid: usize) -> Mobility<D>;
 
-    /// Iterations of the last step. Joints and ropes tell the impulses of its last iteration, times their number.
+    /// Returns the number of iterations of the last step. The engine stores the impulses of joints and ropes of the
+    /// last iteration only; this crate multiplies them by this number.
     fn solver_iterations(&self) -> usize;
 
-    /// Impulses (N s, N m s) of joint number `joint` on its second solid in the last step: of its locks, turns first, then of
-    /// its end stop. Each is along what the rows before it leave of its own: see `solid/rows.rs`.
+    /// Returns the impulses (N s, N m s) of joint number `joint` on its second solid in the last step. The impulses of
+    /// its locks come first, rotations before translations, and then that of its end stop. Each impulse acts along the
+    /// part of its row that is independent of the rows before: see `solid/rows.rs`.
     fn joint_impulses(&self, joint: usize) -> Vec<f64>;
 
-    /// Impulse (N s) of rope number `rope` in the last step.
+    /// Returns the impulse (N s) of rope number `rope` in the last step.
     fn rope_impulse(&self, rope: usize) -> f64;
 
-    /// The whole state as bytes; [`Engine::restore`] continues from them to the same bits.
+    /// Returns the whole state as bytes; [`Engine::restore`] continues from them bit for bit.
     ///
     /// # Errors
     /// `Restart` if the state cannot be written.
     fn save(&self) -> Result<Vec<u8>>;
 
-    /// Puts back a state saved by an engine made from the same solids.
+    /// Restores a state that an engine made from the same solids has saved.
     ///
     /// # Errors
-    /// `Restart` if the bytes are damaged, or of another version or list of solids; the engine is unchanged.
+    /// `Restart` if the bytes are damaged, or belong to another version or list of solids; the engine is unchanged.
     fn restore(&mut self, bytes: &[u8]) -> Result<()>;
 }
 
-/// How two solids pressed on each other in the last step.
+/// The contact force between two solids in the last step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactForce<const D: usize> {
-    /// Their numbers, the lower first.
+    /// Numbers of both solids, the lower first.
     pub between: [usize; 2],
-    /// Sum of the normal forces at their contact points, N (N/m in 2-D).
+    /// Sum of the normal forces at the contact points of the pair, N (N/m in 2-D).
     pub normal_force: f64,
-    /// Where they act: the mean of the contact points, weighed by the normal forces, m.
+    /// Point of action: the mean of the contact points, weighted by the normal forces, m.
     pub at: Vector<D>,
-    /// Loads on the first and on the second, friction included, each about its own centre.
+    /// Loads on the first and on the second solid, including friction, each about the centre of that solid.
     pub loads: [Load<D>; 2],
 }
 
-/// A step that the engine could not make, and the solid to blame.
+/// A failed step of the engine, and the solid that caused the failure.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EngineFault<const D: usize> {
-    /// The identifier of its family.
+    /// Error code of the family of this fault.
     pub code: ErrorCode,
-    /// Index of the solid.
+    /// Index of the solid that caused the fault.
     pub solid: usize,
-    /// What was seen: "load not finite".
+    /// Observed fault, such as "load not finite".
     pub reason: String,
-    /// What usually causes it and what to try.
+    /// Usual cause and suggested remedy.
     pub cause: &'static str,
     /// Last valid position of the solid's frame, m.
     pub position: Vector<D>,
@@ -125,7 +133,7 @@ pub struct EngineFault<const D: usize> {
     pub velocity: Vector<D>,
 }
 
-/// A number of dimensions, to be asked for its engine.
+/// A number of dimensions, as a type that selects its engine.
 pub struct Dim<const D: usize>;
 
 /// Dimensions that have an engine.
@@ -133,14 +141,15 @@ pub trait HasEngine<const D: usize> {
     /// Name and version of the engine.
     const VERSION: (&'static str, &'static str);
 
-    /// Makes the engine of `solids`, each starting as `start` says and tied by `links`, under `gravity` (m/s²).
+    /// Makes the engine of `solids`, each with its starting kinematics and connected by `links`, under `gravity`
+    /// (m/s²).
     ///
-    /// `dp`: particle spacing (m), the measure of what overlap is too deep. Shapes are not checked here but by
-    /// `SolidSpec::check`; ties, mass, inertia, friction, restitution and motion are.
+    /// `dp` is the particle spacing (m), which sets the largest allowed overlap. This function checks links, mass,
+    /// inertia, friction, restitution and motion; `SolidSpec::check` checks shapes.
     ///
     /// # Errors
-    /// `Scene` for a solid that cannot be meant, and if a free solid starts deeper than 0.05 dp inside another:
-    /// names both and the depth.
+    /// `Scene` for a solid with invalid values, and if a free solid starts deeper than 0.05 dp inside another solid:
+    /// the error names both solids and the depth.
     fn engine(
         solids: &[SolidSpec<D>],
         start: &[Kinematics<D>],
@@ -180,18 +189,18 @@ impl HasEngine<3> for Dim<3> {
     }
 }
 
-/// Most iterations: a contact 4096 times as stiff.
+/// Largest number of iterations: a contact is then 4096 times as stiff.
 const ITERATIONS_MAX: usize = 64;
 
-/// Iterations that keep contacts as firm under the heaviest of the free solids as under the lightest: a contact yields to what
-/// lies on the lighter body with 1/n².
+/// Returns the number of iterations n with which contacts are as firm under the heaviest free solid as under the
+/// lightest. The compression of a contact by the load on the lighter body is proportional to 1/n².
 pub(super) fn iterations_for_masses(masses: impl Iterator<Item = f64>) -> usize {
     let (lightest, heaviest) = masses.fold((f64::INFINITY, 0.0_f64), |(a, b), mass| (a.min(mass), b.max(mass)));
     let wanted = (heaviest / lightest).sqrt() / 1.5;
     if wanted > 1.0 { (wanted.ceil() as usize).next_power_of_two().min(ITERATIONS_MAX) } else { 1 }
 }
 
-/// The error of a state that cannot be saved or restored.
+/// Returns the error of a state that the engine cannot save or restore.
 pub(super) fn restart_error(why: impl std::fmt::Display) -> Error {
     Error::new(ErrorKind::Restart, format!("the rigid bodies of the checkpoint: {why}"))
         .help("a checkpoint is read only by the version and for the scene that wrote it; start the run anew")

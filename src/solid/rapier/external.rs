@@ -1,5 +1,5 @@
-//! Bodies of a rapier world of the user's own: as solids, under the water's loads, and where they are; compiled for each dimension
-//! with its engine.
+//! Bodies of the user's own rapier world: the module converts them to solids, applies water loads to them, and returns
+//! their kinematics. It is compiled for each dimension with its engine.
 
 use super::rapier::{
     dynamics::{LockedAxes, RigidBody, RigidBodyHandle, RigidBodySet, RigidBodyType},
@@ -13,14 +13,17 @@ use crate::{
     solid::{FreeBody, Kinematics, Load, Role, SolidSpec},
 };
 
-/// The solid that a body is: fixed if that is, else free, with its shape, place, mass, inertia, velocity and locks. Give it to a setup
-/// for [`Simulation::with_external_bodies`](crate::simulation::Simulation::with_external_bodies).
+/// Returns the solid that represents a body: fixed if the body is fixed, else free. The solid has the body's shape,
+/// pose, mass, inertia, velocity and locks. Pass it to a setup for
+/// [`Simulation::with_external_bodies`](crate::simulation::Simulation::with_external_bodies).
 ///
-/// Its shape is that of the body's colliders, sensors left out. The water feels it at its true faces, whatever contact skin it has.
+/// The shape consists of the body's colliders without its sensors. The water acts on its true faces, regardless of
+/// contact skins.
 ///
 /// # Errors
-/// `Scene` if there is no such body, it has no collider, one with a shape that water cannot feel (a half-space, a height field, a cone,
-/// a round shape: make the solid's shape by hand then), it is kinematic, or has no mass yet.
+/// `Scene` if the body does not exist, has no collider, is kinematic, or has no mass yet. The error also occurs for a
+/// collider shape that the water model does not support (a half-space, a height field, a cone, a round shape). In that
+/// case, define the shape of the solid by hand.
 pub fn solid_from_body(
     name: impl Into<String>,
     body: RigidBodyHandle,
@@ -65,8 +68,8 @@ pub fn solid_from_body(
     Ok(SolidSpec { name, shape, pose, role, friction: 0.0, restitution: 0.0, contact_skin: 0.0 })
 }
 
-/// Gives a body the water's load in place of all forces and torques of the step before. Rapier keeps forces until it is told
-/// otherwise, so add yours after this.
+/// Replaces all forces and torques on a body by the load of the water. Rapier keeps forces until they are reset, so add
+/// your own forces after this call.
 pub fn apply_load(body: &mut RigidBody, load: &Load<D>) {
     body.reset_forces(false);
     body.reset_torques(false);
@@ -74,7 +77,7 @@ pub fn apply_load(body: &mut RigidBody, load: &Load<D>) {
     body.add_torque(to_angular(&load.torque), true);
 }
 
-/// Where a body is and how it moves, for `step.solids`.
+/// Returns the pose and motion of a body, for `step.solids`.
 pub fn kinematics(body: &RigidBody) -> Kinematics<D> {
     Kinematics {
         pose: world::from_frame(body.position()),
@@ -84,7 +87,7 @@ pub fn kinematics(body: &RigidBody) -> Kinematics<D> {
     }
 }
 
-/// Moves a body to where a solid is at the end of the step: for a kinematic body that stands for a driven solid.
+/// Sets the next pose of a kinematic body to the pose of a driven solid at the end of the step.
 pub fn set_kinematic(body: &mut RigidBody, solid: &Kinematics<D>) {
     body.set_next_kinematic_position(world::to_frame(&solid.pose));
 }
@@ -94,7 +97,7 @@ fn free(body: &RigidBody) -> FreeBody<D> {
     let straight =
         [LockedAxes::TRANSLATION_LOCKED_X, LockedAxes::TRANSLATION_LOCKED_Y, LockedAxes::TRANSLATION_LOCKED_Z];
     let turns = [LockedAxes::ROTATION_LOCKED_X, LockedAxes::ROTATION_LOCKED_Y, LockedAxes::ROTATION_LOCKED_Z];
-    // A plane turns about z.
+    // In 2-D, bodies rotate about z.
     let turns: Vec<bool> = turns[if D == 2 { 2 } else { 0 }..].iter().map(|&axis| locks.contains(axis)).collect();
     FreeBody {
         mass: own.mass(),
@@ -107,7 +110,7 @@ fn free(body: &RigidBody) -> FreeBody<D> {
     }
 }
 
-/// The shape of a collider, in its frame.
+/// Returns the shape of a collider, in the frame of the collider.
 fn shape(geometry: &dyn Geometry) -> Result<Shape<D>> {
     Ok(match geometry.as_typed_shape() {
         TypedShape::Ball(ball) => Shape::Ball { radius: ball.radius },
@@ -129,7 +132,7 @@ fn shape(geometry: &dyn Geometry) -> Result<Shape<D>> {
     })
 }
 
-/// The error of a shape that water cannot feel.
+/// Returns the error of a shape that the water model does not support.
 pub(super) fn unsupported_shape(what: &TypedShape) -> Error {
     let name = format!("{what:?}");
     let name = name.split(['(', ' ']).next().unwrap_or_default();

@@ -1,8 +1,8 @@
-//! Joints and ropes of the engine, compiled for each dimension with the world that they are in.
+//! Joints and ropes of the engine; the module is compiled for each dimension with its world.
 //!
-//! A rope is a limit on the distance of two points, held to the end of each step along the line between them as it is at its
-//! start. What moves at u, on bodies that turn at ω about centres r away, may come out further by (u² + L Σ ω² r) Δt²/2L: the limit
-//! of a step is that much shorter.
+//! A rope limits the distance between two points. The engine enforces the limit at the end of each step, along the line
+//! between the points at the start of the step. For a relative speed u, on bodies with spin ω about centres at distance
+//! r, the length may exceed the limit by (u² + L Σ ω² r) Δt²/2L. The limit of a step is shorter by this length.
 
 use super::super::rapier::{
     dynamics::{
@@ -26,19 +26,21 @@ use crate::{
     },
 };
 
-/// Frequency of a lock as a spring, Hz: rigid at any step, by 1/(2π f Δt)².
+/// Frequency of the spring that represents a lock, Hz: the lock is rigid at any step, with a relative error of 1/(2π f
+/// Δt)².
 const LOCK: f64 = 1e9;
 
-/// Joints and ropes by their handles, in order, and the pairs with a contact of their own.
+/// Handles of the joints and ropes, in order, and the pairs with their own contact properties.
 pub(super) struct RapierJoints {
     joints: Vec<ImpulseJointHandle>,
-    /// With the longest that each can be, m.
+    /// Handle and largest length (m) of each rope.
     ropes: Vec<(ImpulseJointHandle, f64)>,
     pub(super) contact_pairs: ContactPairHooks,
 }
 
 impl RapierJoints {
-    /// Puts the joints and ropes of `links` into `world`, where the solids are `bodies` and start as `start`.
+    /// Adds the joints and ropes of `links` to `world`, in which `bodies` represent the solids with starting kinematics
+    /// `start`.
     pub(super) fn new(
         world: &mut PhysicsWorld,
         bodies: &[RigidBodyHandle],
@@ -48,7 +50,7 @@ impl RapierJoints {
         let on_ground = links.joints.iter().any(|joint| joint.between.contains(&None))
             || links.ropes.iter().any(|rope| rope.ends.iter().any(|end| end.solid.is_none()));
         let ground = on_ground.then(|| world.insert_body(RigidBodyBuilder::fixed()));
-        // Whoever has no body is on the ground, which is there then.
+        // An end without a body is attached to the ground, which exists in that case.
         let body = |end: Option<usize>| end.map(|solid| bodies[solid]).or(ground).unwrap_or_default();
         let mut joints = Vec::new();
         for spec in &links.joints {
@@ -82,7 +84,7 @@ impl RapierJoints {
         Self { joints, ropes, contact_pairs: ContactPairHooks(links.contacts.clone()) }
     }
 
-    /// Sets the limit of each rope for a step of `dt` (s).
+    /// Sets the length limit of each rope for a step of `dt` (s).
     pub(super) fn update_rope_limits(&self, world: &mut PhysicsWorld, dt: f64) {
         for (handle, longest) in &self.ropes {
             let Some(rope) = world.impulse_joints.get_mut(*handle, false) else { continue };
@@ -99,33 +101,35 @@ impl RapierJoints {
         }
     }
 
-    /// Impulses (N s, N m s) of joint number `i` on its second solid in the last step: of its locks in order, then of its end stops.
+    /// Returns the impulses (N s, N m s) of joint number `i` on its second solid in the last step: of its locks in
+    /// order, then of its end stops.
     pub(super) fn joint_impulses(&self, world: &PhysicsWorld, i: usize, iterations: usize) -> Vec<f64> {
         let Some(joint) = world.impulse_joints.get(self.joints[i]) else { return Vec::new() };
         let (locked, limited) = (joint.data.locked_axes.bits(), joint.data.limit_axes.bits());
         let locks = modes_rotations_first::<D>().filter(|i| locked >> i & 1 == 1).map(|i| joint.impulses[i]);
         let stops =
             modes_rotations_first::<D>().filter(|i| limited >> i & 1 == 1).map(|i| joint.data.limits[i].impulse);
-        // The engine keeps those of the last of its iterations.
+        // The engine stores the impulses of its last iteration only.
         locks.chain(stops).map(|impulse| -impulse * iterations as f64).collect()
     }
 
-    /// Impulse (N s) of rope number `i` in the last step.
+    /// Returns the impulse (N s) of rope number `i` in the last step.
     pub(super) fn rope_impulse(&self, world: &PhysicsWorld, i: usize, iterations: usize) -> f64 {
         world.impulse_joints.get(self.ropes[i].0).map_or(0.0, |rope| rope.data.limits[0].impulse * iterations as f64)
     }
 }
 
-/// Pairs of solids that touch in their own way.
+/// Contact properties of the pairs of solids that have their own.
 pub(super) struct ContactPairHooks(ContactPairs);
 
 impl ContactPairHooks {
-    /// Whether there is none.
+    /// Returns whether no pair has its own contact properties.
     pub(super) fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 
-    /// Restitution and friction of two solids, of which each has a `restitution` of its own and `friction` is the mean.
+    /// Returns the restitution and friction of two solids. `restitution` holds the value of each solid, and `friction`
+    /// is the mean of both solids' values.
     pub(super) fn restitution_and_friction(
         &self,
         a: usize,
@@ -138,7 +142,7 @@ impl ContactPairHooks {
         (own.and_then(|spec| spec.restitution).unwrap_or(usual), own.and_then(|spec| spec.friction).unwrap_or(friction))
     }
 
-    /// That of the solids of two colliders.
+    /// Returns the contact properties of the pair of solids that own two colliders.
     fn of(&self, colliders: &ColliderSet, pair: [ColliderHandle; 2]) -> Option<&ContactSpec> {
         let [a, b] = pair.map(|collider| colliders[collider].user_data as usize);
         self.0.find(a, b)

@@ -15,7 +15,7 @@
 //!
 //! `examples/own_world.rs` is a whole program.
 
-/// The engine itself, in the version that this crate is made with.
+/// The crate of the engine, in the version that this crate uses.
 pub use rapier2d as rapier;
 
 #[allow(clippy::duplicate_mod, reason = "one source, compiled against each engine")]
@@ -48,10 +48,10 @@ use crate::{
 
 const D: usize = 2;
 
-/// A spin in the engine's terms.
+/// The engine's type of a spin.
 type Angular = f64;
 
-/// Names the engine that wrote a state.
+/// Name and version of the engine that wrote a state.
 const ENGINE: &str = "rapier2d-f64 0.36.1";
 
 fn to_angular(wedge: &Bivector<D>) -> f64 {
@@ -70,12 +70,12 @@ fn from_rotation(rotation: &Rotation) -> Matrix<D> {
     Matrix::from_row_slice(&[rotation.re, -rotation.im, rotation.im, rotation.re])
 }
 
-/// An inverse inertia as a matrix: its one number at the first place.
+/// Returns an inverse inertia as a matrix: its only component is in the first row and column.
 fn inverse_inertia(inverse: &f64) -> SMatrix<f64, 3, 3> {
     SMatrix::from_fn(|i, j| if (i, j) == (0, 0) { *inverse } else { 0.0 })
 }
 
-/// Mass properties in the solid's frame; a plane has one inertia, whatever is locked.
+/// Returns the mass properties in the solid's frame; in 2-D there is one moment of inertia, regardless of locks.
 fn mass_properties(body: &FreeBody<D>, _start: &Matrix<D>) -> MassProperties {
     MassProperties::new(world::to_point(&body.centre), body.mass, body.inertia[(0, 0)])
 }
@@ -86,18 +86,19 @@ fn lock(builder: RigidBodyBuilder, body: &FreeBody<D>) -> RigidBodyBuilder {
     if body.locked_rotations[0] { builder.lock_rotations() } else { builder }
 }
 
-/// Friction impulse (N s) of a contact on its first solid, which is pushed along `direction`.
+/// Returns the friction impulse (N s) of a contact on its first solid, on which the normal impulse acts along
+/// `direction`.
 fn friction(direction: Point, data: &ContactData) -> Point {
     direction.orthonormal_vector() * data.tangent_impulse[0]
 }
 
-/// What the engine asks about each contact by default: nothing.
+/// Contact hooks of every collider by default: 2-D needs no hooks.
 const HOOKS: ActiveHooks = ActiveHooks::empty();
 
-/// Nothing: in a plane friction has one direction.
+/// Does nothing: friction in 2-D has a single direction.
 fn align(_context: &mut ContactModificationContext) {}
 
-/// Nothing: a plane's bodies do not tumble.
+/// State of a body that turns by its angular momentum: empty, because 2-D bodies have no gyroscopic torque.
 struct Turning;
 
 fn wind(_world: &mut PhysicsWorld, _bodies: &[RigidBodyHandle], _dt: f64) -> Turning {
@@ -114,21 +115,21 @@ fn unwind(
     Vec::new()
 }
 
-/// Settings that only this dimension has: none.
+/// Does nothing: no parameter exists in 2-D only.
 fn tune(_parameters: &mut IntegrationParameters) {}
 
-/// The turn that takes the first axis along a vector.
+/// Returns the rotation that turns the first axis into the direction of a vector.
 fn arc(along: &Vector<D>) -> Matrix<D> {
     let [x, y] = along.normalize().into();
     Matrix::from_row_slice(&[x, -y, y, x])
 }
 
-/// The inertia of mass properties, as a free body has it.
+/// Returns the inertia of mass properties, in the form that a free body stores.
 fn inertia(own: &MassProperties) -> Matrix<D> {
     Matrix::from_row_slice(&[own.principal_inertia(), 0.0, 0.0, 0.0])
 }
 
-/// The shape of a collider that only a plane has.
+/// Returns the shape of a collider of a type that exists in 2-D only.
 fn of_this_dimension(geometry: &TypedShape) -> Result<Shape<D>> {
     let points = |points: &[Point]| Shape::Polygon { points: points.iter().copied().map(world::from_point).collect() };
     match geometry {
@@ -138,7 +139,7 @@ fn of_this_dimension(geometry: &TypedShape) -> Result<Shape<D>> {
     }
 }
 
-/// Convex parts of the shapes that only a plane has, in the shape's frame.
+/// Returns the convex parts of the shapes that exist in 2-D only, in the frame of the shape.
 fn parts(shape: &Shape<D>, _fixed: bool) -> Result<Vec<(Frame, SharedShape)>> {
     let convex = match shape {
         Shape::Polygon { points } => convex_parts(points),
@@ -155,21 +156,21 @@ fn parts(shape: &Shape<D>, _fixed: bool) -> Result<Vec<(Frame, SharedShape)>> {
     Ok(convex.into_iter().map(|part| (Frame::IDENTITY, part)).collect())
 }
 
-/// Cuts a simple polygon into convex ones (ear clipping, then Hertel & Mehlhorn); for contacts only.
+/// Divides a simple polygon into convex polygons (ear clipping, then Hertel & Mehlhorn), which serve for contacts only.
 fn convex_parts(points: &[Vector<D>]) -> Option<Vec<SharedShape>> {
     let points: Vec<Point> = points.iter().map(world::to_point).collect();
     let mesh = TriMesh::from_polygon(points)?;
     hertel_mehlhorn(mesh.vertices(), mesh.indices()).iter().map(|part| SharedShape::convex_hull(part)).collect()
 }
 
-/// One convex quadrilateral for each side of a wall, mitred at the corners, on the right of the line.
+/// Returns one convex quadrilateral for each side of a wall, to the right of the line and mitred at the corners.
 fn strip(points: &[Vector<D>], thickness: f64) -> Option<Vec<SharedShape>> {
     let right = |a: &Vector<D>, b: &Vector<D>| Vector::from([b[1] - a[1], a[0] - b[0]]).normalize();
     let last = points.len().checked_sub(1).filter(|&n| n > 0)?;
     let back = |i: usize| {
         let before = right(&points[i.max(1) - 1], &points[i.max(1)]);
         let after = right(&points[i.min(last - 1)], &points[i.min(last - 1) + 1]);
-        // A mitre reaches thickness/cos(half the turn); a hairpin's is cut off at three thicknesses.
+        // A mitre has the length thickness/cos(half the turning angle), limited to three thicknesses at a hairpin.
         let middle = before + after;
         points[i] + middle * (2.0 * thickness / middle.norm_squared().max(4.0 / 9.0))
     };

@@ -15,7 +15,7 @@
 //!
 //! `examples/own_world.rs` is a whole program.
 
-/// The engine itself, in the version that this crate is made with.
+/// The crate of the engine, in the version that this crate uses.
 pub use rapier3d as rapier;
 
 #[allow(clippy::duplicate_mod, reason = "one source, compiled against each engine")]
@@ -54,13 +54,13 @@ use crate::{
 
 const D: usize = 3;
 
-/// A spin in the engine's terms.
+/// The engine's type of a spin.
 type Angular = Point;
 
-/// Names the engine that wrote a state.
+/// Name and version of the engine that wrote a state.
 const ENGINE: &str = "rapier3d-f64 0.36.1";
 
-/// Up to so much of a mesh's volume its hull stands for it in contacts, –.
+/// Largest ratio of the hull's volume to the mesh's volume at which the hull replaces the mesh in contacts, –.
 const NEARLY_CONVEX: f64 = 1.01;
 
 fn to_angular(wedge: &Bivector<D>) -> Point {
@@ -79,19 +79,19 @@ fn from_rotation(rotation: &Rotation) -> Matrix<D> {
     Matrix::from_column_slice(&Square::from_quat(*rotation).to_cols_array())
 }
 
-/// The same matrix in rapier's type; both store columns.
+/// Returns the same matrix in rapier's type; both types store columns.
 fn square(matrix: &Matrix<D>) -> Square {
     Square::from_cols_array(&std::array::from_fn(|i| matrix.as_slice()[i]))
 }
 
-/// An inverse inertia as a matrix.
+/// Returns an inverse inertia as a matrix.
 fn inverse_inertia(inverse: &AngularInertia) -> Matrix<3> {
     let AngularInertia { m11, m12, m13, m22, m23, m33 } = *inverse;
     Matrix::from_row_slice(&[m11, m12, m13, m12, m22, m23, m13, m23, m33])
 }
 
-/// Mass properties in the solid's frame. With a rotation locked, the products of inertia about the world's
-/// axes at the start are dropped: rapier would turn them into spurious rates of the free axes.
+/// Returns the mass properties in the solid's frame. If a rotation is locked, the function drops the products of
+/// inertia about the world's axes at the start: rapier would turn them into spurious rates of the free axes.
 fn mass_properties(body: &FreeBody<D>, start: &Matrix<D>) -> MassProperties {
     let inertia = if body.locked_rotations.contains(&true) {
         let world = start * body.inertia * start.transpose();
@@ -102,7 +102,7 @@ fn mass_properties(body: &FreeBody<D>, start: &Matrix<D>) -> MassProperties {
     MassProperties::with_inertia_matrix(world::to_point(&body.centre), body.mass, square(&inertia))
 }
 
-/// Locks what is locked. The gyroscopic torque is ours.
+/// Applies the locks of a body. This crate computes the gyroscopic torque, not rapier.
 fn lock(builder: RigidBodyBuilder, body: &FreeBody<D>) -> RigidBodyBuilder {
     let ([x, y, z], [about_x, about_y, about_z]) = (body.locked_translations, body.locked_rotations);
     builder
@@ -111,19 +111,21 @@ fn lock(builder: RigidBodyBuilder, body: &FreeBody<D>) -> RigidBodyBuilder {
         .gyroscopic_forces_enabled(false)
 }
 
-/// Friction impulse (N s) of a contact on its first solid, which is pushed along `direction`.
+/// Returns the friction impulse (N s) of a contact on its first solid, on which the normal impulse acts along
+/// `direction`.
 fn friction(direction: Point, data: &ContactData) -> Point {
     let tangent = direction.orthonormal_vector();
     tangent * data.tangent_impulse[0] + direction.cross(tangent) * data.tangent_impulse[1]
 }
 
-/// What the engine asks about each contact by default: how its friction is to be.
+/// Contact hooks that every collider has by default: this module corrects the direction of friction.
 const HOOKS: ActiveHooks = ActiveHooks::MODIFY_SOLVER_CONTACTS;
 
-/// Lets the friction of a contact act against its sliding. At a point that slides at v the engine takes K⁻¹ v off the impulse, K the
-/// speeds that impulses in the plane of contact give there, and cuts it to μ N: it pushes along K⁻¹ v, and not along v, where K is
-/// not the same in all directions, as at the corner of a box. With a belt's speed of K v/k̄ − v, k̄ the mean of K, it takes off v/k̄.
-/// v is what the last step left: none where it sticks, so that no belt moves that.
+/// Makes the friction of a contact act against the sliding velocity v. The engine subtracts K⁻¹ v from the impulse and
+/// limits the result to μ N. The matrix K maps impulses in the contact plane to velocities there. Friction then acts
+/// along K⁻¹ v instead of v where K is not isotropic, as at the corner of a box. With a belt velocity of K v/k̄ − v,
+/// where k̄ is the mean of K, the engine subtracts v/k̄. v is the velocity after the last step; it is zero at a
+/// sticking contact, so that the belt moves no body there.
 fn align(context: &mut ContactModificationContext) {
     let bodies = context.bodies;
     let pair = [context.rigid_body1, context.rigid_body2].map(|body| body.and_then(|body| bodies.get(body)));
@@ -136,7 +138,7 @@ fn align(context: &mut ContactModificationContext) {
         let arms = [data.solver_dp1, data.solver_dp2];
         let gives = |impulse| within(gained(first, arms[0], impulse) + gained(second, arms[1], impulse));
         let mean = 0.5 * (tangent.dot(gives(tangent)) + normal.cross(tangent).dot(gives(normal.cross(tangent))));
-        // What only now comes to touch may be stopped at once.
+        // Friction may stop a point that has only now come into contact at once.
         if data.warmstart_impulse > 0.0 && mean > 0.0 {
             let velocity = |body: &RigidBody, arm| body.linvel() + body.angvel().cross(arm);
             let sliding = within(velocity(first, arms[0]) - velocity(second, arms[1]));
@@ -145,22 +147,25 @@ fn align(context: &mut ContactModificationContext) {
     }
 }
 
-/// The velocity (m/s) that an impulse (N s) on a body gives it where it acts, an `arm` (m) from its centre.
+/// Returns the velocity (m/s) that an impulse (N s) on a body causes at its point of action, at `arm` (m) from the
+/// centre.
 fn gained(body: &RigidBody, arm: Point, impulse: Point) -> Point {
     let mass = body.mass_properties();
     mass.effective_inv_mass * impulse + (mass.effective_world_inv_inertia * arm.cross(impulse)).cross(arm)
 }
 
-/// How a free body is turned in a step.
+/// The way in which a free body turns in a step.
 enum Turning {
-    /// By its angular momentum, kg m²/s: with the spin that it turns by, and its principal axes before the step.
+    /// By its angular momentum, kg m²/s: with the spin of the rotation, and the principal axes before the step.
     Loose { momentum: Point, spin: Point, axes: Rotation },
-    /// By its spin: with its inertia (kg m², the world's axes before the step, none about what is locked) and gyroscopic torque, N m.
+    /// By its spin: with its inertia (kg m², in the world's axes before the step, zero about locked axes) and
+    /// gyroscopic torque, N m.
     Bound { inertia: Matrix<D>, torque: Point },
 }
 
-/// Gives each body that turns as it likes the spin that it has in the middle of the step by Euler's equations, I ω̇ = −ω ∧ I ω, to turn
-/// by, and each that is in a joint or locked, whose spin the engine has to fit to that, its gyroscopic torque over the step.
+/// Prepares the rotation of each body for the step. A body that turns freely gets its spin in the middle of the step
+/// from Euler's equations, I ω̇ = −ω ∧ I ω. A body in a joint or with a lock, whose spin the engine constrains, gets
+/// its gyroscopic torque over the step.
 fn wind(world: &mut PhysicsWorld, bodies: &[RigidBodyHandle], dt: f64) -> Vec<Option<Turning>> {
     let PhysicsWorld { bodies: all, impulse_joints, .. } = world;
     let one = |&handle: &RigidBodyHandle| {
@@ -182,14 +187,15 @@ fn wind(world: &mut PhysicsWorld, bodies: &[RigidBodyHandle], dt: f64) -> Vec<Op
     bodies.iter().map(one).collect()
 }
 
-/// The inertia of its inverse, which is 0 about what is locked; it stays so.
+/// Returns the inertia from its inverse; components about locked axes are 0 in both.
 fn about_unlocked(inverse: &Matrix<D>) -> Matrix<D> {
     let locked = Matrix::from_diagonal(&inverse.diagonal().map(|x| if x == 0.0 { 1.0 } else { 0.0 }));
     (inverse + locked).try_inverse().map_or_else(Matrix::zeros, |inertia| inertia - locked)
 }
 
-/// The gyroscopic torque (N m) on a body in a step: −ω ∧ I ω at the spin that it has after the loads on it, held to what leaves the
-/// size of I ω as it is. That is rapier's, which gives it in each iteration and does not tell it. None if a turn is locked.
+/// Returns the gyroscopic torque (N m) on a body in a step: −ω ∧ I ω at the spin after the loads of the step, limited
+/// so that the magnitude of I ω stays constant. rapier uses the same formula, but applies the torque in each iteration
+/// and does not report it. Returns zero if a rotation is locked.
 fn gyroscopic(body: &RigidBody, dt: f64) -> Point {
     let (all, own) = (body.mass_properties(), &body.mass_properties().local_mprops);
     let axes = *body.rotation() * own.principal_inertia_local_frame;
@@ -203,8 +209,9 @@ fn gyroscopic(body: &RigidBody, dt: f64) -> Point {
     axes * ((turned * (momentum.length() / turned.length()) - momentum) / dt)
 }
 
-/// Adds the angular impulse that each loose one got in the step to its angular momentum, and gives it the spin that this is now. Tells
-/// what the bound ones did, whose spins before were `spins`: I(R₀) ΔΩ/Δt less the gyroscopic torque, N m.
+/// Adds the angular impulse of each freely turning body in the step to its angular momentum, and sets the spin that
+/// results. Returns I(R₀) ΔΩ/Δt less the gyroscopic torque (N m) of the constrained bodies, whose spins before the step
+/// are `spins`.
 fn unwind(
     world: &mut PhysicsWorld,
     bodies: &[RigidBodyHandle],
@@ -232,22 +239,22 @@ fn unwind(
     bodies.iter().zip(turnings).zip(spins).map(one).collect()
 }
 
-/// Settings that only this dimension has: Coulomb's law at every contact point.
+/// Sets the parameters that exist in 3-D only: Coulomb's law at every contact point.
 fn tune(parameters: &mut IntegrationParameters) {
     parameters.friction_model = FrictionModel::Coulomb;
 }
 
-/// The turn that takes the first axis along a vector.
+/// Returns the rotation that turns the first axis into the direction of a vector.
 fn arc(along: &Vector<D>) -> Matrix<D> {
     from_rotation(&Rotation::from_rotation_arc(Point::X, world::to_point(&along.normalize())))
 }
 
-/// The inertia of mass properties, as a free body has it.
+/// Returns the inertia of mass properties, in the form that a free body stores.
 fn inertia(own: &MassProperties) -> Matrix<D> {
     Matrix::from_column_slice(&own.reconstruct_inertia_matrix().to_cols_array())
 }
 
-/// The shape of a collider that only space has.
+/// Returns the shape of a collider of a type that exists in 3-D only.
 fn of_this_dimension(geometry: &TypedShape) -> Result<Shape<D>> {
     let mesh = |points: &[Point], facets: &[[u32; 3]]| {
         let points: Vec<Vector<D>> = points.iter().copied().map(world::from_point).collect();
@@ -264,7 +271,7 @@ fn of_this_dimension(geometry: &TypedShape) -> Result<Shape<D>> {
     }
 }
 
-/// Parts of the shapes that only space has, in the shape's frame.
+/// Returns the parts of the shapes that exist in 3-D only, in the frame of the shape.
 fn parts(shape: &Shape<D>, fixed: bool) -> Result<Vec<(Frame, SharedShape)>> {
     match shape {
         Shape::Cylinder { length, radius, axis } => {
@@ -277,7 +284,7 @@ fn parts(shape: &Shape<D>, fixed: bool) -> Result<Vec<(Frame, SharedShape)>> {
     }
 }
 
-/// What other bodies touch of a mesh.
+/// Returns the parts of a mesh that other bodies touch.
 fn mesh_parts(mesh: &Mesh, contact: ContactGeometry, fixed: bool) -> Result<Vec<(Frame, SharedShape)>> {
     let points: Vec<Point> = mesh.points().iter().map(world::to_point).collect();
     let solid = mesh.volume_properties().volume;
@@ -293,21 +300,21 @@ fn mesh_parts(mesh: &Mesh, contact: ContactGeometry, fixed: bool) -> Result<Vec<
         ContactGeometry::Fitting => hull().filter(|hull| convex(hull)).or_else(|| cut(&points, mesh)),
         ContactGeometry::Decomposition => cut(&points, mesh),
     };
-    // parry asserts what it hopes of points that lie nearly in a plane.
+    // parry panics if the points lie nearly in a plane.
     catch_unwind(AssertUnwindSafe(make)).ok().flatten().ok_or_else(|| {
         Error::scene("the mesh cannot be made touchable: parry finds no hull or parts of it")
             .help("write  contact = \"none\"  beside the file's name if nothing is to touch it, or thin the mesh out")
     })
 }
 
-/// Every facet, smooth across their edges.
+/// Returns every facet of the mesh, with smooth contact normals across their edges.
 fn surface(points: &[Point], mesh: &Mesh) -> Option<Vec<(Frame, SharedShape)>> {
     let flags = TriMeshFlags::FIX_INTERNAL_EDGES;
     let all = SharedShape::trimesh_with_flags(points.to_vec(), mesh.facets().to_vec(), flags).ok()?;
     Some(vec![(Frame::IDENTITY, all)])
 }
 
-/// Convex parts (V-HACD), each the hull of the surface that it holds.
+/// Returns convex parts (V-HACD), each the hull of the surface inside it.
 fn cut(points: &[Point], mesh: &Mesh) -> Option<Vec<(Frame, SharedShape)>> {
     let parts = VHACD::decompose(&VHACDParameters::default(), points, mesh.facets(), true);
     let corners = parts.voxel_parts().iter().map(|part| part.compute_primitive_intersections(points, mesh.facets()));

@@ -1,5 +1,5 @@
-//! Who takes part: bodies and colliders made from solids, also while the world runs, and taken out; compiled for each dimension
-//! with the world.
+//! Registration of solids in the engine: the module makes bodies and colliders from solids, adds them before or during
+//! a run, and removes them. The module is compiled for each dimension with its world.
 
 use super::super::rapier::{
     dynamics::{RigidBodyBuilder, RigidBodyHandle},
@@ -20,7 +20,7 @@ use crate::{
 };
 
 impl RapierWorld {
-    /// With which solid, and how deep (m), `solid` would overlap most, contact skins counted.
+    /// Returns the solid that `solid` would overlap most, and the depth (m) including contact skins.
     pub(super) fn find_deepest_overlap(
         &self,
         solid: &SolidSpec<D>,
@@ -46,7 +46,7 @@ impl RapierWorld {
         Ok(deepest)
     }
 
-    /// Lets a solid come, behind all others.
+    /// Adds a solid after all others.
     pub(super) fn append_solid(&mut self, solid: &SolidSpec<D>, start: &Kinematics<D>) -> Result<()> {
         let parts = parts(solid)?;
         let hooks = if self.ties.contact_pairs.is_empty() { HOOKS } else { ActiveHooks::all() };
@@ -62,7 +62,7 @@ impl RapierWorld {
         Ok(())
     }
 
-    /// Takes a solid out.
+    /// Removes a solid.
     pub(super) fn disable_solid(&mut self, solid: usize) {
         let body = &mut self.world.bodies[self.bodies[solid]];
         if body.is_dynamic() {
@@ -76,20 +76,20 @@ impl RapierWorld {
     }
 }
 
-/// The parts of `solid` that others touch.
+/// Returns the convex parts of `solid`, which other solids touch.
 fn parts(solid: &SolidSpec<D>) -> Result<ConvexParts> {
     let mut parts = ConvexParts::new();
     collect_parts(&solid.shape, &Pose::identity(), matches!(solid.role, Role::Fixed), &mut parts)?;
     Ok(parts)
 }
 
-/// Iterations for the masses that take part.
+/// Returns the number of iterations for the masses of the bodies in the world.
 pub(super) fn iterations_in_contact(world: &PhysicsWorld) -> usize {
     let free = world.bodies.iter().filter(|(_, body)| body.is_dynamic() && body.is_enabled());
     for_masses(free.map(|(_, body)| body.mass()))
 }
 
-/// Puts solid number `index` into `world`.
+/// Adds solid number `index` to `world`.
 pub(super) fn insert_solid(
     world: &mut PhysicsWorld,
     index: usize,

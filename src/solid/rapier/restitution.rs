@@ -1,35 +1,36 @@
-//! Impacts: bodies that meet part with e times the speed at which they met, at every point of contact at once.
+//! Impacts: two bodies separate with e times their approach speed, at every contact point at once.
 //!
-//! Newton's law (Principia, 1687) with Coulomb friction, v_n⁺ = −e v_n⁻ and |J_t| ≤ μ J_n, before the step in which they would touch;
-//! where friction and restitution together would make energy, friction is left out. The engine's own contacts are springs
-//! without restitution, which hold what rests. Compiled for each dimension as part of the world: `super` names the engine.
+//! The module applies Newton's law (Principia, 1687) with Coulomb friction, v_n⁺ = −e v_n⁻ and |J_t| ≤ μ J_n, before
+//! the step in which the bodies would touch. Where friction and restitution together would create energy, it omits
+//! friction. The engine's own contacts are springs without restitution, which support resting bodies. The module is
+//! compiled for each dimension as part of the world: `super` names the engine.
 
 use serde::{Deserialize, Serialize};
 
 use super::{super::Angular, Frame, PhysicsWorld, Point, RigidBodyHandle};
 
-/// Two solids that bounced off each other at a point.
+/// An impact of two solids at a point.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) struct Impact {
-    /// Their numbers.
+    /// Numbers of both solids.
     pub(super) between: [usize; 2],
-    /// Where, m.
+    /// Position of the impact, m.
     pub(super) position: Point,
-    /// From their centres of mass to there, m.
+    /// Vectors from the centres of mass to the point of impact, m.
     pub(super) arms: [Point; 2],
     /// Impulse along the normal, N s.
     pub(super) normal_impulse: f64,
-    /// The whole impulse on the second, N s.
+    /// Total impulse on the second solid, N s.
     pub(super) impulse: Point,
 }
 
-/// How far ahead touching is foreseen, in steps: loads change the speed meanwhile.
+/// Time over which the module predicts contact, in steps: loads change the approach speed meanwhile.
 const AHEAD: f64 = 1.5;
 
-/// Slowest impact, over what gravity adds to a speed in a step: slower ones are what rests.
+/// Smallest impact speed, relative to the change of speed by gravity in a step: slower contacts count as rest.
 const SLOWEST: f64 = 4.0;
 
-/// Sweeps over all points at most; a flat face takes some tens.
+/// Largest number of sweeps over all points; a flat face needs several tens.
 const SWEEPS: usize = 400;
 
 /// A point at which two bodies are about to touch.
@@ -37,21 +38,21 @@ struct Touch {
     owners: [usize; 2],
     bodies: [RigidBodyHandle; 2],
     at: Point,
-    /// From the first to the second.
+    /// Normal from the first to the second body.
     normal: Point,
-    /// Speed at which they meet, negative, m/s.
+    /// Approach speed, negative, m/s.
     meeting: f64,
     restitution: f64,
     friction: f64,
-    /// Speed that a unit of impulse along the normal gives, 1/kg.
+    /// Change of speed along the normal for each unit of normal impulse, 1/kg.
     response: f64,
-    /// Impulses so far, N s.
+    /// Accumulated impulses, N s.
     along: f64,
     across: Point,
 }
 
-/// Lets the bodies of `world` that are to touch in a step `dt` (s) part again. `pair` gives restitution and friction of two solids
-/// whose mean friction it is told. Gives who met, point by point.
+/// Makes the bodies of `world` that are about to touch in a step of `dt` (s) separate again. `pair` returns the
+/// restitution and friction of two solids from their numbers and mean friction. Returns the impacts, point by point.
 pub(super) fn apply_impacts(
     world: &mut PhysicsWorld,
     dt: f64,
@@ -61,7 +62,7 @@ pub(super) fn apply_impacts(
     for touch in &mut touches {
         touch.response = response(world, touch, touch.normal);
     }
-    // Nothing moves what is held.
+    // No impulse moves a held body.
     touches.retain(|touch| touch.response > 0.0);
     if touches.is_empty() {
         return Vec::new();
@@ -85,7 +86,7 @@ pub(super) fn apply_impacts(
     touches.iter().map(met).collect()
 }
 
-/// The points of all pairs of which one is to touch at speed.
+/// Returns the points of all pairs with at least one point of sufficient approach speed.
 fn find(world: &PhysicsWorld, dt: f64, law: impl Fn(usize, usize, f64) -> (f64, f64)) -> Vec<Touch> {
     let slowest = SLOWEST * world.gravity.length() * dt;
     let mut touches = Vec::new();
@@ -109,7 +110,7 @@ fn find(world: &PhysicsWorld, dt: f64, law: impl Fn(usize, usize, f64) -> (f64, 
             let normal = poses[0].rotation * manifold.local_n1;
             for point in &manifold.points {
                 let (p1, p2) = (poses[0] * point.local_p1, poses[1] * point.local_p2);
-                // From skin to skin, and in the middle between these.
+                // The gap is between the skins, and the point of impact is in the middle of the gap.
                 let gap = (p2 - p1).dot(normal) - skins[0] - skins[1];
                 let at = 0.5 * (p1 + p2) + normal * (0.5 * (skins[0] - skins[1]));
                 let meeting = parting(world, bodies, at).dot(normal);
@@ -130,19 +131,19 @@ fn find(world: &PhysicsWorld, dt: f64, law: impl Fn(usize, usize, f64) -> (f64, 
     touches
 }
 
-/// Velocity (m/s) of the second body less that of the first at a point.
+/// Returns the velocity (m/s) of the second body less that of the first at a point.
 fn parting(world: &PhysicsWorld, [a, b]: [RigidBodyHandle; 2], at: Point) -> Point {
     world.bodies[b].velocity_at_point(at) - world.bodies[a].velocity_at_point(at)
 }
 
-/// Gives both bodies of a touch the `impulse` (N s), the first its opposite.
+/// Applies the `impulse` (N s) to the second body of a contact point, and the opposite impulse to the first.
 fn give(world: &mut PhysicsWorld, touch: &Touch, impulse: Point) {
     let [a, b] = touch.bodies;
     world.bodies[a].apply_impulse_at_point(-impulse, touch.at, false);
     world.bodies[b].apply_impulse_at_point(impulse, touch.at, false);
 }
 
-/// The speed along `direction` that a unit of impulse along it gives at a touch, 1/kg.
+/// Returns the change of speed along `direction` for each unit of impulse along it at a contact point, 1/kg.
 fn response(world: &mut PhysicsWorld, touch: &Touch, direction: Point) -> f64 {
     let held = touch.bodies.map(|body| (world.bodies[body].linvel(), world.bodies[body].angvel()));
     let before = parting(world, touch.bodies, touch.at);
@@ -161,7 +162,7 @@ fn set(world: &mut PhysicsWorld, body: RigidBodyHandle, velocity: Point, spin: A
     }
 }
 
-/// Finds the impulses, one point after the other until nothing changes any more, and gives them.
+/// Finds the impulses by iteration over the points until they no longer change, and applies them.
 fn solve(world: &mut PhysicsWorld, touches: &mut [Touch]) {
     for _ in 0..SWEEPS {
         let mut change: f64 = 0.0;
@@ -182,7 +183,8 @@ fn solve(world: &mut PhysicsWorld, touches: &mut [Touch]) {
     }
 }
 
-/// Lets friction stop the sliding at a touch, as far as the impulse along the normal allows.
+/// Applies the friction impulse that stops the sliding at a contact point, within the limit that the normal impulse
+/// sets.
 fn rub(world: &mut PhysicsWorld, touch: &mut Touch) {
     let velocity = parting(world, touch.bodies, touch.at);
     let sliding = velocity - touch.normal * velocity.dot(touch.normal);
@@ -197,7 +199,7 @@ fn rub(world: &mut PhysicsWorld, touch: &mut Touch) {
     touch.across = across;
 }
 
-/// The velocities of the bodies that take part, and their energy, J.
+/// The velocities of the bodies in the impacts, and their energy, J.
 struct Motions {
     bodies: Vec<(RigidBodyHandle, Point, Angular)>,
     energy: f64,

@@ -1,14 +1,19 @@
-//! The world of rigid bodies, written once and compiled for each dimension: `super` names the engine
-//! (`rapier`) and gives what differs.
+//! The world of rigid bodies, from one source that is compiled for each dimension: `super` names the engine (`rapier`)
+//! and provides the parts that differ.
 //!
-//! Settings after measurements with this version: one solver iteration, because more of them freeze the
-//! load over sub-steps and feed energy into what oscillates, but where bodies of unlike mass are about to touch,
-//! whose contacts more of them stiffen; contacts as critically damped springs of min(0.05/dt, 1000) Hz for each
-//! iteration, which sink g/(2πf)² under the lighter body's weight; no contact recycling, which leaves small
-//! bodies hanging on ledges; no sleep; no continuous detection, since a step of the water moves no body
-//! through a wall. Bodies rebound in `restitution`, not by the springs. Colliders have the true faces, and others
-//! touch them there or at the contact skin that the solid asks for; friction and restitution of a pair are the means of
-//! both solids'. Weight acts here and nowhere else; mass and inertia are the body's own, colliders weigh nothing.
+//! The settings result from measurements with this version of rapier:
+//!
+//! - The solver makes one iteration. More iterations keep the load constant over sub-steps, which adds energy to
+//!   oscillations. If bodies of unlike mass are about to touch, the solver makes more iterations, which stiffen their
+//!   contacts.
+//! - Contacts are critically damped springs of min(0.05/dt, 1000) Hz for each iteration; the weight of the lighter body
+//!   compresses them by g/(2πf)².
+//! - Contact recycling is off, because it leaves small bodies hanging on ledges. Sleep is off.
+//! - Continuous collision detection is off, because no body passes through a wall in one step of the water.
+//!
+//! The module `restitution` makes bodies rebound, not the springs. Colliders have the true faces; other bodies touch
+//! them there, or at the contact skin that the solid sets. The friction and restitution of a pair are the means of both
+//! solids' values. Only this module applies weight. Mass and inertia belong to the body; colliders have no mass.
 
 #[allow(clippy::duplicate_mod, reason = "one source, compiled against each engine")]
 #[path = "colliders.rs"]
@@ -47,13 +52,13 @@ use colliders::{ConvexParts, check_overlap, collect_parts, thickness};
 use joints::RapierJoints;
 use restitution::Impact;
 
-/// Deepest overlap at the start, in dp: the placement's round-off, not a body inside another.
+/// Largest overlap at the start, in dp: it allows for round-off of the placement.
 const OVERLAP_MAX: f64 = 0.05;
 
-/// Damping ratio of a contact, –: critical.
+/// Damping ratio of a contact, –: critical damping.
 const CONTACT_DAMPING: f64 = 1.0;
 
-/// What may be missing of the speed that weight alone gives, over speeds, –: round-off.
+/// Tolerance of the test for a body under its weight alone: the relative difference in speed from free fall, –.
 const ALONE: f64 = 1e-12;
 
 /// A world of rigid bodies in this dimension.
@@ -63,21 +68,22 @@ pub(in crate::solid) struct RapierWorld {
     restitution: Vec<f64>,
     /// Iterations of a step in which bodies may touch.
     when_near: usize,
-    /// Those of the last step.
+    /// Iterations of the last step.
     iterations: usize,
-    /// Who bounced in the last step, with the impulse, N s.
+    /// Impacts of the last step, with their impulses, N s.
     met: Vec<Impact>,
-    /// A tenth of the thinnest free body, m: contacts are foreseen from there.
+    /// A tenth of the smallest thickness of a free body, m: the distance at which the engine begins to predict
+    /// contacts.
     reach: f64,
-    /// The time of an iteration for which the contacts' stiffness was last set, s; 0 before the first step.
+    /// Duration of an iteration for which the contact stiffness was last set, s; 0 before the first step.
     tuned_for: f64,
     pushes: Vec<Push>,
     ties: RapierJoints,
-    /// What of each solid is locked when it is not held.
+    /// Locked axes of each solid while it is not held.
     locks: Vec<LockedAxes>,
-    /// Which of them have been taken out.
+    /// Whether each solid is removed.
     gone: Vec<bool>,
-    /// What those did in the last step that the engine turns by their spin, N m.
+    /// Gyroscopic rates in the last step of the solids that the engine turns by their spin, N m.
     turned: Vec<Option<Bivector<D>>>,
 }
 
@@ -136,7 +142,7 @@ impl RapierWorld {
         &self.world.bodies[self.bodies[solid]]
     }
 
-    /// Sets the step, and what of the contacts depends on it.
+    /// Sets the time step and the contact parameters that depend on it.
     fn pace(&mut self, dt: f64) {
         assert!(dt > 0.0 && dt.is_finite(), "a step takes time");
         let fastest = self.world.bodies.iter().map(|(_, body)| body.linvel().length()).fold(0.0, f64::max);
@@ -152,14 +158,15 @@ impl RapierWorld {
         }
     }
 
-    /// Chooses the next step's iterations: a change of them jolts what presses, so it comes while nothing touches yet.
+    /// Chooses the number of iterations of the next step. A change of the number disturbs pressing contacts, so it
+    /// takes place before any bodies touch.
     fn foresee(&mut self) {
         let near =
             self.world.narrow_phase.contact_pairs().any(|pair| pair.manifolds().iter().any(|m| !m.points.is_empty()));
         self.world.integration_parameters.num_solver_iterations = if near { self.when_near } else { 1 };
     }
 
-    /// Replaces the forces on the free bodies by `loads` and the pushes.
+    /// Replaces the forces on the free bodies by `loads` and the user's forces.
     fn load(&mut self, loads: &[Load<D>]) -> std::result::Result<(), EngineFault<D>> {
         assert_eq!(loads.len(), self.bodies.len(), "every solid needs a load");
         let mut total = loads.to_vec();
@@ -184,7 +191,7 @@ impl RapierWorld {
         Ok(())
     }
 
-    /// Tells rapier where the driven bodies will be.
+    /// Sets the poses of the driven bodies at the end of the step in rapier.
     fn drive(&mut self, driven: &[Option<Kinematics<D>>]) -> std::result::Result<(), EngineFault<D>> {
         for (solid, kinematics) in driven.iter().enumerate() {
             let Some(Kinematics { pose, .. }) = kinematics else { continue };
@@ -197,8 +204,9 @@ impl RapierWorld {
         Ok(())
     }
 
-    /// Puts what had only its weight in the step, `dt` (s) long, where the mean of its velocities before and after leads, which is on
-    /// the parabola: rapier leads it by that after, in each of its iterations.
+    /// Moves each body that had only its weight in the step, of length `dt` (s), by the mean of its velocities before
+    /// and after. This position lies on the parabola of free fall; rapier uses the velocity after the step, in each of
+    /// its iterations.
     fn fall(&mut self, dt: f64, before: &[Point]) {
         let gained = self.world.gravity * dt;
         let ahead = gained * (0.5 * dt / self.iterations as f64);
@@ -212,8 +220,8 @@ impl RapierWorld {
         }
     }
 
-    /// Whether all solids came out of the step whole. Rapier disables what went astray and puts it back to
-    /// where it last was.
+    /// Checks that the state of every solid is valid after the step. Rapier disables a body with an invalid state and
+    /// returns it to its last valid position.
     fn examine(&self, before: &[Point]) -> std::result::Result<(), EngineFault<D>> {
         for (solid, velocity) in before.iter().enumerate().filter(|(solid, _)| !self.gone[*solid]) {
             let body = self.body(solid);
@@ -371,7 +379,7 @@ impl Engine<D> for RapierWorld {
     }
 }
 
-/// Settings that hold for the whole run.
+/// Sets the parameters that stay constant during the whole run.
 fn settle(world: &mut PhysicsWorld, reach: f64) {
     let parameters = &mut world.integration_parameters;
     parameters.num_solver_iterations = 1;

@@ -1,4 +1,4 @@
-//! One case run in memory, on one thread, within a budget, whatever happens in it.
+//! Runs one case in memory, on one thread and within a budget. The module handles every failure of the run.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -18,54 +18,55 @@ use crate::{
     solid::Dim,
 };
 
-/// Water and wet boundary particles × force passes that a case may take: about half a minute of a slow processor in 2-D, two
-/// in 3-D. In particles, not seconds, so that every machine cuts the same cases.
+/// The largest product of particles (water and wet boundary) and force passes of a case. On a slow processor, this
+/// budget takes about half a minute in 2-D and two minutes in 3-D. A budget in particles stops the same cases on every
+/// machine, unlike a budget in seconds.
 pub(crate) const BUDGET: f64 = 1.5e8;
 
-/// What came out of a case.
+/// The result of a case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CaseRun {
-    /// The map.
+    /// The name of the map.
     pub map: String,
-    /// The values along its axes.
+    /// The values along the axes.
     pub values: Vec<String>,
-    /// What makes it another than any other.
+    /// The key that identifies the case.
     pub key: String,
-    /// How it ended.
+    /// The end of the run.
     pub end: CaseEnd,
-    /// What was measured.
+    /// The measured figures.
     pub figures: MeasuredFigures,
-    /// Simulated time reached, s.
+    /// The simulated time reached, s.
     pub time_s: f64,
-    /// Steps.
+    /// The number of steps.
     pub steps: u64,
-    /// Water particles.
+    /// The number of water particles.
     pub water: usize,
-    /// Processor time, s.
+    /// The processor time, s.
     pub cpu_s: f64,
 }
 
-/// How a run ended.
+/// The way in which a run ended.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum CaseEnd {
-    /// At its end.
+    /// The run reached its end time.
     Reached,
-    /// The budget was used up.
+    /// The budget ended before the run.
     Cut,
-    /// It could not go on, for the reason said.
+    /// The run stopped for the given reason.
     Stopped(String),
-    /// It was refused before the first step, for the reason said.
+    /// The program rejected the case before the first step, for the given reason.
     Refused(String),
     /// The program panicked.
     Panicked(String),
 }
 
 impl CaseRun {
-    /// Runs `case`.
+    /// Runs `case`, and returns its result.
     ///
     /// # Errors
-    /// `Usage` if its thread cannot be started. That the run fails is no error: the trial says so.
+    /// `Usage` if the thread cannot be started. A failure of the run is not an error; the result contains the failure.
     pub(crate) fn execute(case: &StressCase) -> Result<Self> {
         let mut trial = Self {
             map: case.map.clone(),
@@ -81,7 +82,7 @@ impl CaseRun {
         let pool = thread_pool(Some(1))?;
         let attempt = || {
             let begun = ThreadTime::now();
-            // What is left of a run that panicked is thrown away whole; only numbers already written are kept.
+            // The program discards all data of a run that panicked, and keeps only the numbers already recorded.
             let end = catch_unwind(AssertUnwindSafe(|| match case.scene.dimension {
                 #[cfg(feature = "dim2")]
                 2 => trial.step_through::<2>(case),
@@ -101,7 +102,7 @@ impl CaseRun {
         Ok(trial)
     }
 
-    /// How it is to be taken: `missed` is what of its figures misses a bound.
+    /// Returns the outcome of the case; `missed` contains the figures that exceed their bounds.
     pub(crate) fn outcome(&self, missed: &[String]) -> CaseOutcome {
         match &self.end {
             CaseEnd::Panicked(_) => CaseOutcome::Wrong,
@@ -118,11 +119,11 @@ impl CaseRun {
     {
         let built = case.scene.build::<D>()?;
         let level = built.setup.surface_levels.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        // A rescue would move the border that is asked for.
+        // A rollback would change the limit that the case explores.
         let tied = !built.setup.constraints.is_empty();
         let mut sim = Simulation::new(built.setup)?.without_rollback();
         if tied {
-            // What springs and motors do is no energy made.
+            // The work of springs and motors does not count as spurious energy.
             sim.enable_load_breakdown();
         }
         self.water = sim.system().fluid().len();
@@ -147,7 +148,7 @@ impl CaseRun {
         (self.time_s, self.steps) = (sim.time(), sim.steps());
         self.figures = measure.figures();
         if matches!(end, Ok(CaseEnd::Cut)) {
-            // Of what belongs to the second half or the end nothing is known.
+            // Figures of the second half or of the end of the run are unknown.
             let asked = case.criteria.bounds();
             asked.into_iter().for_each(|(name, _)| _ = self.figures.entry(name).or_insert(0.0));
         }
@@ -155,7 +156,7 @@ impl CaseRun {
     }
 }
 
-/// An error in one line.
+/// Returns an error as one line of text.
 fn one_line(error: &Error) -> String {
     error.message.lines().next().unwrap_or_default().into()
 }

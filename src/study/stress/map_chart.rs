@@ -1,4 +1,4 @@
-//! A stress map as SVG: a cell for each case, with the sign and colour of its outcome.
+//! Draws a stress map as SVG: a cell for each case, with the symbol and colour of its outcome.
 
 use super::{CaseResult, StressMap, criteria::CaseOutcome};
 use crate::report::{
@@ -6,16 +6,17 @@ use crate::report::{
     plot::{svg_document, svg_text},
 };
 
-/// Width and height of a cell, pixels.
+/// The width and height of a cell, pixels.
 const CELL: [f64; 2] = [74.0, 34.0];
 
-/// Left edge of the first cell.
+/// The left edge of the first cell.
 const LEFT: f64 = 190.0;
 
-/// Upper edge of the first cell.
+/// The upper edge of the first cell.
 const TOP: f64 = 64.0;
 
-/// Sign and colour (Okabe & Ito: told apart by everyone) of an outcome, or of no run.
+/// Returns the symbol and colour of an outcome or of a missing run. The colours (Okabe & Ito) suit colour-blind
+/// readers.
 fn cell_style(outcome: Option<CaseOutcome>) -> (&'static str, &'static str) {
     match outcome {
         Some(CaseOutcome::Right) => ("●", "#0072b2"),
@@ -26,7 +27,7 @@ fn cell_style(outcome: Option<CaseOutcome>) -> (&'static str, &'static str) {
     }
 }
 
-/// An outcome in a word.
+/// Returns the name of an outcome.
 pub(super) fn outcome_name(outcome: CaseOutcome) -> &'static str {
     match outcome {
         CaseOutcome::Right => "right",
@@ -36,7 +37,7 @@ pub(super) fn outcome_name(outcome: CaseOutcome) -> &'static str {
     }
 }
 
-/// The chart of `map` with its cases.
+/// Returns the chart of `map` with its cases.
 pub(super) fn map_svg(map: &StressMap, entries: &[&CaseResult]) -> String {
     let (columns, rows) = (map.x.value_labels(), map.y.as_ref().map_or(vec![String::new()], |y| y.value_labels()));
     let bottom = TOP + CELL[1] * rows.len() as f64;
@@ -69,7 +70,7 @@ fn label(what: &str, unit: &str) -> String {
     if unit.is_empty() { what.into() } else { format!("{what}, {unit}") }
 }
 
-/// A cell; a browser shows its full outcome under the pointer.
+/// Returns a cell; a browser shows the full outcome as a tooltip.
 fn cell(entry: &CaseResult) -> String {
     let verdict = entry.verdict();
     let (sign, colour) = cell_style(verdict.as_ref().map(|(outcome, _)| *outcome));
@@ -87,7 +88,7 @@ fn cell(entry: &CaseResult) -> String {
     )
 }
 
-/// `word`, cut to `most` characters.
+/// Returns `word`, shortened to `most` characters.
 fn clipped(word: &str, most: usize) -> String {
     if word.chars().count() <= most { word.into() } else { word.chars().take(most - 1).chain(['…']).collect() }
 }

@@ -1,7 +1,7 @@
-//! The maps of `pontoon stress`: `scenes/stress.toml`, compiled into the program, or a file of the user's.
+//! Reads the maps of `pontoon stress` from the built-in file `scenes/stress.toml` or from a file of the user.
 //!
-//! A map is a scene with holes, `${…}`, and one or two axes that fill them. A hole is a formula of `x` and `y`, the
-//! values along the axes; or a word, `${x}`, where the axis has words; or the name of a text of `[part]`.
+//! A map is a scene with placeholders, `${…}`, and one or two axes that supply their values. A placeholder is a formula
+//! of the axis values `x` and `y`, a text value such as `${x}`, or the name of a text in `[part]`.
 
 use std::{collections::BTreeMap, path::Path};
 
@@ -18,62 +18,63 @@ use crate::{
 const TEXT: &str = include_str!("../../../scenes/stress.toml");
 const NAME: &str = "stress.toml";
 
-/// How deep parts may hold one another.
+/// The largest nesting depth of parts.
 const DEEPEST: usize = 8;
 
 /// A family of cases along one or two axes.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StressMap {
-    /// Its name.
+    /// The name of the map.
     pub name: String,
-    /// What it asks, in a sentence.
+    /// The purpose of the map, in a sentence.
     pub about: String,
-    /// What is varied along the columns of its picture.
+    /// The parameter that varies along the columns of the chart.
     pub x: MapAxis,
-    /// What is varied along its rows.
+    /// The parameter that varies along the rows of the chart.
     pub y: Option<MapAxis>,
     scene: String,
     #[serde(default)]
     judge: Criteria,
-    /// Whether it is too long for `--quick`.
+    /// Whether `--quick` omits the map, because its cases take too long.
     #[serde(default)]
     slow: bool,
     #[serde(skip)]
     parts: BTreeMap<String, String>,
     #[serde(skip)]
     default_criteria: Criteria,
-    /// The file that it is from, for messages.
+    /// The file of the map, for error messages.
     #[serde(skip)]
     file: String,
 }
 
-/// What is varied, and its values.
+/// A varied parameter and its values.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MapAxis {
-    /// What it is, in words.
+    /// The label of the parameter.
     pub label: String,
-    /// Its unit.
+    /// The unit of the parameter.
     pub unit: String,
-    /// Numbers or words.
+    /// The values, which are numbers or texts.
     values: Vec<toml::Value>,
 }
 
-/// One run of a map.
+/// One case of a map.
 #[derive(Clone, Debug)]
 pub struct StressCase {
-    /// The map.
+    /// The name of the map.
     pub map: String,
-    /// Its column and row.
+    /// The column and row of the case.
     pub cell: [usize; 2],
-    /// Its values, in words.
+    /// The axis values, as text.
     pub values: Vec<String>,
-    /// The scene, every hole filled.
+    /// The scene with all placeholders replaced.
     pub scene: Scene,
-    /// What it is judged by.
+    /// The criteria of the case.
     pub criteria: Criteria,
-    /// What makes it another than any other case or version: a run of the same key is not run again.
+    /// A key that distinguishes this case and program version from all others. The program does not rerun a case with a
+    /// known key.
     pub key: String,
 }
 
@@ -87,10 +88,10 @@ struct MapsFile {
     map: Vec<StressMap>,
 }
 
-/// All maps: those of `file`, or those that come with the program.
+/// Returns all maps of `file`, or the built-in maps without a file.
 ///
 /// # Errors
-/// `File` if it cannot be read; `Scene` if it is no list of maps.
+/// `File` if the file cannot be read; `Scene` if the file is not a list of maps.
 pub fn maps(file: Option<&Path>) -> Result<Vec<StressMap>> {
     let Some(path) = file else { return read(TEXT, NAME) };
     let text = std::fs::read_to_string(path).map_err(|why| {
@@ -113,10 +114,11 @@ fn read(text: &str, name: &str) -> Result<Vec<StressMap>> {
     }
 }
 
-/// The maps of `all` called `names`, or all; of the quick ones those that are not slow.
+/// Returns the maps of `all` with the given `names`, or all maps without names. `quick` omits the slow maps if no name
+/// is given.
 ///
 /// # Errors
-/// `Usage` if there is no such map: names the nearest.
+/// `Usage` if a map does not exist; the message contains the most similar name.
 pub fn select_maps(all: Vec<StressMap>, names: &[String], quick: bool) -> Result<Vec<StressMap>> {
     if names.is_empty() {
         return Ok(all.into_iter().filter(|map| !(quick && map.slow)).collect());
@@ -137,22 +139,23 @@ pub fn select_maps(all: Vec<StressMap>, names: &[String], quick: bool) -> Result
 }
 
 impl MapAxis {
-    /// Its values, in words.
+    /// Returns the values of the axis as text.
     pub(crate) fn value_labels(&self) -> Vec<String> {
         self.values.iter().map(word).collect()
     }
 }
 
 impl StressMap {
-    /// How many cases it has.
+    /// Returns the number of cases.
     pub fn count(&self) -> usize {
         self.x.values.len() * self.y.as_ref().map_or(1, |y| y.values.len())
     }
 
-    /// Its cases, row by row; if `quick`, those at the ends of its axes alone.
+    /// Returns the cases, row by row. `quick` selects only the cases at the ends of the axes.
     ///
     /// # Errors
-    /// `Scene` if a hole cannot be filled or the scene is none: names map and values.
+    /// `Scene` if a placeholder cannot be replaced or the scene is invalid; the message contains the map and the
+    /// values.
     pub(crate) fn cases(&self, quick: bool) -> Result<Vec<StressCase>> {
         let ends = |n: usize| (0..n).filter(|&i| !quick || i == 0 || i + 1 == n).collect::<Vec<_>>();
         let rows = self.y.as_ref().map_or(1, |y| y.values.len());
@@ -178,7 +181,7 @@ impl StressMap {
         Ok(StressCase { map: self.name.clone(), cell: place, values: words, scene, criteria: judge, key })
     }
 
-    /// `text` with its holes filled.
+    /// Returns `text` with its placeholders replaced.
     fn substituted(&self, text: &str, values: &[&toml::Value], depth: usize) -> Result<String> {
         if depth > DEEPEST {
             return Err(Error::scene("a part holds itself"));
@@ -210,13 +213,13 @@ impl StressMap {
             let help = "a formula of x and y, the numbers along the axes, or the name of a part";
             return Err(Error::scene(format!("the hole \"{hole}\" is {value}")).help(help));
         }
-        // Products of decimal numbers are not to carry their round-off into lattices.
+        // Rounding prevents the round-off of decimal products from affecting the particle lattice.
         Ok(format!("{:?}", format!("{value:.12e}").parse::<f64>().unwrap_or(value)))
     }
 }
 
 impl Criteria {
-    /// This judge, with what it does not say itself from `other`.
+    /// Returns these criteria, with missing entries taken from `other`.
     fn with_defaults(self, other: &Self) -> Self {
         let bound = |own: Option<Bound>, other: &Option<Bound>| own.or_else(|| other.clone());
         let list = |own: Vec<SolidBound>, other: &Vec<SolidBound>| if own.is_empty() { other.clone() } else { own };

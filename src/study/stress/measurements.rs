@@ -1,4 +1,4 @@
-//! What of a running simulation the judge wants to know: followed step by step, never touched.
+//! Measures the figures of a running simulation after each step, without changing the simulation.
 
 use super::{
     StressCase,
@@ -14,17 +14,18 @@ use crate::{
     system::System,
 };
 
-/// How often a run is looked at: an excess of energy that comes and goes lasts for many sound crossings.
+/// The number of energy samples in a run. A temporary excess of energy lasts for many sound crossings, so these
+/// samples detect it.
 const LOOKS: f64 = 200.0;
 
-/// Follows one run.
+/// The measurements of one run.
 pub(super) struct Measurements<'a, const D: usize> {
     case: &'a StressCase,
     energy: EnergyProbe,
     energy_balance: EnergyBalance,
     known_motions: Vec<(MotionProbe<D>, usize, Formula)>,
     before: Vec<Kinematics<D>>,
-    /// Momentum (kg m/s) at the start, and what moves: Σ m |v| then.
+    /// The initial momentum (kg m/s), and the initial momentum scale Σ m |v|.
     momentum: (Vector<D>, f64),
     depth: f64,
     level: f64,
@@ -33,7 +34,7 @@ pub(super) struct Measurements<'a, const D: usize> {
 }
 
 impl<'a, const D: usize> Measurements<'a, D> {
-    /// Begins with the simulation at its start; `level` is the height of the still water, m.
+    /// Starts the measurements of a simulation at its initial state; `level` is the height of the still water, m.
     pub(super) fn new(case: &'a StressCase, sim: &Simulation<D>, level: f64) -> Result<Self> {
         let system = sim.system();
         let energy = EnergyProbe::new(system);
@@ -66,7 +67,7 @@ impl<'a, const D: usize> Measurements<'a, D> {
         Ok(measure)
     }
 
-    /// Told after each step, of length `dt` (s).
+    /// Updates the measurements after a step of length `dt` (s).
     pub(super) fn step(&mut self, sim: &Simulation<D>, dt: f64) -> Result<()> {
         let driven: f64 =
             self.before.iter().zip(sim.system().solids()).map(|(then, now)| driven_work(then, now, dt)).sum();
@@ -80,7 +81,7 @@ impl<'a, const D: usize> Measurements<'a, D> {
         self.sample(sim)
     }
 
-    /// What was found.
+    /// Returns the measured figures.
     pub(super) fn figures(mut self) -> MeasuredFigures {
         self.figures.insert("energy".into(), self.energy_balance.relative_excess());
         self.figures
@@ -132,13 +133,14 @@ impl<'a, const D: usize> Measurements<'a, D> {
 }
 
 fn energies<const D: usize>(probe: &EnergyProbe, sim: &Simulation<D>) -> Energies {
-    // The columns of the probe: water's kinetic, potential, compression; bodies' kinetic, potential; their sum.
+    // The columns of the probe are the kinetic, potential and compression energy of the water, the kinetic and
+    // potential energy of the bodies, and the sum.
     let row = probe.sample(sim);
     Energies { kinetic: row[0] + row[3], potential: row[1] + row[4], compression: row[2] }
 }
 
-/// What a driven solid does to the water in a step (J): minus the water's load along its mean motion. The load is that of the
-/// step's last pass, in its middle where there are two.
+/// Returns the work of a driven solid on the water in a step (J): minus the power of the water load at the mean motion,
+/// times the step. The load is that of the last force pass, at mid-step for two passes.
 fn driven_work<const D: usize>(then: &Kinematics<D>, now: &Solid<D>, dt: f64) -> f64 {
     let Role::Driven(_) = &now.spec.role else { return 0.0 };
     let velocity = (then.velocity + now.kinematics.velocity) * 0.5;
@@ -146,8 +148,8 @@ fn driven_work<const D: usize>(then: &Kinematics<D>, now: &Solid<D>, dt: f64) ->
     -dt * (now.load.force.dot(&velocity) + now.load.torque.power(&spin))
 }
 
-/// What springs, motors and forces do to the free bodies in a step (J), each at the mean of its motion before and after; none where no
-/// loads are kept.
+/// Returns the work of springs, motors and forces on the free bodies in a step (J). Each load acts at the mean of the
+/// motions before and after the step. The work is zero without a load breakdown.
 fn constraint_work<const D: usize>(sim: &Simulation<D>, before: &[Kinematics<D>], dt: f64) -> f64 {
     let one = |(i, then): (usize, &Kinematics<D>)| {
         let (now, shares) = (sim.system().solids()[i].kinematics, sim.load_breakdown(i)?);
@@ -157,13 +159,13 @@ fn constraint_work<const D: usize>(sim: &Simulation<D>, before: &[Kinematics<D>]
     before.iter().enumerate().filter_map(one).sum()
 }
 
-/// Mass of water and free bodies, kg.
+/// Returns the mass of water and free bodies, kg.
 fn masses<const D: usize>(system: &System<D>) -> f64 {
     let bodies: f64 = free_bodies(system).map(|(_, mass)| mass).sum();
     system.particle_mass() * system.fluid().len() as f64 + bodies
 }
 
-/// Momentum of water and free bodies, kg m/s, with what light ones have yet to get.
+/// Returns the momentum of water and free bodies, kg m/s, including the pending impulses on light bodies.
 fn momentum<const D: usize>(sim: &Simulation<D>) -> Vector<D> {
     let system = sim.system();
     let water = system.fluid().v.iter().sum::<Vector<D>>() * system.particle_mass();
@@ -171,14 +173,14 @@ fn momentum<const D: usize>(sim: &Simulation<D>) -> Vector<D> {
     free_bodies(system).fold(on_the_way, |sum, (solid, mass)| sum + solid.kinematics.velocity * mass)
 }
 
-/// Σ m |v| of water and free bodies, kg m/s.
+/// Returns the momentum scale Σ m |v| of water and free bodies, kg m/s.
 fn momentum_scale<const D: usize>(system: &System<D>) -> f64 {
     let water: f64 = system.fluid().v.iter().map(|v| v.norm()).sum();
     free_bodies(system)
         .fold(water * system.particle_mass(), |sum, (solid, mass)| sum + solid.kinematics.velocity.norm() * mass)
 }
 
-/// Free solids and their masses.
+/// Returns the free solids and their masses.
 fn free_bodies<const D: usize>(system: &System<D>) -> impl Iterator<Item = (&Solid<D>, f64)> {
     system.solids().iter().filter_map(|solid| match &solid.spec.role {
         Role::Free(body) => Some((solid, body.mass)),
@@ -186,8 +188,8 @@ fn free_bodies<const D: usize>(system: &System<D>) -> impl Iterator<Item = (&Sol
     })
 }
 
-/// How deep (dp) water lies inside a solid, how deep the face of a free body inside another solid, and how much water has
-/// left a tank but over its rim.
+/// Returns three figures: the depth (dp) of water inside a solid, the depth (dp) of the face of a free body inside
+/// another solid, and the amount of water outside a tank. Water that left the tank over its rim does not count.
 fn wall_violations<const D: usize>(system: &System<D>) -> [f64; 3] {
     let (dp, skin) = (system.model().dp, system.boundary());
     let [mut deepest, mut pressed, mut outside] = [0.0; 3];
@@ -197,7 +199,7 @@ fn wall_violations<const D: usize>(system: &System<D>) -> [f64; 3] {
         deepest = system.fluid().r.iter().map(depth).fold(deepest, max_or_invalid);
         for (k, body) in system.solids().iter().enumerate() {
             if k != i && matches!(body.spec.role, Role::Free(_)) {
-                // Its outermost boundary particles lie half a dp behind its face.
+                // The outermost boundary particles of the body lie dp/2 behind its face.
                 pressed = skin.r[body.boundary.clone()].iter().map(|r| depth(r) + 0.5).fold(pressed, max_or_invalid);
             }
         }

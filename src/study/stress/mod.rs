@@ -1,8 +1,9 @@
 //! `pontoon stress`: many short runs over maps of hard cases, each judged by physics.
 //!
-//! `maps` are scenes with holes that axes fill; `CaseRun` runs a case in memory and measures it; `Criteria` holds the
-//! figures against bounds; [`StressResults`] works the list off and keeps what came out. A case is right, stopped with a
-//! reason, wrong, or cut by its budget: unfinished.
+//! `maps` contains scenes with placeholders and the axes that supply their values. `CaseRun` runs a case in memory and
+//! measures its figures. `Criteria` compares the figures with their bounds. [`StressResults`] runs the list of cases
+//! and stores the results.
+//! A case is right, wrong, stopped with a reason, or unfinished because its budget ended.
 
 mod map_chart;
 mod criteria;
@@ -17,7 +18,7 @@ pub(crate) use maps::StressCase;
 pub use maps::{StressMap, maps, select_maps};
 pub use result_store::{CaseResult, StressResults};
 
-/// What came out of a case, in a line.
+/// Returns the result of a case in one line.
 pub fn summary_line(entry: &CaseResult) -> String {
     let values = entry.case.values.join(", ");
     let Some((outcome, missed)) = entry.verdict() else { return format!("{values}: not run") };

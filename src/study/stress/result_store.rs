@@ -1,4 +1,4 @@
-//! The list of cases worked off, several at a time, and kept in one file so that the same command goes on.
+//! Runs a list of cases, several at a time. One file stores the results, so that the same command resumes the list.
 
 use std::{
     collections::BTreeMap,
@@ -18,22 +18,22 @@ use crate::{
     output::write_atomically,
 };
 
-/// A case, what came out of it if it has been run, and what that is worth.
+/// A case and its result, if the case has run.
 #[derive(Clone, Debug)]
 pub struct CaseResult {
     /// The case.
     pub case: StressCase,
-    /// Its run.
+    /// The run of the case.
     pub run: Option<CaseRun>,
 }
 
-/// Many maps, and where their results go.
+/// The cases of several maps and their results.
 pub struct StressResults {
     out: PathBuf,
     maps: Vec<StressMap>,
     /// All cases, map by map.
     pub entries: Vec<CaseResult>,
-    /// Runs of cases that are not in the list now: kept in the file.
+    /// The runs of cases outside the current list; the file retains these runs.
     unlisted: Vec<CaseRun>,
 }
 
@@ -53,7 +53,7 @@ struct StoredRow {
 }
 
 impl CaseResult {
-    /// What the run is worth, and which bounds it misses; none if it has not been run.
+    /// Returns the outcome of the run and the bounds that the run exceeds, or `None` if the case has not run.
     pub fn verdict(&self) -> Option<(CaseOutcome, Vec<String>)> {
         let trial = self.run.as_ref()?;
         let missed = self.case.criteria.missed_bounds(&trial.figures);
@@ -62,10 +62,10 @@ impl CaseResult {
 }
 
 impl StressResults {
-    /// The cases of `maps`, with the runs that the folder `out` holds already.
+    /// Returns the cases of `maps`, with the runs already stored in the folder `out`.
     ///
     /// # Errors
-    /// Those of the maps; `File` if the results there cannot be read.
+    /// The errors of the maps; `File` if the stored results cannot be read.
     pub fn open(maps: Vec<StressMap>, quick: bool, out: PathBuf) -> Result<Self> {
         let cases = maps.iter().map(|map| map.cases(quick)).collect::<Result<Vec<_>>>()?.concat();
         let entries = cases.into_iter().map(|case| CaseResult { case, run: None }).collect();
@@ -84,13 +84,14 @@ impl StressResults {
         Ok(ledger)
     }
 
-    /// The file of all results.
+    /// Returns the path of the file of all results.
     pub fn file(&self) -> PathBuf {
         self.out.join("stress.json")
     }
 
-    /// Runs what has not been run, `workers` cases side by side, each on one thread; `told` hears of every case that has
-    /// ended, in the order of their ends. Raising `stop` ends it after the cases in hand.
+    /// Runs the cases without a result, with `workers` cases in parallel and one thread for each case. Calls `told`
+    /// after each case, in the order of completion. If `stop` becomes true, running cases finish and no further case
+    /// starts.
     ///
     /// # Errors
     /// `File` if the results cannot be written; `Usage` if threads cannot be started.
@@ -127,7 +128,7 @@ impl StressResults {
         shared.into_inner().unwrap_or_else(PoisonError::into_inner).2
     }
 
-    /// How many cases came out how; those that have not been run are not counted.
+    /// Returns the number of cases with each outcome, without the cases that have not run.
     pub(crate) fn counts(&self, map: Option<&str>) -> BTreeMap<CaseOutcome, usize> {
         let mut counts = BTreeMap::new();
         for entry in self.entries.iter().filter(|entry| map.is_none_or(|map| entry.case.map == map)) {
@@ -138,18 +139,19 @@ impl StressResults {
         counts
     }
 
-    /// Processor time of all cases, s.
+    /// Returns the processor time of all cases, s.
     pub fn cpu_seconds(&self) -> f64 {
         self.entries.iter().filter_map(|entry| Some(entry.run.as_ref()?.cpu_s)).sum()
     }
 
-    /// Writes the results.
+    /// Writes the results to the file.
     fn write_results(&self) -> Result<()> {
         let row = |entry: &CaseResult| {
             let (outcome, missed) = entry.verdict()?;
             Some(StoredRow { outcome, missed, trial: entry.run.clone()? })
         };
-        // Of a case that is not in the list now the bounds are not known: its verdict is made anew when it is.
+        // The bounds of a case outside the current list are unknown. The program evaluates the case again when the list
+        // contains it.
         let other = |trial: &CaseRun| StoredRow { outcome: trial.outcome(&[]), missed: vec![], trial: trial.clone() };
         let trials = self.entries.iter().filter_map(row).chain(self.unlisted.iter().map(other)).collect();
         let name = |outcome: CaseOutcome| map_chart::outcome_name(outcome).to_string();
@@ -159,10 +161,10 @@ impl StressResults {
         write_atomically(&self.file(), (text + "\n").as_bytes())
     }
 
-    /// Writes the results and a picture of each map; returns the pictures' names.
+    /// Writes the results and a chart of each map; returns the paths of the charts.
     ///
     /// # Errors
-    /// `File` if one cannot be written.
+    /// `File` if a file cannot be written.
     pub fn write(&self) -> Result<Vec<PathBuf>> {
         fs::create_dir_all(&self.out).map_err(|why| Error::write(&self.out, "made", &why))?;
         self.write_results()?;
@@ -176,7 +178,8 @@ impl StressResults {
         Ok(files)
     }
 
-    /// A row for each map: how many came out how. The first row is its head, the last the sum.
+    /// Returns a table of the number of cases with each outcome: a header row, a row for each map, and the sum in the
+    /// last row.
     pub fn table(&self) -> Vec<Vec<String>> {
         let all = [CaseOutcome::Right, CaseOutcome::Stopped, CaseOutcome::Wrong, CaseOutcome::Unfinished];
         let row = |name: &str, map: Option<&str>| {
