@@ -11,8 +11,8 @@
 //!   η = a (e^{ikδ} + e^{−ikδ}) + (ic e^{−ikδ} + s) X,   a_out = a + icX
 //!
 //! c is the paddle's transfer function, and s = Σ sⱼ e^{−κⱼδ} is the contribution of the evanescent modes at the gauge.
-//! No wave leaves the paddle if X = i η/(c e^{ikδ} + is); F and T satisfy this condition at a single period. The time τ
-//! returns the paddle to its mean position; τ is long, so that the return hardly affects the absorption at that period.
+//! No wave leaves the paddle if X = i η/(c e^{ikδ} + is); F and T satisfy this condition at a single period, with
+//! the return to the mean position (τ, five periods) included.
 //! The lag T compensates for δ and s, and filters the gauge's noise. In shallow water the law becomes the long-wave law
 //! x′ = −√(g/d) e. @schaffer2000, @altomare2017
 
@@ -25,7 +25,7 @@ use super::{
 };
 use crate::error::{Error, Result};
 
-/// τ over the period of tuning.
+/// Time τ of the return to the mean position, over the period of tuning.
 const HOME: f64 = 5.0;
 
 /// Default stroke over the stroke of the paddle's own wave. Absorption of the returning waves needs the same stroke
