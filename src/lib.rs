@@ -95,6 +95,10 @@ pub mod prelude;
 
 pub use error::{Error, Result};
 
+#[cfg(test)]
+#[path = "../tests/house.rs"]
+mod house;
+
 /// The programs of the documents, compiled and run as tests.
 #[cfg(doctest)]
 #[doc = include_str!("../docs/how-to/use-from-rust.md")]
