@@ -12,16 +12,6 @@ use pontoon::{
 
 use crate::common;
 
-/// Scenes with a coarser spacing in these tests, because their own takes minutes.
-const COARSER: [(&str, &str); 6] = [
-    ("added-mass-3d", "0.04"),
-    ("buoyancy-3d", "0.04"),
-    ("column", "0.04"),
-    ("column-gate", "0.04"),
-    ("flume-box", "0.02"),
-    ("wigley", "0.045"),
-];
-
 fn home() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes")
 }
@@ -40,24 +30,6 @@ where
 {
     let BuiltScene { setup, .. } = scene.build().expect("a scene that can be built");
     Simulation::new(setup).expect("a sound setup")
-}
-
-/// Runs 50 steps and asserts that no water is lost or inside a solid.
-fn assert_holds_water<const D: usize>(scene: &Scene)
-where
-    Dim<D>: Dimension<D>,
-{
-    let mut sim = simulation::<D>(scene);
-    let count = sim.system().fluid().len();
-    common::steps(&mut sim, 50);
-    let system = sim.system();
-    assert_eq!(system.fluid().len(), count);
-    for solid in system.solids() {
-        let depth = |x| -solid.spec.shape.signed_distance(&solid.kinematics.pose.local(x));
-        let deepest = system.fluid().r.iter().map(depth).fold(f64::NEG_INFINITY, f64::max);
-        // The outermost boundary particles are half a dp inside the face; water at that depth leaks through.
-        assert!(deepest < 0.5 * scene.dp, "water {deepest} m inside \"{}\"", solid.spec.name);
-    }
 }
 
 #[test]
@@ -80,20 +52,6 @@ fn every_bundled_scene_is_in_the_program_with_all_its_files_and_a_readme() {
         found.sort();
         assert!(found == expected, "the files of {name}");
         assert!(files.iter().any(|(file, text)| *file == "README.md" && text.starts_with("# ")), "{name}: README.md");
-    }
-}
-
-#[test]
-fn every_bundled_scene_runs_fifty_steps_without_loss_or_leakage_of_water() {
-    for name in names() {
-        let coarser = COARSER.iter().find(|(of, _)| *of == name);
-        let sets: Vec<_> = coarser.iter().map(|(_, dp)| ("dp".to_string(), dp.to_string())).collect();
-        let scene = Scene::read(&home().join(&name), &sets).unwrap_or_else(|e| panic!("{name}: {e}"));
-        assert!(scene.resolve().unwrap().iter().any(|value| value.key == "model.kernel"), "{name}");
-        match scene.dimension {
-            2 => assert_holds_water::<2>(&scene),
-            _ => assert_holds_water::<3>(&scene),
-        }
     }
 }
 
