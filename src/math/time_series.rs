@@ -2,11 +2,23 @@
 
 use crate::error::{Error, Result};
 
+/// Largest distance of the parabola's tangent from the chord, over the range, at a sample of a dense record. A sine with
+/// 18 samples a period has it.
+const DENSE: f64 = 1.0 / 32.0;
+
+/// Largest overshoot at the end of a hold of a dense record, over the range.
+const HOLD_OVERSHOOT: f64 = 5e-4;
+
+/// Number of equal intervals that make a hold. Shorter ones come from the resolution of an instrument.
+const HOLD: usize = 4;
+
 /// A quantity sampled at increasing times.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct TimeSeries {
     t: Vec<f64>,
     x: Vec<f64>,
+    /// Largest value minus least value.
+    range: f64,
 }
 
 impl TimeSeries {
@@ -35,7 +47,13 @@ impl TimeSeries {
                 t[i - 1]
             )));
         }
-        Ok(Self { t, x })
+        Ok(Self::of_valid(t, x))
+    }
+
+    /// The series of valid samples.
+    fn of_valid(t: Vec<f64>, x: Vec<f64>) -> Self {
+        let (least, most) = x.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(*x), b.max(*x)));
+        Self { t, x, range: most - least }
     }
 
     /// Sample times, s.
@@ -59,9 +77,10 @@ impl TimeSeries {
         self.x[i] + s * (self.x[i + 1] - self.x[i])
     }
 
-    /// Value and rate at time `t` (s) of the smooth curve through the samples: a cubic Hermite spline
-    /// with the slopes of the parabola through each sample and its neighbours, so both are continuous.
-    /// Outside the span the end value, at rest.
+    /// Value and rate at time `t` (s) of the smooth curve through the samples, both continuous. The curve is a cubic
+    /// Hermite spline. Its slope at a sample is that of the parabola through the sample and its neighbours, limited
+    /// where the record is not dense so that the curve stays between its samples (Hyman 1983). Outside the span the
+    /// curve has the end value, at rest.
     pub(crate) fn value_and_rate(&self, t: f64) -> (f64, f64) {
         let (first, last) = self.span();
         if t <= first || t >= last {
@@ -89,17 +108,26 @@ impl TimeSeries {
                 "fewer than two samples lie between {from} and {until} s; the series goes from {first} to {last} s"
             )));
         }
-        Ok(Self { t: self.t[range.clone()].to_vec(), x: self.x[range].to_vec() })
+        Ok(Self::of_valid(self.t[range.clone()].to_vec(), self.x[range].to_vec()))
     }
 
     /// The same `by` seconds later.
     pub(crate) fn shifted(&self, by: f64) -> Self {
-        Self { t: self.t.iter().map(|t| t + by).collect(), x: self.x.clone() }
+        Self { t: self.t.iter().map(|t| t + by).collect(), ..self.clone() }
+    }
+
+    /// The values times `scale` at the times `time_factor` · t + `offset` (s).
+    ///
+    /// # Errors
+    /// As [`TimeSeries::new`], as for a factor that is not positive.
+    pub(crate) fn transformed(&self, scale: f64, time_factor: f64, offset: f64) -> Result<Self> {
+        let times: Vec<f64> = self.t.iter().map(|t| t * time_factor + offset).collect();
+        Self::new(times, self.x.iter().map(|x| x * scale).collect::<Vec<f64>>())
     }
 
     /// The same with `offset` taken off every value.
     pub(crate) fn minus(&self, offset: f64) -> Self {
-        Self { t: self.t.clone(), x: self.x.iter().map(|x| x - offset).collect() }
+        Self::of_valid(self.t.clone(), self.x.iter().map(|x| x - offset).collect())
     }
 
     /// What an instrument shows that takes the mean over `seconds`:
@@ -122,7 +150,7 @@ impl TimeSeries {
             let (a, b) = ((t - 0.5 * seconds).max(first), (t + 0.5 * seconds).min(last));
             (integral(b) - integral(a)) / (b - a)
         };
-        Self { x: self.t.iter().map(mean).collect(), t: self.t.clone() }
+        Self::of_valid(self.t.clone(), self.t.iter().map(mean).collect())
     }
 
     /// The first time (s) at which |x| reaches `threshold`, linear between samples; none if it never does.
@@ -142,14 +170,48 @@ impl TimeSeries {
         (i, s.clamp(0.0, 1.0))
     }
 
-    /// Slope at sample `i` of the parabola through it and its two neighbours; zero at the ends, where
-    /// the motion starts and stops at rest.
+    /// Length (s) and slope of interval `i`.
+    fn interval(&self, i: usize) -> (f64, f64) {
+        let step = self.t[i + 1] - self.t[i];
+        (step, (self.x[i + 1] - self.x[i]) / step)
+    }
+
+    /// Slope of the curve at sample `i`; zero at the ends, where the motion starts and stops at rest.
+    ///
+    /// It is the slope of the parabola through the sample and its neighbours. If the record is not dense there, the
+    /// slope lies between zero and three times that of each adjacent interval. This is sufficient for a monotone curve
+    /// (Fritsch and Carlson 1980), and the slope is zero where the record turns. A dense record keeps the parabola,
+    /// except where it holds a value: there the curve leaves the value by [`HOLD_OVERSHOOT`] at most.
     fn slope(&self, i: usize) -> f64 {
+        let last = self.t.len() - 1;
+        if i == 0 || i == last {
+            return 0.0;
+        }
+        let ((h0, d0), (h1, d1)) = (self.interval(i - 1), self.interval(i));
+        let parabola = (h1 * d0 + h0 * d1) / (h0 + h1);
+        let dense = (i - 1..=i + 1).all(|k| self.tangent_distance(k) <= DENSE * self.range);
+        let holds = |k: usize| k + HOLD <= last && (k..k + HOLD).all(|k| self.x[k] == self.x[k + 1]);
+        if dense && !holds(i) && !i.checked_sub(HOLD).is_some_and(holds) {
+            return parabola;
+        }
+        [(h0, d0), (h1, d1)].into_iter().fold(parabola, |slope, (h, d)| {
+            // s (1 − s)² of the unit interval is 4/27 at most.
+            let more = if dense { 27.0 / 4.0 * HOLD_OVERSHOOT * self.range / h } else { 0.0 };
+            slope.clamp((3.0 * d).min(0.0) - more, (3.0 * d).max(0.0) + more)
+        })
+    }
+
+    /// Distance of the parabola's tangent at sample `i` from the chord, at the other end of the longer adjacent
+    /// interval; zero at the ends.
+    fn tangent_distance(&self, i: usize) -> f64 {
         if i == 0 || i + 1 == self.t.len() {
             return 0.0;
         }
-        let (h0, h1) = (self.t[i] - self.t[i - 1], self.t[i + 1] - self.t[i]);
-        let (d0, d1) = ((self.x[i] - self.x[i - 1]) / h0, (self.x[i + 1] - self.x[i]) / h1);
-        (h1 * d0 + h0 * d1) / (h0 + h1)
+        let ((h0, d0), (h1, d1)) = (self.interval(i - 1), self.interval(i));
+        (d1 - d0).abs() * h0.max(h1).powi(2) / (h0 + h1)
     }
 }
+
+#[cfg(test)]
+#[path = "../../tests/unit/math/time_series.rs"]
+mod tests;
