@@ -204,14 +204,6 @@ impl Error {
         })
     }
 
-    /// Creates a [`ErrorKind::File`] error for a table at `path` that cannot be read.
-    pub(crate) fn table(path: &Path, why: &csv::Error) -> Self {
-        match why.kind() {
-            csv::ErrorKind::Io(io) => Self::read(path, io),
-            _ => Self::file(path, why),
-        }
-    }
-
     /// Returns the stable identifier of the error's family, for programs.
     ///
     /// ```

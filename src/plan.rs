@@ -5,7 +5,10 @@ use std::path::PathBuf;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::probe::{ContactListPlan, ProbePlan};
+use crate::{
+    math::{table::ColumnName, time_series::SampleScaling},
+    probe::{ContactListPlan, ProbePlan},
+};
 
 /// The outputs, checks and end time of a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -188,11 +191,11 @@ pub enum Reference {
         /// The table.
         file: PathBuf,
         /// Its column of times, s.
-        time: String,
+        time: ColumnName,
         /// Its column of values.
-        column: String,
-        /// Delay added to the times of the table, s: time 0 of the table is the time `delay` of the run.
-        delay: f64,
+        column: ColumnName,
+        /// How its samples become those of the run.
+        scaling: SampleScaling,
     },
     /// A formula in the run's time t (s).
     Formula(String),

@@ -10,7 +10,11 @@ use super::{
 };
 use crate::{
     error::{Error, Result},
-    math::{expression::Formula, table::TableReader, time_series::TimeSeries},
+    math::{
+        expression::Formula,
+        table::{ColumnName, TableReader},
+        time_series::{SampleScaling, TimeSeries},
+    },
     plan::{Align, CheckPlan, Reference, Score},
 };
 
@@ -103,12 +107,14 @@ impl ReferenceCheck {
     pub fn new(words: &CheckPlan, folder: &Path) -> Result<Self> {
         let reference = match &words.reference {
             Reference::Formula(text) => KnownReference::Formula(Formula::parse(text)?),
-            Reference::Table { file, time, column, delay } => {
+            Reference::Table { file, time, column, scaling } => {
                 let path = folder.join(file);
                 let (from, until) = window(words, 0.0);
-                let whole = read_series(&path, time, column, *delay)?;
+                let whole = read_series(&path, time, column, scaling)?;
                 KnownReference::Table(
-                    whole.window(from, until).map_err(|e| e.at(path.display().to_string(), None, column.as_str()))?,
+                    whole
+                        .window(from, until)
+                        .map_err(|e| e.at(path.display().to_string(), None, column.to_string()))?,
                 )
             }
         };
@@ -200,7 +206,7 @@ impl ReferenceCheck {
     fn run_series(&self, folder: &Path) -> Result<(TimeSeries, Option<TimeSeries>)> {
         let (probe, column) = self.plan.series.split_once('.').unwrap_or((&self.plan.series, ""));
         let path: PathBuf = folder.join(format!("{probe}.csv"));
-        let mut sim = read_series(&path, "t_s", column, 0.0)?;
+        let mut sim = read_series(&path, &"t_s".into(), &column.into(), &SampleScaling::default())?;
         if let Some(at) = self.plan.zero {
             sim = sim.minus(sim.value_at(at));
         }
@@ -288,14 +294,17 @@ fn window(words: &CheckPlan, start: f64) -> (f64, f64) {
     (words.from.unwrap_or(from) + start, words.until.unwrap_or(f64::INFINITY) + start)
 }
 
-/// Returns the series of `column` over `time` of the table at `path`, shifted by `delay` (s). Rows may be in any order.
-/// Digitised figures can have several values at the same time; the function uses their mean.
-fn read_series(path: &Path, time: &str, column: &str, delay: f64) -> Result<TimeSeries> {
-    let [t, x] = TableReader::open(path)?.columns([time, column])?;
+/// Returns the series of `column` over `time` of the table at `path`, in the scale and on the clock of the run. Rows may
+/// be in any order. Digitised figures can have several values at the same time; the function uses their mean.
+fn read_series(path: &Path, time: &ColumnName, column: &ColumnName, scaling: &SampleScaling) -> Result<TimeSeries> {
+    let mut table = TableReader::open(path)?;
+    let time = table.time_column(time, column);
+    let [t, x] = table.columns([&time, column])?;
     let mut rows: Vec<(f64, f64)> = t.into_iter().zip(x).collect();
     rows.sort_by(|a, b| a.0.total_cmp(&b.0));
     let groups = rows.chunk_by(|a, b| a.0 == b.0);
     let (t, x): (Vec<f64>, Vec<f64>) =
-        groups.map(|g| (g[0].0 + delay, g.iter().map(|row| row.1).sum::<f64>() / g.len() as f64)).unzip();
-    TimeSeries::new(t, x).map_err(|e| e.at(path.display().to_string(), None, column))
+        groups.map(|g| (g[0].0, g.iter().map(|row| row.1).sum::<f64>() / g.len() as f64)).unzip();
+    let series = TimeSeries::new(t, x).and_then(|series| series.scaled(scaling));
+    series.map_err(|e| e.at(path.display().to_string(), None, column.to_string()))
 }

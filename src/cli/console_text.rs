@@ -47,6 +47,9 @@ pub fn start_text(start: &RunStart) -> String {
     for warning in &manifest.warnings {
         let _ = writeln!(text, "warning: {warning}");
     }
+    for note in &manifest.notes {
+        let _ = writeln!(text, "note: {note}");
+    }
     for name in start.renamed {
         let _ = writeln!(text, "note: {name}");
     }

@@ -62,6 +62,9 @@ impl RunObserver for JsonLog {
             "boundary": manifest.particles.boundary, "threads": manifest.threads, "until_s": manifest.until_s,
         }));
         manifest.warnings.iter().for_each(|text| warn(text));
+        for note in &manifest.notes {
+            write_event(&json!({ "event": "note", "text": note }));
+        }
         for name in start.renamed {
             write_event(&json!({ "event": "note", "text": name.to_string() }));
         }

@@ -1,30 +1,52 @@
-//! Tables of numbers in text files: a header row, then a row of cells a line. Lines that begin with `#` are comments.
+//! Tables of numbers in text files: rows of cells, usually below a row of names.
+//!
+//! Separators are commas, semicolons, tabs or blanks; decimal signs are points or commas. The reader finds them, and the
+//! rows of names and units, where only one reading is possible, and describes the layout in its remarks.
 
-use std::{array, fs::File, path::Path};
+mod cell;
+mod column_name;
+mod encoding;
+mod layout;
+mod unit;
+
+use std::{array, path::Path};
 
 use super::time_series::TimeSeries;
 use crate::error::{Error, ErrorCode, Result, suggestion};
+pub use column_name::ColumnName;
+use layout::Layout;
+pub(crate) use unit::{is_degree, si_factor};
 
-/// A table whose header is read. The methods that return columns read its rows.
+/// The name of the column of times in the tables of a run.
+const OWN_TIME: &str = "t_s";
+
+/// Other names of a column of times, in lower case and without unit.
+const TIMES: [&str; 7] = ["t", "time", "times", "time_s", "time_ms", "t_ms", "zeit"];
+
+/// Most columns that a remark lists.
+const LISTED: usize = 8;
+
+/// A table whose layout is known. The methods that return columns read its rows.
 pub struct TableReader {
     file: String,
-    header: Vec<String>,
-    reader: csv::Reader<File>,
+    text: String,
+    layout: Layout,
+    /// Remarks of the columns that were read.
+    remarks: Vec<String>,
 }
 
 impl TableReader {
     /// The table at `path`.
     ///
     /// # Errors
-    /// `File` if it cannot be read.
+    /// `File` if it cannot be read. `Scene` if it is no text, or has more than one reading: says which.
     pub fn open(path: &Path) -> Result<Self> {
-        let mut options = csv::ReaderBuilder::new();
-        // The rows are held against the header here, with errors that name the line.
-        options.comment(Some(b'#')).trim(csv::Trim::All).flexible(true);
-        let broken = |why: csv::Error| Error::table(path, &why);
-        let mut reader = options.from_path(path).map_err(broken)?;
-        let header = reader.headers().map_err(broken)?.iter().map(String::from).collect();
-        Ok(Self { file: path.display().to_string(), header, reader })
+        let bytes = std::fs::read(path).map_err(|why| Error::read(path, &why))?;
+        let (text, encoding) = encoding::decode(path, &bytes)?;
+        let file = path.display().to_string();
+        let mut layout = Layout::of(&text).map_err(|e| Error { message: format!("{file}: {}", e.message), ..e })?;
+        layout.remarks.splice(0..0, encoding);
+        Ok(Self { file, text, layout, remarks: Vec::new() })
     }
 
     /// The path of the table, for messages.
@@ -32,84 +54,208 @@ impl TableReader {
         &self.file
     }
 
-    /// The names of the columns.
+    /// The names of the columns; empty if the table has no row of names that fits its rows.
     pub fn header(&self) -> &[String] {
-        &self.header
+        &self.layout.names
     }
 
-    /// The columns `names`. Rows with a blank cell among them are skipped.
+    /// The names of the columns, or their numbers from 1 where the table has no names.
+    pub(crate) fn column_names(&self) -> Vec<String> {
+        match self.layout.names.is_empty() {
+            true => (1..=self.layout.count).map(|number| number.to_string()).collect(),
+            false => self.layout.names.clone(),
+        }
+    }
+
+    /// How the table was read, as one sentence, if it is not a table with commas, decimal points and a header.
+    pub fn remark(&self) -> Option<String> {
+        let mut remarks = self.layout.remarks.clone();
+        if !remarks.is_empty() && !self.layout.names.is_empty() {
+            let names = self.layout.names.iter().take(LISTED).map(|name| format!("\"{name}\""));
+            let more = if self.layout.names.len() > LISTED { ", .." } else { "" };
+            remarks.push(format!("columns {}{more}", names.collect::<Vec<_>>().join(", ")));
+        }
+        remarks.extend(self.remarks.iter().cloned());
+        (!remarks.is_empty()).then(|| remarks.join("; "))
+    }
+
+    /// The unit of a column, from the row of units or from its name; `None` if there is none.
     ///
     /// # Errors
-    /// `File` if the table cannot be read. `Scene` if a column is missing, a row is longer or shorter than the header, or
-    /// a cell is not a finite number; the location of the last two is their line.
-    pub fn columns<const N: usize>(mut self, names: [&str; N]) -> Result<[Vec<f64>; N]> {
+    /// As [`TableReader::columns`], if there is no such column.
+    pub fn unit(&self, column: impl Into<ColumnName>) -> Result<Option<String>> {
+        let i = self.index(&column.into())?;
+        let name = self.layout.names.get(i).map_or("", String::as_str);
+        Ok(unit::of_column(name, self.layout.units.get(i).map(String::as_str)))
+    }
+
+    /// The columns `names`. Rows without a value in one of them are skipped.
+    ///
+    /// # Errors
+    /// `Scene` if a column is missing or its name stands twice, a row is longer or shorter than the others, or a cell is
+    /// not a finite number; the location of the last two is their line.
+    pub fn columns<C: Into<ColumnName>, const N: usize>(&mut self, names: [C; N]) -> Result<[Vec<f64>; N]> {
+        Ok(self.columns_and_lines(names.map(Into::into))?.0)
+    }
+
+    /// The columns, and the lines of their rows.
+    fn columns_and_lines<const N: usize>(&mut self, names: [ColumnName; N]) -> Result<([Vec<f64>; N], Vec<usize>)> {
         let mut indices = [0; N];
-        for (index, name) in indices.iter_mut().zip(names) {
+        for (index, name) in indices.iter_mut().zip(&names) {
             *index = self.index(name)?;
         }
         let mut columns = array::from_fn(|_| Vec::new());
-        let (file, count) = (&self.file, self.header.len());
-        for record in self.reader.records() {
-            let record = record.map_err(|why| Error::table(file.as_ref(), &why))?;
-            let line = record.position().map_or(0, |place| place.line() as usize);
-            let at = |error: Error, name: &str| error.at(file.as_str(), Some((line, 1)), name);
-            if record.len() != count {
-                let error = Error::scene(format!("a row has {} cells, its header {count}", record.len()));
-                return Err(at(error.help("leave a cell blank where a value is missing"), ""));
+        let (mut lines, mut missing) = (Vec::new(), Vec::new());
+        for (line, cells) in self.rows() {
+            let at = |error: Error, name: &str| error.at(self.file.as_str(), Some((line, 1)), name);
+            if cells.len() != self.layout.count {
+                return Err(at(self.wrong_length(cells.len()), ""));
             }
-            let cells = indices.map(|i| &record[i]);
-            if cells.contains(&"") {
+            let cells = indices.map(|i| cells[i]);
+            if cells.iter().any(|cell| cell::is_missing(cell)) {
+                // A blank cell is a common way to leave a value out; the others are told.
+                missing.extend(cells.iter().any(|cell| !cell.is_empty() && cell::is_missing(cell)).then_some(line));
                 continue;
             }
-            for ((column, cell), name) in columns.iter_mut().zip(cells).zip(names) {
-                let x = number(cell).filter(|x| x.is_finite());
-                column.push(x.ok_or_else(|| at(Error::scene(format!("\"{cell}\" is not a number")), name))?);
+            for ((column, cell), name) in columns.iter_mut().zip(cells).zip(&names) {
+                let x = cell::number(cell, self.layout.decimal).filter(|x| x.is_finite());
+                column.push(x.ok_or_else(|| at(cell::error(cell, self.layout.decimal), &name.to_string()))?);
+            }
+            lines.push(line);
+        }
+        match missing[..] {
+            [] => {}
+            [line] => self.remarks.push(format!("line {line} has no value and is skipped")),
+            [line, ..] => {
+                self.remarks.push(format!("{} rows, from line {line}, have no value and are skipped", missing.len()))
             }
         }
-        Ok(columns)
+        Ok((columns, lines))
     }
 
-    /// All columns, NaN where a cell is blank or no number. Only rows as long as the header with a number in the first
-    /// column count, so the cut last row of a stopped run does not.
-    ///
-    /// # Errors
-    /// `File` if the table cannot be read.
-    pub fn all_columns(mut self) -> Result<Vec<Vec<f64>>> {
-        let mut columns = vec![Vec::new(); self.header.len()];
-        for record in self.reader.records() {
-            let record = record.map_err(|why| Error::table(self.file.as_ref(), &why))?;
-            if record.len() == columns.len() && number(&record[0]).is_some_and(f64::is_finite) {
-                let cells = record.iter().map(|cell| number(cell).unwrap_or(f64::NAN));
+    /// The columns of the coordinates of points: `x_m` and `y_m`, else `x` and `y`, else the two of a table without names.
+    pub(crate) fn point_columns(&mut self) -> [ColumnName; 2] {
+        let has = |names: [&str; 2]| names.iter().all(|name| self.index(&ColumnName::from(*name)).is_ok());
+        let found = match (has(["x_m", "y_m"]), has(["x", "y"])) {
+            (false, true) => [ColumnName::from("x"), ColumnName::from("y")],
+            (false, false) if self.layout.names.is_empty() && self.layout.count == 2 => [1, 2].map(ColumnName::Number),
+            _ => return ["x_m", "y_m"].map(ColumnName::from),
+        };
+        self.remarks.push(format!("x and y from the columns {} and {}", found[0], found[1]));
+        found
+    }
+
+    /// All columns, NaN where a cell is blank or no number. Only complete rows with a number in the first column count,
+    /// so the cut last row of a stopped run does not.
+    pub fn all_columns(&self) -> Vec<Vec<f64>> {
+        let mut columns = vec![Vec::new(); self.layout.count];
+        let number = |cell: &str| cell::number(cell, self.layout.decimal);
+        for (_, cells) in self.rows() {
+            if cells.len() == columns.len() && number(cells[0]).is_some_and(f64::is_finite) {
+                let cells = cells.iter().map(|cell| number(cell).unwrap_or(f64::NAN));
                 columns.iter_mut().zip(cells).for_each(|(column, x)| column.push(x));
             }
         }
-        Ok(columns)
+        columns
     }
 
-    /// The series of `column` over the column `time`.
+    /// The series of `column` over the column `time`. If the table has no column `"t_s"`, this name means the column
+    /// that is called a time, or the first column of a table without names or beside a column by number.
     ///
     /// # Errors
-    /// As [`TableReader::columns`] and [`TimeSeries::new`].
-    pub fn series(self, time: &str, column: &str) -> Result<TimeSeries> {
-        let file = self.file.clone();
-        let [t, x] = self.columns([time, column])?;
-        TimeSeries::new(t, x).map_err(|e| Error::scene(format!("{file}, {column}: {}", e.message)))
+    /// As [`TableReader::columns`]; `Scene` if the times do not increase: says in which line.
+    pub fn series(&mut self, time: impl Into<ColumnName>, column: impl Into<ColumnName>) -> Result<TimeSeries> {
+        let column = column.into();
+        let time = self.time_column(&time.into(), &column);
+        let ([t, x], lines) = self.columns_and_lines([time.clone(), column.clone()])?;
+        if let Some(i) = (1..t.len()).find(|&i| t[i] <= t[i - 1]) {
+            let what = format!("times must increase: {} follows {}", t[i], t[i - 1]);
+            let help = "sort the rows, and give a jump two times, as in 1.0 and 1.001";
+            return Err(Error::scene(what).help(help).at(self.file.as_str(), Some((lines[i], 1)), time.to_string()));
+        }
+        TimeSeries::new(t, x).map_err(|e| Error { message: format!("{}, {column}: {}", self.file, e.message), ..e })
+    }
+
+    /// The column of times that `time` means beside the values in `column`.
+    pub(crate) fn time_column(&mut self, time: &ColumnName, column: &ColumnName) -> ColumnName {
+        let names = &self.layout.names;
+        if *time != ColumnName::Name(OWN_TIME.into()) || names.iter().any(|name| name == OWN_TIME) {
+            return time.clone();
+        }
+        let is_time = |name: &&String| TIMES.contains(&unit::split_name(name).0.to_lowercase().as_str());
+        let is_numbered = matches!(column, ColumnName::Number(number) if *number > 1);
+        let found = match names.iter().filter(is_time).collect::<Vec<_>>()[..] {
+            [name] => ColumnName::Name(name.clone()),
+            _ if is_numbered || (names.is_empty() && self.layout.unfit.is_none() && self.layout.count > 0) => {
+                ColumnName::Number(1)
+            }
+            _ => return time.clone(),
+        };
+        let told = match &found {
+            ColumnName::Number(number) => format!("times from column {number}"),
+            ColumnName::Name(name) => format!("times from column \"{name}\""),
+        };
+        if !self.remarks.contains(&told) {
+            self.remarks.push(told);
+        }
+        found
+    }
+
+    /// The rows of numbers with their lines.
+    fn rows(&self) -> impl Iterator<Item = (usize, Vec<&str>)> {
+        let lines = self.text.lines().enumerate().skip(self.layout.first.saturating_sub(1));
+        let lines = lines.filter(|(_, line)| !line.trim().is_empty() && layout::comment(line).is_none());
+        lines.map(|(i, line)| (i + 1, self.layout.cells(line)))
+    }
+
+    /// The error of a row with `cells` cells.
+    fn wrong_length(&self, cells: usize) -> Error {
+        let header = if self.layout.names.is_empty() { "the others" } else { "its header" };
+        let error = Error::scene(format!("a row has {cells} cells, {header} {}", self.layout.count));
+        error.help("leave a cell blank where a value is missing")
     }
 
     /// The place of the column `name`.
-    fn index(&self, name: &str) -> Result<usize> {
-        self.header.iter().position(|column| column == name).ok_or_else(|| {
-            let guess = suggestion(name, self.header.iter().map(String::as_str));
-            Error::scene(format!("{} has no column \"{name}\"{guess}", self.file))
-                .with_code(ErrorCode::UnknownName)
-                .help(format!("its columns: {}", self.header.join(", ")))
-        })
+    fn index(&self, name: &ColumnName) -> Result<usize> {
+        let (names, count) = (&self.layout.names, self.layout.count);
+        let missing = |what: String| Error::scene(format!("{} {what}", self.file)).with_code(ErrorCode::UnknownName);
+        let name = match name {
+            ColumnName::Number(number) => {
+                let index = usize::try_from(*number).ok().and_then(|n| n.checked_sub(1)).filter(|i| *i < count);
+                return index.ok_or_else(|| {
+                    missing(format!("has no column {number}")).help(format!("it has {count}, counted from 1"))
+                });
+            }
+            ColumnName::Name(name) => name,
+        };
+        let fitting = |fits: &dyn Fn(&str) -> bool| -> Vec<usize> {
+            names.iter().enumerate().filter(|(_, column)| fits(column)).map(|(i, _)| i).collect()
+        };
+        let mut found = fitting(&|column| column == name);
+        if found.is_empty() {
+            found = fitting(&|column| unit::split_name(column).0 == name);
+        }
+        match found[..] {
+            [one] => Ok(one),
+            [] if names.is_empty() && count > 0 => {
+                let what = match self.layout.unfit {
+                    Some(unfit) => format!("has {unfit} names over rows of {count} cells"),
+                    None => format!("has no row of names, so no column \"{name}\""),
+                };
+                Err(missing(what).help(format!("give the number of the column, from 1 to {count}, as in  column = 2")))
+            }
+            [] => {
+                let guess = suggestion(name, names.iter().map(String::as_str));
+                let help = format!("its columns: {}", names.join(", "));
+                Err(missing(format!("has no column \"{name}\"{guess}")).help(help))
+            }
+            [first, second, ..] => Err(missing(format!("has more than one column \"{name}\"")).help(format!(
+                "give the number of the column: {} or {}",
+                first + 1,
+                second + 1
+            ))),
+        }
     }
-}
-
-/// The number in a cell.
-fn number(cell: &str) -> Option<f64> {
-    cell.parse().ok()
 }
 
 #[cfg(test)]

@@ -12,6 +12,23 @@ const HOLD_OVERSHOOT: f64 = 5e-4;
 /// Number of equal intervals that make a hold. Shorter ones come from the resolution of an instrument.
 const HOLD: usize = 4;
 
+/// How the samples of a table become those of a run: x · `scale` at the times t · `time_factor` + `offset`.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct SampleScaling {
+    /// Factor on the values, –.
+    pub scale: f64,
+    /// Factor on the times, –; positive.
+    pub time_factor: f64,
+    /// Time added to the times, s.
+    pub offset: f64,
+}
+
+impl Default for SampleScaling {
+    fn default() -> Self {
+        Self { scale: 1.0, time_factor: 1.0, offset: 0.0 }
+    }
+}
+
 /// A quantity sampled at increasing times.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct TimeSeries {
@@ -79,8 +96,8 @@ impl TimeSeries {
 
     /// Value and rate at time `t` (s) of the smooth curve through the samples, both continuous. The curve is a cubic
     /// Hermite spline. Its slope at a sample is that of the parabola through the sample and its neighbours, limited
-    /// where the record is not dense so that the curve stays between its samples (Hyman 1983). Outside the span the
-    /// curve has the end value, at rest.
+    /// where the record is not dense so that the curve stays between its samples @hyman1983. Outside the span the curve
+    /// has the end value, at rest.
     pub(crate) fn value_and_rate(&self, t: f64) -> (f64, f64) {
         let (first, last) = self.span();
         if t <= first || t >= last {
@@ -116,13 +133,13 @@ impl TimeSeries {
         Self { t: self.t.iter().map(|t| t + by).collect(), ..self.clone() }
     }
 
-    /// The values times `scale` at the times `time_factor` · t + `offset` (s).
+    /// The same samples in the scale and on the clock of a run.
     ///
     /// # Errors
-    /// As [`TimeSeries::new`], as for a factor that is not positive.
-    pub(crate) fn transformed(&self, scale: f64, time_factor: f64, offset: f64) -> Result<Self> {
-        let times: Vec<f64> = self.t.iter().map(|t| t * time_factor + offset).collect();
-        Self::new(times, self.x.iter().map(|x| x * scale).collect::<Vec<f64>>())
+    /// As [`TimeSeries::new`], as for a time factor that is not positive.
+    pub(crate) fn scaled(&self, by: &SampleScaling) -> Result<Self> {
+        let times: Vec<f64> = self.t.iter().map(|t| t * by.time_factor + by.offset).collect();
+        Self::new(times, self.x.iter().map(|x| x * by.scale).collect::<Vec<f64>>())
     }
 
     /// The same with `offset` taken off every value.
@@ -180,7 +197,7 @@ impl TimeSeries {
     ///
     /// It is the slope of the parabola through the sample and its neighbours. If the record is not dense there, the
     /// slope lies between zero and three times that of each adjacent interval. This is sufficient for a monotone curve
-    /// (Fritsch and Carlson 1980), and the slope is zero where the record turns. A dense record keeps the parabola,
+    /// @fritsch1980, and the slope is zero where the record turns. A dense record keeps the parabola,
     /// except where it holds a value: there the curve leaves the value by [`HOLD_OVERSHOOT`] at most.
     fn slope(&self, i: usize) -> f64 {
         let last = self.t.len() - 1;

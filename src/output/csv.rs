@@ -169,8 +169,8 @@ impl SeriesTable {
     /// `File` if it cannot be read.
     pub fn read(path: &Path) -> Result<Self> {
         let table = TableReader::open(path)?;
-        let columns = table.header().iter().skip(1).cloned().collect();
-        let mut values = table.all_columns()?.into_iter();
+        let columns = table.column_names().into_iter().skip(1).collect();
+        let mut values = table.all_columns().into_iter();
         Ok(Self { columns, times: values.next().unwrap_or_default(), values: values.collect() })
     }
 

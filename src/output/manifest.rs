@@ -67,6 +67,9 @@ pub struct Manifest {
     pub fault: Option<serde_json::Value>,
     /// Warnings at the start of the run.
     pub warnings: Vec<String>,
+    /// Notes on the layout and the span of the tables that the scene names.
+    #[serde(default)]
+    pub notes: Vec<String>,
     /// The computer that executed the run.
     pub machine: Machine,
     /// Scene keys that were changed for this run, and their values.

@@ -1,8 +1,10 @@
 //! Builds a scene: opens the files that it names, makes shapes and poses, fills the water.
 
+use std::cell::RefCell;
+
 use super::{
     Scene,
-    context::Context,
+    context::{Context, FileNote},
     section::{
         analysis::ProbeSeries,
         model::require_depth,
@@ -43,6 +45,8 @@ pub struct BuiltScene<const D: usize> {
     pub removed_by_water: usize,
     /// The water at rest.
     pub still_water: StillWaterLevel,
+    /// The notes on the files that the scene names.
+    pub file_notes: Vec<FileNote>,
 }
 
 /// The data that a drawing of a scene needs: the solids, the model and the still water level.
@@ -92,14 +96,15 @@ impl Scene {
             return Err(Error::new(ErrorKind::Usage, format!("this scene is {}-D, not {D}-D", self.dimension)));
         }
         let (scene, _) = self.with_defaults()?;
-        let ctx = &scene.context();
-        let water = scene.water_bodies::<D>()?;
+        let notes = RefCell::default();
+        let ctx = &Context { notes: Some(&notes), ..scene.context() };
+        let water = scene.water_bodies::<D>(ctx)?;
         let still = StillWaterLevel::of(&water);
         let model = scene.model.build(ctx, &scene.time, &still)?;
         scene.model.require_stable_lattice::<D>(ctx, &model)?;
         require_depth(ctx, &still, &model)?;
-        let solids = scene.solids::<D>(&StillWater::of(&water))?;
-        let constraints = scene.constraints(&solids)?;
+        let solids = scene.solids::<D>(ctx, &StillWater::of(&water))?;
+        let constraints = scene.constraints(ctx, &solids)?;
         let domain = scene.domain.as_ref().map(|d| Bounds { min: vector(&d.min), max: vector(&d.max) });
         if let Some(domain) = &domain {
             require_inside_domain(ctx, domain, &water, &solids)?;
@@ -120,7 +125,7 @@ impl Scene {
         if filled.r.is_empty() {
             return Err(no_water_error(ctx, &water, &solids));
         }
-        let plan = scene.resolved_plan(&still)?;
+        let plan = scene.resolved_plan(ctx, &still)?;
         // The packing algorithm can move a particle slightly out of its body of water.
         let nearest = |x: &Vector<D>| water.iter().min_by(|a, b| a.distance(x).total_cmp(&b.distance(x)));
         let level = |x: &Vector<D>| nearest(x).map_or(still.level, |body| body.level);
@@ -152,6 +157,7 @@ impl Scene {
             removed_by_solids: filled.removed_in_solids,
             removed_by_water: filled.removed_in_regions,
             still_water: still,
+            file_notes: notes.into_inner(),
         })
     }
 
@@ -161,10 +167,11 @@ impl Scene {
     /// The same errors as [`Scene::build`].
     pub fn layout<const D: usize>(&self) -> Result<SceneLayout<D>> {
         let (scene, _) = self.with_defaults()?;
-        let water = scene.water_bodies::<D>()?;
+        let ctx = &scene.context();
+        let water = scene.water_bodies::<D>(ctx)?;
         let still = StillWaterLevel::of(&water);
-        let model = scene.model.build(&scene.context(), &scene.time, &still)?;
-        Ok(SceneLayout { solids: scene.solids::<D>(&StillWater::of(&water))?, model, still_water: still })
+        let model = scene.model.build(ctx, &scene.time, &still)?;
+        Ok(SceneLayout { solids: scene.solids::<D>(ctx, &StillWater::of(&water))?, model, still_water: still })
     }
 
     /// Returns the probes, files, checks and statistics of a run without creating particles.
@@ -173,7 +180,7 @@ impl Scene {
     /// `Scene` if the scene is wrong, or a table that a check names is missing or wrong.
     pub fn plan(&self) -> Result<Plan> {
         let (scene, _) = self.with_defaults()?;
-        scene.resolved_plan(&scene.still_water()?)
+        scene.resolved_plan(&scene.context(), &scene.still_water()?)
     }
 
     /// Returns the estimated size of a run of this scene.
@@ -190,9 +197,9 @@ impl Scene {
 
     fn estimate<const D: usize>(&self) -> Result<SizeEstimate> {
         let ctx = &self.context();
-        let water = self.water_bodies::<D>()?;
+        let water = self.water_bodies::<D>(ctx)?;
         let model = self.model.build(ctx, &self.time, &StillWaterLevel::of(&water))?;
-        let solids = self.solids::<D>(&StillWater::of(&water))?;
+        let solids = self.solids::<D>(ctx, &StillWater::of(&water))?;
         require_affordable(ctx, &water, &solids)?;
         let (fluid, boundary) = estimated_counts(ctx, &water, &solids);
         let dt = (model.cfl * model.h / model.c0).min(model.dt_max);
@@ -204,7 +211,8 @@ impl Scene {
     /// built.
     pub(super) fn water_particles(&self) -> f64 {
         fn count<const D: usize>(scene: &Scene) -> Result<f64> {
-            Ok(estimated_counts::<D>(&scene.context(), &scene.water_bodies()?, &[]).0)
+            let ctx = &scene.context();
+            Ok(estimated_counts::<D>(ctx, &scene.water_bodies(ctx)?, &[]).0)
         }
         let counted = if self.dimension == 2 { count::<2>(self) } else { count::<3>(self) };
         counted.unwrap_or(0.0)
@@ -213,25 +221,22 @@ impl Scene {
     /// The water at rest.
     pub(super) fn still_water(&self) -> Result<StillWaterLevel> {
         Ok(match self.dimension {
-            2 => StillWaterLevel::of(&self.water_bodies::<2>()?),
-            _ => StillWaterLevel::of(&self.water_bodies::<3>()?),
+            2 => StillWaterLevel::of(&self.water_bodies::<2>(&self.context())?),
+            _ => StillWaterLevel::of(&self.water_bodies::<3>(&self.context())?),
         })
     }
 
-    fn water_bodies<const D: usize>(&self) -> Result<Vec<WaterBody<D>>> {
-        let ctx = &self.context();
+    fn water_bodies<const D: usize>(&self, ctx: &Context) -> Result<Vec<WaterBody<D>>> {
         self.water.iter().enumerate().map(|(i, water)| water.build(ctx, &format!("water.{i}"))).collect()
     }
 
     /// Returns the solids. Drafts are measured from the level of the water `pool`.
-    fn solids<const D: usize>(&self, pool: &StillWater<D>) -> Result<Vec<SolidSpec<D>>> {
-        let ctx = &self.context();
+    fn solids<const D: usize>(&self, ctx: &Context, pool: &StillWater<D>) -> Result<Vec<SolidSpec<D>>> {
         self.solid.iter().enumerate().map(|(i, solid)| solid.build(ctx, &format!("solid.{i}"), pool)).collect()
     }
 
     /// Returns the joints, force elements and contact rules of `solids`, which must be in the order of the scene.
-    fn constraints<const D: usize>(&self, solids: &[SolidSpec<D>]) -> Result<Constraints<D>> {
-        let ctx = &self.context();
+    fn constraints<const D: usize>(&self, ctx: &Context, solids: &[SolidSpec<D>]) -> Result<Constraints<D>> {
         let number = |name: &String| self.solid.iter().position(|solid| solid.name == *name);
         let mut constraints = Constraints::default();
         for (i, joint) in self.joint.iter().enumerate() {
@@ -268,8 +273,7 @@ impl Scene {
     }
 
     /// Returns the plan of a run. The defaults of the scene must be filled in.
-    fn resolved_plan(&self, still: &StillWaterLevel) -> Result<Plan> {
-        let ctx = &self.context();
+    fn resolved_plan(&self, ctx: &Context, still: &StillWaterLevel) -> Result<Plan> {
         let series = ProbeSeries { probes: &self.probe, names: &self.probe_names() };
         let statistics = self.statistic.iter().enumerate();
         let checkpoint = self.checkpoint.clone().unwrap_or_default();

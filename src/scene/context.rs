@@ -1,7 +1,7 @@
 //! The properties of a scene that the validation and construction of its sections use. The file also defines errors
 //! with their location and the record of the defaults.
 
-use std::{collections::BTreeMap, path::Path};
+use std::{cell::RefCell, collections::BTreeMap, path::Path};
 
 use super::{
     diagnostics,
@@ -24,12 +24,41 @@ pub(crate) struct Context<'a> {
     pub(crate) gravity: Option<&'a [f64]>,
     /// Reference density, kg/m³; `None` if the scene does not give it.
     pub(crate) rho0: Option<f64>,
+    /// The notes on files, if they are collected.
+    pub(super) notes: Option<&'a RefCell<Vec<FileNote>>>,
+}
+
+/// A property of a file that a scene names: its layout, or a probable mistake in its use.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FileNote {
+    /// Whether the results are probably not the intended ones.
+    pub is_warning: bool,
+    /// Identifier of its kind, for programs.
+    pub topic: &'static str,
+    /// The property, as one sentence.
+    pub what: String,
+    /// The remedy.
+    pub remedy: String,
 }
 
 impl Context<'_> {
     /// Returns the folder of the files that the scene names.
     pub(crate) fn folder(&self) -> &Path {
         &self.origin.folder
+    }
+
+    /// Keeps a note, once.
+    pub(super) fn add_note(&self, note: FileNote) {
+        if let Some(mut notes) = self.notes.map(RefCell::borrow_mut)
+            && !notes.contains(&note)
+        {
+            notes.push(note);
+        }
+    }
+
+    /// Returns `key` with the names of solids, for messages.
+    pub(super) fn shown_key(&self, key: &str) -> String {
+        self.origin.key_with_names(key)
     }
 
     /// Returns the number of layers of boundary particles within the kernel radius.

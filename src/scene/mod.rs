@@ -15,6 +15,7 @@ mod diagnostics;
 pub(crate) mod files;
 mod mesh;
 mod overrides;
+mod record;
 mod resolve;
 mod schema;
 mod svg;
@@ -56,6 +57,7 @@ pub use {
     crate::probe::ProbeConfig,
     build::BuiltScene,
     bundled::{BundledScene, bundled_scenes},
+    context::FileNote,
     schema::schema,
     section::contact::ContactConfig,
     section::force_element::{ForceConfig, RopeConfig, SpringConfig},
@@ -73,7 +75,7 @@ pub use {
 // Parts of the configuration that the constructors of the types above fill in.
 #[doc(hidden)]
 pub use {
-    crate::math::{BoxConfig, NumberOrArray},
+    crate::math::{BoxConfig, NumberOrArray, table::ColumnName},
     crate::plan::{Align, CheckPlan, FramesPlan, Plan, Reference, Score, StatisticKind, StatisticPlan},
     crate::probe::{GaugeConfig, GaugeSurface, PatchConfig, PointRowConfig, PointsConfig, ProbePlan, SectionConfig},
     build::SceneLayout,

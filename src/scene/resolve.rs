@@ -50,6 +50,7 @@ impl Scene {
             until: self.until,
             gravity: self.gravity.as_deref(),
             rho0: self.model.rho0,
+            notes: None,
         }
     }
 

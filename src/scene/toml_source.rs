@@ -66,7 +66,8 @@ impl fmt::Display for RenamedName {
 }
 
 /// Old names of keys: their section, empty at the top level, the old key, the new one.
-const RENAMED_KEYS: [(&str, &str, &str); 2] = [("", "scatter", "jitter"), ("solid", "skin", "contact_skin")];
+const RENAMED_KEYS: [(&str, &str, &str); 3] =
+    [("", "scatter", "jitter"), ("solid", "skin", "contact_skin"), ("check", "delay", "offset")];
 
 /// Old names of values: the key, the old value, the new one.
 const RENAMED_VALUES: [(&str, &str, &str); 1] = [("model.walls", "settling", "relaxed_adami")];

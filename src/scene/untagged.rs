@@ -9,12 +9,12 @@ use serde::{
 };
 
 use super::{
-    context::{Context, Defaults},
-    files,
+    context::{Context, Defaults, quoted_list, set_keys},
+    files, record,
 };
 use crate::{
     error,
-    math::{expression::Formula, time_series::TimeSeries},
+    math::{expression::Formula, table::ColumnName, time_series::SampleScaling},
     solid::TimeFunction,
 };
 
@@ -235,20 +235,34 @@ pub struct TimeFunctionConfig {
     /// A table, beside the scene.
     pub file: Option<String>,
     /// Its column of values.
-    pub column: Option<String>,
+    pub column: Option<ColumnName>,
     /// Its column of times, s.
-    pub time: Option<String>,
+    pub time: Option<ColumnName>,
     /// Factor on the values of the table, –.
     pub scale: Option<f64>,
+    /// Factor on the times of the table, –.
+    pub time_factor: Option<f64>,
+    /// Time added to the times of the table, s.
+    pub offset: Option<f64>,
 }
 
 impl TimeFunctionConfig {
     /// Refuses a law that is not either a formula or a column of a file.
     pub(crate) fn verify(&self, ctx: &Context, key: &str) -> error::Result<()> {
+        let of_file = set_keys([
+            ("column", self.column.is_some()),
+            ("time", self.time.is_some()),
+            ("scale", self.scale.is_some()),
+            ("time_factor", self.time_factor.is_some()),
+            ("offset", self.offset.is_some()),
+        ]);
         match (&self.formula, &self.file) {
-            (Some(_), None) if self.column.is_none() && self.scale.is_none() && self.time.is_none() => Ok(()),
-            (Some(_), None) => Err(ctx.error_at(key, "column, time and scale belong to a file, not to a formula")),
-            (None, Some(_)) if self.column.is_some() => Ok(()),
+            (Some(_), None) if of_file.is_empty() => Ok(()),
+            (Some(_), None) => {
+                let what = format!("{} belong to a file, not to a formula", quoted_list(&of_file));
+                Err(ctx.error_at(key, what))
+            }
+            (None, Some(_)) if self.column.is_some() => record::verify_scaling(ctx, key, self.given_scaling()),
             (None, Some(_)) => Err(ctx.error_at(key, "which column of the file?")),
             _ => Err(ctx.error_at(key, "a law is either a formula or a file with a column")),
         }
@@ -259,7 +273,14 @@ impl TimeFunctionConfig {
         if self.file.is_some() {
             defaults.fill(format!("{key}.time"), &mut self.time, "t_s".into(), "the name our own tables have");
             defaults.fill(format!("{key}.scale"), &mut self.scale, 1.0, "as in the table");
+            defaults.fill(format!("{key}.time_factor"), &mut self.time_factor, 1.0, "as in the table");
+            defaults.fill(format!("{key}.offset"), &mut self.offset, 0.0, "the clocks agree");
         }
+    }
+
+    /// The scaling as far as it is given.
+    fn given_scaling(&self) -> [Option<f64>; 3] {
+        [self.scale, self.time_factor, self.offset]
     }
 
     /// The law, with the values in SI units.
@@ -274,15 +295,19 @@ impl TimeFunctionConfig {
                 CoordinateUnit::Si | CoordinateUnit::Radians => formula,
             }));
         }
-        let file = self.file.as_deref().unwrap_or("");
+        let (Some(file), Some(column)) = (&self.file, &self.column) else {
+            return Err(ctx.error_at(key, "a law is either a formula or a file with a column"));
+        };
         let table = files::open_table(ctx.folder(), file).map_err(|e| place("file", e))?;
-        let column = self.column.as_deref().unwrap_or("");
-        let time = self.time.as_deref().unwrap_or("");
-        let series = table.series(time, column).map_err(|e| place("column", files::with_line_in_message(e)))?;
-        let degrees = unit == CoordinateUnit::Degrees || (unit == CoordinateUnit::Radians && column.ends_with("_deg"));
-        let factor = self.scale.unwrap_or(1.0) * if degrees { 1f64.to_radians() } else { 1.0 };
-        let values: Vec<f64> = series.values().iter().map(|x| x * factor).collect();
-        TimeSeries::new(series.times(), values).map(TimeFunction::Table).map_err(|e| place("scale", e))
+        let scaling = record::scaling(self.given_scaling());
+        let time = self.time.clone().unwrap_or_else(|| "t_s".into());
+        let mut record = record::Record { ctx, key, file, table, time, column: column.clone(), scaling };
+        let factor = record.angle_factor(unit).map_err(|e| place("column", e))?;
+        let series = record.read().map_err(|e| place("column", files::with_line_in_message(e)))?;
+        record.note_span(&series, record::Outside::Holds);
+        // The order of the factors keeps the bits of a law without time factor and offset.
+        let by = SampleScaling { scale: scaling.scale * factor, ..scaling };
+        series.scaled(&by).map(TimeFunction::Table).map_err(|e| place("scale", e))
     }
 }
 

@@ -8,12 +8,13 @@ use serde::{Deserialize, Serialize};
 use super::water::StillWaterLevel;
 use crate::{
     error::{Error, ErrorCode, Result, suggestion},
-    math::expression::Formula,
+    math::{expression::Formula, table::ColumnName},
     plan::{Align, CheckPlan, Reference, Score, StatisticKind, StatisticPlan},
     probe::ProbeConfig,
     scene::{
         context::{Context, Defaults, quoted_list, set_keys},
         files,
+        record::{self, Record},
     },
 };
 
@@ -27,11 +28,15 @@ pub struct CheckConfig {
     /// The reference table, beside the scene.
     pub reference: Option<String>,
     /// Its column of values.
-    pub column: Option<String>,
+    pub column: Option<ColumnName>,
     /// Its column of times, s.
-    pub time: Option<String>,
-    /// Time added to the reference's, s.
-    pub delay: Option<f64>,
+    pub time: Option<ColumnName>,
+    /// Factor on its values, –.
+    pub scale: Option<f64>,
+    /// Factor on its times, –.
+    pub time_factor: Option<f64>,
+    /// Time added to its times, s.
+    pub offset: Option<f64>,
     /// The reference as a formula in the run's time t (s), in place of a table.
     pub formula: Option<String>,
     /// First time of the run that counts, s.
@@ -146,7 +151,9 @@ impl CheckConfig {
     pub(crate) fn fill(&mut self, defaults: &mut Defaults, key: &str) {
         if self.formula.is_none() {
             defaults.fill(format!("{key}.time"), &mut self.time, "t_s".into(), "the name our own tables have");
-            defaults.fill(format!("{key}.delay"), &mut self.delay, 0.0, "the clocks agree");
+            defaults.fill(format!("{key}.scale"), &mut self.scale, 1.0, "as in the table");
+            defaults.fill(format!("{key}.time_factor"), &mut self.time_factor, 1.0, "as in the table");
+            defaults.fill(format!("{key}.offset"), &mut self.offset, 0.0, "the clocks agree");
         }
     }
 
@@ -156,7 +163,9 @@ impl CheckConfig {
             ("reference", self.reference.is_some()),
             ("column", self.column.is_some()),
             ("time", self.time.is_some()),
-            ("delay", self.delay.is_some()),
+            ("scale", self.scale.is_some()),
+            ("time_factor", self.time_factor.is_some()),
+            ("offset", self.offset.is_some()),
         ];
         match &self.formula {
             Some(text) => {
@@ -173,7 +182,7 @@ impl CheckConfig {
                     let what = format!("\"{word}\" is missing: a check needs something to be held against");
                     Err(ctx.error_at(&format!("{key}.{word}"), what))
                 }
-                None => Ok(()),
+                None => record::verify_scaling(ctx, key, [self.scale, self.time_factor, self.offset]),
             },
         }
     }
@@ -232,10 +241,14 @@ impl CheckConfig {
             Some(text) => Reference::Formula(text.clone()),
             None => {
                 let file = self.reference.clone().unwrap_or_default();
-                let (time, column) = (self.time.clone().unwrap_or_default(), self.column.clone().unwrap_or_default());
-                files::open_table(ctx.folder(), &file).and_then(|table| table.series(&time, &column)).map_err(place)?;
-                let delay = self.delay.unwrap_or_default();
-                Reference::Table { file: Path::new(&file).to_path_buf(), time, column, delay }
+                let time = self.time.clone().unwrap_or_else(|| "t_s".into());
+                let column = self.column.clone().unwrap_or_default();
+                let scaling = record::scaling([self.scale, self.time_factor, self.offset]);
+                let table = files::open_table(ctx.folder(), &file).map_err(place)?;
+                let mut record =
+                    Record { ctx, key, file: &file, table, time: time.clone(), column: column.clone(), scaling };
+                record.read().and_then(|series| series.scaled(&scaling)).map_err(place)?;
+                Reference::Table { file: Path::new(&file).to_path_buf(), time, column, scaling }
             }
         };
         Ok(CheckPlan {

@@ -18,7 +18,7 @@ use crate::{
         context::{Context, Defaults, last_part},
         untagged::{CoordinateUnit, TimeValueConfig},
     },
-    solid::{FreeMode, JointKind, JointSpec, Motor},
+    solid::{FreeMode, JointKind, JointSpec, Motor, TimeFunction},
 };
 
 /// A section `[[joint]]`.
@@ -424,6 +424,13 @@ impl MotorConfig {
                 _ => CoordinateUnit::Si,
             };
             let law = value.0.build(ctx, &format!("{key}.{word}"), unit)?;
+            if matches!(word, "stiffness" | "damping")
+                && let TimeFunction::Table(series) = &law
+                && let Some(x) = series.values().iter().find(|x| **x < 0.0)
+            {
+                let what = format!("{word} is {x} in the table: below 0 it would drive what it should hold");
+                return Err(ctx.error_at(&format!("{key}.{word}"), what));
+            }
             match word {
                 "force" | "torque" => motor.force = law,
                 "position" | "position_deg" => motor.position = law,

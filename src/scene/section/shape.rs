@@ -6,12 +6,12 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    error::Result,
+    error::{Error, Result},
     geometry::{ContactGeometry, Shape},
-    math::{Bounds, Pose, Vector},
+    math::{Bounds, Pose, Vector, table},
     scene::{
         context::{Context, Defaults, last_part, quoted_list, set_keys},
-        files, mesh, svg,
+        files, mesh, record, svg,
         untagged::{DraftChoice, LengthUnit, PolylineConfig},
     },
 };
@@ -360,7 +360,17 @@ fn points<const D: usize>(ctx: &Context, config: &PolylineConfig) -> Result<Vec<
         let points = svg::outline(&path, config.id.as_deref(), unit, CURVE_TOLERANCE * ctx.dp)?;
         return Ok(points.iter().map(|p| vector(p)).collect());
     }
-    let [x, y] = files::open_table(ctx.folder(), file)?.columns(["x_m", "y_m"]).map_err(files::with_line_in_message)?;
+    let mut table = files::open_table(ctx.folder(), file)?;
+    let names = table.point_columns();
+    let [x, y] = table.columns(names.clone()).map_err(files::with_line_in_message)?;
+    for name in names {
+        let unit = table.unit(&name)?.filter(|unit| table::si_factor(unit).is_some());
+        if let Some(unit) = unit {
+            let what = format!("column \"{name}\" of {file} is in {unit}, and points are in m");
+            return Err(Error::scene(what).help("write a table with columns x_m and y_m, in metres"));
+        }
+    }
+    record::note_layout(ctx, "shape", file, &table);
     Ok(x.into_iter().zip(y).map(|(x, y)| vector(&[x, y])).collect())
 }
 

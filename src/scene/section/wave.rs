@@ -10,7 +10,11 @@ use serde::{
 
 use crate::{
     error::{ErrorCode, Result},
-    scene::context::{Context, Defaults, quoted_list, set_keys},
+    math::table::ColumnName,
+    scene::{
+        context::{Context, Defaults, quoted_list, set_keys},
+        record,
+    },
     wavemaker::{COMPONENTS_DEFAULT, SolitaryTheory},
 };
 
@@ -122,15 +126,18 @@ pub struct MeasuredElevationConfig {
     /// The table, beside the scene.
     pub file: String,
     /// Its column of elevations, m.
-    pub column: String,
+    pub column: ColumnName,
     /// Its column of times, s.
-    pub time: Option<String>,
+    pub time: Option<ColumnName>,
     /// Factor on the elevations, –.
     pub scale: Option<f64>,
+    /// Factor on its times, –.
+    pub time_factor: Option<f64>,
     /// Where it was measured: distance from the paddle's face at rest, m.
     pub distance: Option<f64>,
-    /// Added to its times, s.
-    pub delay: Option<f64>,
+    /// Time added to its times, s.
+    #[serde(alias = "delay")]
+    pub offset: Option<f64>,
 }
 
 /// Whether a paddle absorbs: `true`, or how.
@@ -270,7 +277,8 @@ impl WaveConfig {
             defaults.fill(format!("{key}.time"), &mut config.time, "t_s".into(), "the name our own tables have");
             defaults.fill(format!("{key}.scale"), &mut config.scale, 1.0, "as in the table");
             defaults.fill(format!("{key}.distance"), &mut config.distance, 0.0, "measured at the paddle");
-            defaults.fill(format!("{key}.delay"), &mut config.delay, 0.0, "the clocks agree");
+            defaults.fill(format!("{key}.time_factor"), &mut config.time_factor, 1.0, "as in the table");
+            defaults.fill(format!("{key}.offset"), &mut config.offset, 0.0, "the clocks agree");
         }
     }
 
@@ -331,8 +339,23 @@ impl WaveConfig {
             numbers.extend([("crest", Some(config.crest)), ("peak_period", Some(config.peak_period))]);
             numbers.extend([("distance", Some(config.distance)), ("time", Some(config.time)), ("gamma", config.gamma)]);
         }
+        if let Some(config) = &self.elevation {
+            record::verify_scaling(ctx, key, config.given_scaling())?;
+            if let Some(x) = config.distance.filter(|x| !x.is_finite()) {
+                return Err(
+                    ctx.error_at(&format!("{key}.distance"), format!("distance is a number of metres, not {x}"))
+                );
+            }
+        }
         numbers.extend(self.solitary.iter().map(|config| ("height", Some(config.height))));
         numbers.into_iter().try_for_each(|(word, x)| ctx.require_positive(&format!("{key}.{word}"), x))
+    }
+}
+
+impl MeasuredElevationConfig {
+    /// The scaling of the table as far as it is given.
+    pub(crate) fn given_scaling(&self) -> [Option<f64>; 3] {
+        [self.scale, self.time_factor, self.offset]
     }
 }
 

@@ -13,8 +13,15 @@ use super::{
 use crate::{
     error::{Error, Result},
     geometry::Shape,
-    math::{Bivector, Bounds, Pose, Vector, time_series::TimeSeries},
-    scene::{context::Context, files},
+    math::{
+        Bivector, Bounds, Pose, Vector,
+        time_series::{SampleScaling, TimeSeries},
+    },
+    scene::{
+        context::Context,
+        files,
+        record::{self, Outside, Record},
+    },
     solid::{PrescribedMotion, TimeFunction},
     wavemaker::{Absorber, AbsorptionSettings, Paddle, PaddleMotion, WaveComponent, WaveSpectrum, Wavemaker},
 };
@@ -215,12 +222,13 @@ fn wave_from_config(ctx: &Context, key: &str, config: &WaveConfig, maker: &Wavem
             made.map_err(place("solitary.height"))?
         }
         WaveConfig { components: Some(config), .. } => {
-            let components = read_components(ctx, config).map_err(place("components.file"))?;
+            let components =
+                read_components(ctx, &format!("{key}.components"), config).map_err(place("components.file"))?;
             maker.components(&components).map_err(place("components"))?
         }
         WaveConfig { elevation: Some(config), .. } => {
-            let series = read_elevation(ctx, config).map_err(place("elevation.column"))?;
-            let (distance, delay) = (config.distance.unwrap_or_default(), config.delay.unwrap_or_default());
+            let series = read_elevation(ctx, &format!("{key}.elevation"), config).map_err(place("elevation.column"))?;
+            let (distance, delay) = (config.distance.unwrap_or_default(), config.offset.unwrap_or_default());
             maker.measured(&series, distance, delay).map_err(place("elevation"))?
         }
         _ => zero_wave(ctx, key, config.absorb.and_then(AbsorbChoice::settings), maker)?,
@@ -232,9 +240,9 @@ fn wave_from_config(ctx: &Context, key: &str, config: &WaveConfig, maker: &Wavem
 }
 
 /// The components of a table.
-fn read_components(ctx: &Context, config: &WaveComponentsConfig) -> Result<Vec<WaveComponent>> {
-    let table = files::open_table(ctx.folder(), &config.file)?;
-    let (file, names) = (table.file().to_string(), table.header());
+fn read_components(ctx: &Context, key: &str, config: &WaveComponentsConfig) -> Result<Vec<WaveComponent>> {
+    let mut table = files::open_table(ctx.folder(), &config.file)?;
+    let (file, names) = (table.file().to_string(), table.header().to_vec());
     let either = |one: &'static str, other: &'static str| {
         let given = [(one, true), (other, false)].into_iter().find(|(column, _)| names.iter().any(|n| n == column));
         given.ok_or_else(|| {
@@ -246,6 +254,7 @@ fn read_components(ctx: &Context, config: &WaveComponentsConfig) -> Result<Vec<W
     let (phase, in_degrees) = either("phase_deg", "phase_rad")?;
     let [amplitudes, times, phases] =
         table.columns(["amplitude_m", time, phase]).map_err(files::with_line_in_message)?;
+    record::note_layout(ctx, key, &config.file, &table);
     let component = |i: usize| {
         let (x, phase) = (times[i], phases[i]);
         if x <= 0.0 {
@@ -259,13 +268,15 @@ fn read_components(ctx: &Context, config: &WaveComponentsConfig) -> Result<Vec<W
     (0..times.len()).map(component).collect()
 }
 
-/// The elevation of a table.
-fn read_elevation(ctx: &Context, config: &MeasuredElevationConfig) -> Result<TimeSeries> {
+/// The elevation of a table, without its offset.
+fn read_elevation(ctx: &Context, key: &str, config: &MeasuredElevationConfig) -> Result<TimeSeries> {
     let table = files::open_table(ctx.folder(), &config.file)?;
-    let series =
-        table.series(config.time.as_deref().unwrap_or("t_s"), &config.column).map_err(files::with_line_in_message)?;
-    let scale = config.scale.unwrap_or(1.0);
-    TimeSeries::new(series.times(), series.values().iter().map(|x| x * scale).collect::<Vec<f64>>())
+    let scaling = record::scaling(config.given_scaling());
+    let (time, column) = (config.time.clone().unwrap_or_else(|| "t_s".into()), config.column.clone());
+    let mut record = Record { ctx, key, file: &config.file, table, time, column, scaling };
+    let series = record.read().map_err(files::with_line_in_message)?;
+    record.note_span(&series, Outside::Waves);
+    series.scaled(&SampleScaling { offset: 0.0, ..scaling })
 }
 
 /// An irregular sea of this spectrum.

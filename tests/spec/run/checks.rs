@@ -8,7 +8,7 @@ use pontoon::{
         format_verdicts, max_abs, relative_l2,
     },
     error::{ErrorKind, Result},
-    math::time_series::TimeSeries,
+    math::time_series::{SampleScaling, TimeSeries},
     run::{self, Progress, RunOptions},
     scene::Scene,
 };
@@ -30,8 +30,9 @@ fn bound(n: f64) -> Option<Score> {
 
 /// A check of `series` against `column` over `time` of `reference.csv`.
 fn by_table(series: &str, [time, column]: [&str; 2], delay: f64, bound: Option<Score>) -> CheckPlan {
-    let (time, column) = (time.to_string(), column.to_string());
-    check(series, Reference::Table { file: "reference.csv".into(), time, column, delay }, bound)
+    let (time, column) = (time.into(), column.into());
+    let scaling = SampleScaling { offset: delay, ..SampleScaling::default() };
+    check(series, Reference::Table { file: "reference.csv".into(), time, column, scaling }, bound)
 }
 
 /// A check of `series` against a formula.

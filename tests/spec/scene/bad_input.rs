@@ -259,7 +259,7 @@ proptest! {
         let folder = TestFolder::new("bad-input-table");
         let path = folder.join("table.csv");
         std::fs::write(&path, format!("t_s,x_m\n{text}")).unwrap();
-        if let Ok(series) = TableReader::open(&path).and_then(|table| table.series("t_s", "x_m")) {
+        if let Ok(series) = TableReader::open(&path).and_then(|mut table| table.series("t_s", "x_m")) {
             prop_assert!(series.values().iter().all(|x| x.is_finite()));
         }
     }

@@ -4,5 +4,6 @@ mod bad_input;
 mod bundled_scenes;
 mod errors;
 mod preflight;
+mod records;
 mod reference;
 mod schema;

@@ -1,0 +1,196 @@
+//! Records: columns of tables as laws and references of a run, with notes on their layout, units and span.
+
+use super::{
+    context::{Context, FileNote},
+    untagged::CoordinateUnit,
+};
+use crate::{
+    error::Result,
+    math::{
+        table::{self, ColumnName, TableReader},
+        time_series::{SampleScaling, TimeSeries},
+    },
+};
+
+/// A record of which so many times the duration of the run lies outside the run is probably not in seconds.
+const MUCH_LONGER: f64 = 20.0;
+
+/// Units of time, which do not occur in columns of values. `v_ms` is a speed.
+const TIME_UNITS: [&str; 5] = ["ms", "msec", "us", "µs", "min"];
+
+/// The law outside the span of its record.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Outside {
+    /// It holds the end values.
+    Holds,
+    /// It repeats the waves of the record before the span, and is at rest after it.
+    Waves,
+}
+
+/// A column of a table that a run uses.
+pub(super) struct Record<'a> {
+    pub(super) ctx: &'a Context<'a>,
+    /// The key of the scene with the file.
+    pub(super) key: &'a str,
+    /// Name of the file.
+    pub(super) file: &'a str,
+    pub(super) table: TableReader,
+    pub(super) time: ColumnName,
+    pub(super) column: ColumnName,
+    pub(super) scaling: SampleScaling,
+}
+
+/// Returns the scaling with these values of `scale`, `time_factor` and `offset`.
+pub(super) fn scaling([scale, time_factor, offset]: [Option<f64>; 3]) -> SampleScaling {
+    let usual = SampleScaling::default();
+    SampleScaling {
+        scale: scale.unwrap_or(usual.scale),
+        time_factor: time_factor.unwrap_or(usual.time_factor),
+        offset: offset.unwrap_or(usual.offset),
+    }
+}
+
+/// Refuses a scale of zero or infinity, a time factor that is not positive and an infinite offset.
+pub(super) fn verify_scaling(ctx: &Context, key: &str, [scale, factor, offset]: [Option<f64>; 3]) -> Result<()> {
+    ctx.require_positive(&format!("{key}.time_factor"), factor)?;
+    if let Some(scale) = scale.filter(|x| !x.is_finite() || *x == 0.0) {
+        let what = format!("scale is a factor other than 0, not {scale}");
+        return Err(ctx.error_with_help(&format!("{key}.scale"), what, "write  scale = 1.0, or remove the law"));
+    }
+    match offset.filter(|x| !x.is_finite()) {
+        Some(offset) => Err(ctx.error_at(&format!("{key}.offset"), format!("offset is a time, s, not {offset}"))),
+        None => Ok(()),
+    }
+}
+
+/// Adds the note that the table at `key` was not read as a table with commas, decimal points and a header.
+pub(super) fn note_layout(ctx: &Context, key: &str, file: &str, table: &TableReader) {
+    let Some(remark) = table.remark() else { return };
+    ctx.add_note(FileNote {
+        is_warning: false,
+        topic: "table_layout",
+        what: format!("{file} ({}) is read so: {remark}", ctx.shown_key(key)),
+        remedy: "a table with commas, decimal points and the names in its first line needs no such note".into(),
+    });
+}
+
+impl Record<'_> {
+    /// Returns the samples of the table in its own scale and on its own clock. Adds notes on layout and units.
+    ///
+    /// # Errors
+    /// The errors of [`TableReader::series`].
+    pub(super) fn read(&mut self) -> Result<TimeSeries> {
+        let time = self.table.time_column(&self.time, &self.column);
+        let series = self.table.series(time.clone(), self.column.clone())?;
+        note_layout(self.ctx, self.key, self.file, &self.table);
+        let unit = self.table.unit(time.clone())?;
+        if self.scaling.time_factor == 1.0 {
+            let factor = unit.as_deref().filter(|unit| TIME_UNITS.contains(unit)).and_then(table::si_factor);
+            self.note_unit(&time, unit.as_deref(), factor, "time_factor");
+        }
+        let unit = self.table.unit(self.column.clone())?;
+        if self.scaling.scale == 1.0 {
+            let factor = unit.as_deref().filter(|unit| !TIME_UNITS.contains(unit)).and_then(table::si_factor);
+            self.note_unit(&self.column, unit.as_deref(), factor, "scale");
+        }
+        Ok(series)
+    }
+
+    /// Returns the factor from the values of the column to radians, if they are angles: columns in degrees are known by
+    /// their names, or by the row of units. Adds a note if the unit contradicts the law.
+    ///
+    /// # Errors
+    /// `Scene` if there is no such column.
+    pub(super) fn angle_factor(&self, law: CoordinateUnit) -> Result<f64> {
+        let unit = self.table.unit(self.column.clone())?;
+        let degrees = unit.as_deref().is_some_and(table::is_degree);
+        let contradicts = match law {
+            CoordinateUnit::Degrees => unit.as_deref() == Some("rad"),
+            CoordinateUnit::Si => degrees,
+            CoordinateUnit::Radians => false,
+        };
+        if contradicts && self.scaling.scale == 1.0 {
+            let factor = if degrees { 1f64.to_radians() } else { 1f64.to_degrees() };
+            self.note_unit(&self.column, unit.as_deref(), Some(factor), "scale");
+        }
+        let turned = law == CoordinateUnit::Degrees || (law == CoordinateUnit::Radians && degrees);
+        Ok(if turned { 1f64.to_radians() } else { 1.0 })
+    }
+
+    /// Adds the warning that a column is in `unit`, of which `factor` is the size in the unit of the run.
+    fn note_unit(&self, column: &ColumnName, unit: Option<&str>, factor: Option<f64>, key: &str) {
+        if let (Some(unit), Some(factor)) = (unit, factor) {
+            self.ctx.add_note(FileNote {
+                is_warning: true,
+                topic: "record_unit",
+                what: format!(
+                    "column \"{column}\" of {} ({}) is in {unit}, and is used as if in another unit",
+                    self.file,
+                    self.ctx.shown_key(self.key)
+                ),
+                remedy: format!("write  {key} = {factor}  beside the column"),
+            });
+        }
+    }
+
+    /// Adds a note if the record, with the samples `series` on its own clock, does not cover the run.
+    pub(super) fn note_span(&self, series: &TimeSeries, outside: Outside) {
+        let SampleScaling { scale, time_factor, offset } = self.scaling;
+        let until = self.ctx.until;
+        let times = series.times();
+        let on_run = |t: f64| t * time_factor + offset;
+        let (first, last) = (on_run(times[0]), on_run(times[times.len() - 1]));
+        let round_off = 1e-9 * until.max(first.abs()).max(last.abs());
+        let values = series.values();
+        let (begin, end) = (values[0] * scale, values[values.len() - 1] * scale);
+        let holds = outside == Outside::Holds;
+        let late = (first > round_off).then(|| match holds {
+            true => format!("begins after the run starts and holds its first value, {begin}, until then"),
+            false => "begins after the run starts, with waves of its periodic continuation until then".into(),
+        });
+        let early = (last < until - round_off).then(|| match holds {
+            true => format!("ends within the run and holds its last value, {end}, from then on"),
+            false => "ends within the run, and the paddle rests from then on".into(),
+        });
+        let apart = first >= until - round_off || last <= round_off;
+        let long = last - first > MUCH_LONGER * until
+            && times.iter().filter(|t| (0.0..=until).contains(&on_run(**t))).count() < 3;
+        let start = format!("write  offset = {}  to begin the record with the run", rounded(offset - first));
+        let milliseconds = format!("if its times are in ms, write  time_factor = {}", 1e-3 * time_factor);
+        let (what, remedy) = match (late, early) {
+            _ if apart && holds => {
+                let value = if first > 0.0 { begin } else { end };
+                (format!("has no time in common with the run, which has its value {value} throughout"), start)
+            }
+            _ if apart => ("has no time in common with the run".into(), start),
+            _ if long => ("has fewer than three samples within the run".into(), milliseconds.clone()),
+            (Some(late), Some(early)) => (format!("{late}; it {early}"), start),
+            (Some(late), None) => (late, start),
+            (None, Some(early)) => {
+                (early, format!("end the run with  until = {}, or lengthen the record", rounded(last)))
+            }
+            (None, None) => return,
+        };
+        let remedy =
+            if apart && last - first > MUCH_LONGER * until { format!("{remedy}; {milliseconds}") } else { remedy };
+        self.ctx.add_note(FileNote {
+            is_warning: apart,
+            topic: "record_span",
+            what: format!(
+                "record {}, column \"{}\" ({}), from {} to {} s of a run from 0 to {until} s, {what}",
+                self.file,
+                self.column,
+                self.ctx.shown_key(self.key),
+                rounded(first),
+                rounded(last),
+            ),
+            remedy,
+        });
+    }
+}
+
+/// Returns a time (s) without the round-off of sums.
+fn rounded(t: f64) -> f64 {
+    let unit = 1e9;
+    if t.abs() < 1e5 { (t * unit).round() / unit + 0.0 } else { t }
+}

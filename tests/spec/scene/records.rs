@@ -1,0 +1,211 @@
+//! Records: laws from tables stay between their samples, on the clock of the run, and notes name what a table is taken for.
+
+use std::{fs, path::Path};
+
+use pontoon::{
+    output::SeriesTable,
+    preflight::{Preflight, Severity},
+    run::{self, InspectOptions, Progress, RunOptions},
+    scene::{BuiltScene, Scene},
+    solid::Role,
+};
+
+use crate::common::TestFolder;
+
+/// A tank that a law moves; `LAW` stands for the law.
+const SCENE: &str = "dimension = 2\ndp = 0.05\nuntil = 2.0\nframes = \"off\"\n\
+    [[water]]\nfill = { box = { min = [0.0, 0.0], max = [0.6, 0.2] } }\n\
+    [[solid]]\nname = \"tank\"\nshape = { tank = { size = [0.6, 0.4] } }\n\
+    driven = { along = [1.0, 0.0], distance = LAW }\n\
+    [domain]\nmin = [-4.0, -4.0]\nmax = [5.0, 5.0]\n[[probe]]\nmotion = \"tank\"\nevery = 0.01\n";
+
+/// Samples of a smooth way of 0.02 m and back, every 0.1 s from `start`.
+fn samples(start: f64, count: i32) -> impl Iterator<Item = (f64, f64)> {
+    (0..count).map(move |i| (start + 0.1 * f64::from(i), 0.01 * (1.0 - (0.314 * f64::from(i)).cos())))
+}
+
+/// A folder with a scene of this law and the file `record.csv`.
+fn folder(name: &str, law: &str, record: impl AsRef<[u8]>) -> TestFolder {
+    let folder = TestFolder::new(&format!("records-{name}"));
+    fs::write(folder.join("scene.toml"), SCENE.replace("LAW", law)).unwrap();
+    fs::write(folder.join("record.csv"), record).unwrap();
+    folder
+}
+
+fn inspected(folder: &Path) -> pontoon::Result<Preflight> {
+    let options = InspectOptions { threads: Some(1), ..InspectOptions::default() };
+    Ok(run::inspect(&folder.join("scene.toml"), &options)?.preflight)
+}
+
+/// Findings of the kinds that concern records: severity, topic, text with its remedy.
+fn findings(folder: &Path) -> Vec<(Severity, &'static str, String)> {
+    let found = inspected(folder).unwrap_or_else(|e| panic!("{e}")).findings.into_iter();
+    let of_record = found.filter(|f| matches!(f.topic, "table_layout" | "record_span" | "record_unit"));
+    of_record.map(|f| (f.severity, f.topic, format!("{}\n{}", f.what, f.mend))).collect()
+}
+
+/// The displacement of the driven tank at time `t` (s).
+fn displacement(folder: &Path, t: f64) -> f64 {
+    let BuiltScene { setup, .. } = Scene::read(folder, &[]).unwrap().build::<2>().unwrap();
+    let tank = &setup.solids[0];
+    let Role::Driven(motion) = &tank.role else { panic!("the tank is driven") };
+    motion.kinematics(&tank.pose, t).pose.point(&pontoon::math::Vector::from([0.0, 0.0]))[0]
+        - tank.pose.point(&pontoon::math::Vector::from([0.0, 0.0]))[0]
+}
+
+#[test]
+fn a_gate_of_four_points_moves_between_its_points_in_a_run() -> pontoon::Result<()> {
+    let folder =
+        folder("gate", "{ file = \"record.csv\", column = \"y_m\" }", "t_s,y_m\n0,0\n0.1,0\n0.3,0.5\n10,0.5\n");
+    let sets = [("until", "0.5")].map(|(key, value)| (key.to_string(), value.to_string()));
+    let options = RunOptions { out: Some(folder.join("out")), overrides: sets.to_vec(), threads: Some(1) };
+    run::run(&folder.join("scene.toml"), &options, &mut |_: &Progress| true)?;
+    let table = SeriesTable::read(&folder.join("out/series/tank.csv"))?;
+    let way = &table.values[table.columns.iter().position(|name| name == "surge_m").unwrap()];
+    // The reading differs from the law by round-off only: the motion is prescribed.
+    assert!(way.iter().all(|x| (-1e-9..=0.5 + 1e-9).contains(x)), "from {:?} to {:?}", way.first(), way.last());
+    assert!(way.last().is_some_and(|x| (x - 0.5).abs() < 1e-9));
+    Ok(())
+}
+
+#[test]
+fn a_force_and_a_motor_of_a_table_stay_between_their_samples() {
+    let folder = TestFolder::new("records-gust");
+    let text = SCENE.replace("distance = LAW", "distance = { formula = \"0\" }")
+        + "[[solid]]\nname = \"box\"\nshape = { box = { size = [0.2, 0.1] } }\nat = { x = 0.3, draft = \"equilibrium\" }\nfree = { density = 500.0 }\n\
+           [[force]]\nname = \"gust\"\non = \"box\"\nforce = [{ file = \"record.csv\", column = 2 }, 0.0]\ntorque = { file = \"record.csv\", column = 2, scale = -2.0, time_factor = 0.5, offset = 1.0 }\n";
+    fs::write(folder.join("scene.toml"), text).unwrap();
+    fs::write(folder.join("record.csv"), "0,0\n1,0\n1.1,10\n1.5,0\n20,0\n").unwrap();
+    let BuiltScene { setup, .. } = Scene::read(&folder, &[]).unwrap().build::<2>().unwrap();
+    let gust = &setup.constraints.forces[0];
+    for i in 0..=2000 {
+        let t = 0.001 * f64::from(i);
+        let (force, torque) = (gust.force[0].value_and_rate(t).0, gust.torque[0].value_and_rate(0.5 * t + 1.0).0);
+        assert!((-1e-12..=10.0 + 1e-12).contains(&force), "{force} N at {t} s");
+        assert!((torque + 2.0 * force).abs() < 1e-9, "{torque} N m at {t} s");
+    }
+}
+
+#[test]
+fn a_note_gives_the_spans_of_record_and_run_and_the_remedy_removes_it() {
+    let rows = |start: f64, count: i32| -> String {
+        std::iter::once("t_s,x_m\n".into())
+            .chain(samples(start, count).map(|(t, x)| format!("{t:.2},{x:.6}\n")))
+            .collect()
+    };
+    let law = |more: &str| format!("{{ file = \"record.csv\", column = \"x_m\"{more} }}");
+    let cases = [
+        (
+            "late",
+            rows(12.5, 31),
+            Severity::Warning,
+            "from 12.5 to 15.5 s of a run from 0 to 2 s, has no time in common",
+            "offset = -12.5",
+            ", offset = -12.5",
+        ),
+        (
+            "short",
+            rows(0.0, 11),
+            Severity::Note,
+            "from 0 to 1 s of a run from 0 to 2 s, ends within the run and holds its last value, 0.02",
+            "until = 1",
+            ", time_factor = 2.0",
+        ),
+        (
+            "middle",
+            rows(0.5, 31),
+            Severity::Note,
+            "begins after the run starts and holds its first value, 0",
+            "offset = -0.5",
+            ", offset = -0.5",
+        ),
+        ("past", rows(-5.0, 31), Severity::Warning, "from -5 to -2 s", "offset = 5", ", offset = 5.0"),
+    ];
+    for (name, record, severity, what, remedy, more) in cases {
+        let with_fault = findings(&folder(name, &law(""), &record));
+        let [(found, "record_span", text)] = &with_fault[..] else { panic!("{name}: {with_fault:?}") };
+        assert!(*found == severity && text.contains(what) && text.contains(remedy), "{name}: {text}");
+        assert!(text.contains("record.csv") && text.contains("solid.tank.driven.distance"), "{name}: {text}");
+        assert_eq!(findings(&folder(name, &law(more), &record)), [], "{name} with {more}");
+    }
+    let milliseconds: String = std::iter::once("t_s,x_m\n".into())
+        .chain(samples(0.0, 31).map(|(t, x)| format!("{:.0},{x:.6}\n", 1000.0 * t)))
+        .collect();
+    let found = findings(&folder("ms", &law(""), &milliseconds));
+    assert!(found.len() == 1 && found[0].2.contains("time_factor = 0.001"), "{found:?}");
+    assert_eq!(findings(&folder("ms", &law(", time_factor = 0.001"), &milliseconds)), []);
+}
+
+#[test]
+fn scale_time_factor_and_offset_move_the_samples_exactly() {
+    let record = "t_ms,x_mm\n0,0\n500,0\n1000,20\n2000,20\n";
+    let law = "{ file = \"record.csv\", column = \"x_mm\", scale = 0.001, time_factor = 0.001, offset = 0.25 }";
+    let folder = folder("scaled", law, record);
+    // Samples at 0.25, 0.75, 1.25 and 2.25 s; 20 mm are 0.02 m.
+    for (t, x) in [(0.0, 0.0), (0.75, 0.0), (1.25, 0.02), (2.0, 0.02)] {
+        assert!((displacement(&folder, t) - x).abs() < 1e-12, "{} at {t} s", displacement(&folder, t));
+    }
+    let found = findings(&folder);
+    assert!(found.iter().all(|(_, topic, _)| *topic != "record_unit"), "{found:?}");
+}
+
+#[test]
+fn a_run_and_an_inspection_note_the_layout_of_a_table_and_its_units() -> pontoon::Result<()> {
+    let rows: String = samples(0.0, 31).map(|(t, x)| format!("{t:.2};{x:.6}\n").replace('.', ",")).collect();
+    let folder = folder("layout", "{ file = \"record.csv\", column = 2 }", rows);
+    let found = findings(&folder);
+    let [(Severity::Note, "table_layout", text)] = &found[..] else { panic!("{found:?}") };
+    for part in [
+        "record.csv (solid.tank.driven.distance)",
+        "separator semicolon",
+        "decimal commas",
+        "no row of names",
+        "times from column 1",
+    ] {
+        assert!(text.contains(part), "{part}: {text}");
+    }
+    let sets = [("until", "0.02")].map(|(key, value)| (key.to_string(), value.to_string()));
+    let options = RunOptions { out: Some(folder.join("out")), overrides: sets.to_vec(), threads: Some(1) };
+    let notes = run::run(&folder.join("scene.toml"), &options, &mut |_: &Progress| true)?.manifest.notes;
+    assert!(notes.len() == 1 && notes[0].contains("separator semicolon"), "{notes:?}");
+    let rows: String = samples(0.0, 31).map(|(t, x)| format!("{t:.2},{:.3}\n", 1000.0 * x)).collect();
+    let folder = self::folder("unit", "{ file = \"record.csv\", column = \"x_mm\" }", format!("t_s,x_mm\n{rows}"));
+    let found = findings(&folder);
+    assert!(
+        matches!(&found[..], [(Severity::Warning, "record_unit", text)] if text.contains("is in mm") && text.contains("scale = 0.001")),
+        "{found:?}"
+    );
+    Ok(())
+}
+
+#[test]
+fn laws_checks_and_points_of_other_layouts_are_read_and_wrong_keys_are_refused() {
+    let folder = TestFolder::new("records-all");
+    let text = SCENE.replace("distance = LAW", "distance = { file = \"record.csv\", column = \"Weg\" }")
+        + "[[solid]]\nname = \"wedge\"\nfixed = true\nshape = { polygon = { file = \"points.txt\" } }\n\
+           [[check]]\nseries = \"tank.surge_m\"\nreference = \"record.csv\"\ncolumn = \"Weg\"\noffset = 0.1\nscale = 1.0\n";
+    fs::write(folder.join("scene.toml"), &text).unwrap();
+    let rows: String = samples(0.0, 31).map(|(t, x)| format!("{t:.2}\t{x:.6}\r\n").replace('.', ",")).collect();
+    let utf16: Vec<u8> = format!("\u{feff}Zeit\tWeg\r\n{rows}").encode_utf16().flat_map(u16::to_le_bytes).collect();
+    fs::write(folder.join("record.csv"), utf16).unwrap();
+    fs::write(folder.join("points.txt"), "0.2 0.0\n0.4 0.0\n0.4 0.1\n").unwrap();
+    let BuiltScene { file_notes, .. } = Scene::read(&folder, &[]).unwrap().build::<2>().unwrap();
+    let topics: Vec<&str> = file_notes.iter().map(|note| note.topic).collect();
+    assert_eq!(topics, ["table_layout"; 3], "{file_notes:?}");
+    let refused = |law: &str| {
+        Scene::parse(&SCENE.replace("LAW", law), &folder, &[])
+            .and_then(|s| s.build::<2>().map(|_| ()))
+            .unwrap_err()
+            .to_string()
+    };
+    for (law, part) in [
+        ("{ formula = \"t\", offset = 1.0, time_factor = 2.0 }", "time_factor and offset belong to a file"),
+        ("{ file = \"record.csv\", column = \"Weg\", time_factor = -1.0 }", "time_factor must be a positive number"),
+        ("{ file = \"record.csv\", column = \"Weg\", scale = 0.0 }", "scale is a factor other than 0"),
+        ("{ file = \"record.csv\", column = 0 }", "columns are counted from 1"),
+        ("{ file = \"record.csv\", column = 3 }", "has no column 3"),
+        ("{ file = \"record.csv\", column = \"weg\" }", "did you mean \"Weg\"?"),
+    ] {
+        assert!(refused(law).contains(part), "{law}: {}", refused(law));
+    }
+}
