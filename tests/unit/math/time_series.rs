@@ -79,6 +79,27 @@ fn a_dense_ramp_leaves_the_values_that_it_holds_by_less_than_a_thousandth() {
 }
 
 #[test]
+fn no_record_leaves_its_samples_by_more_than_a_hundredth_of_its_range() {
+    // A generator of Lehmer (1951): walks of small and large steps at uneven times.
+    let mut state: u64 = 1;
+    let mut random = || {
+        state = state * 48_271 % 2_147_483_647;
+        state as f64 / 2_147_483_647.0
+    };
+    for _ in 0..300 {
+        let (mut t, mut x, mut v, rough) = (vec![0.0], vec![0.0], 0.0, random());
+        for i in 0..40 {
+            v += (random() - 0.5) * rough;
+            t.push(t[i] + 0.01 + random().powi(8));
+            x.push(if random() < 0.2 { x[i] } else { x[i] + v });
+        }
+        let record = TimeSeries::new(t, x).unwrap();
+        // Both ends of an interval: 2 · 4/27 · 1/32.
+        assert!(overshoot(&record) <= 0.0093 * record.range, "{record:?}: {}", overshoot(&record) / record.range);
+    }
+}
+
+#[test]
 fn value_and_rate_are_continuous_and_the_rate_is_the_derivative() {
     let record = series([(0.0, 0.0), (0.1, 0.0), (0.3, 0.5), (0.5, 0.9), (0.6, 0.2), (10.0, 0.5)]);
     let near = 1e-9;
