@@ -32,7 +32,7 @@ pub(crate) use sound_speed::{SoundSpeed, StepSizeLimits};
 use crate::{
     error::Error,
     plan::Plan,
-    scene::{RenamedName, StillWaterLevel},
+    scene::{FileNote, RenamedName, StillWaterLevel},
     simulation::Simulation,
     solid::{Role, Solid},
     system::System,
@@ -77,6 +77,12 @@ impl Finding {
     /// Creates the finding that the scene writes a key or a value with a former name.
     pub(crate) fn renamed_name(name: &RenamedName) -> Self {
         Self::note("old_name", name.to_string(), format!("write  {}", name.new))
+    }
+
+    /// Creates the finding of a note about a file that the scene names.
+    fn file_note(note: &FileNote) -> Self {
+        let severity = if note.is_warning { Severity::Warning } else { Severity::Note };
+        Self { severity, topic: note.topic, what: note.what.clone(), mend: note.mend.clone() }
     }
 
     /// Creates the finding that the timing stopped with `error` after `steps` steps.
@@ -131,6 +137,13 @@ impl Preflight {
             }
         }
         brief
+    }
+
+    /// Returns the pre-flight with findings about the files that the scene names.
+    pub(crate) fn with_file_notes(mut self, notes: &[FileNote]) -> Self {
+        self.findings.extend(notes.iter().map(Finding::file_note));
+        self.findings.sort_by_key(|f| f.severity);
+        self
     }
 
     /// Returns the warnings that a run prints at its start.

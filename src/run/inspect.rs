@@ -137,13 +137,14 @@ where
     Dim<D>: Dimension<D>,
 {
     let values: Vec<ValueInForce> = scene.resolve()?.into_iter().map(ValueInForce::from).collect();
-    let BuiltScene { setup, plan, removed_by_solids, still_water, .. } = scene.build::<D>()?;
+    let BuiltScene { setup, plan, removed_by_solids, still_water, file_notes, .. } = scene.build::<D>()?;
     // The timing reports the first alarm; a run would return to an earlier state instead.
     let mut sim = Simulation::new(setup).map_err(|e| scene.with_location(e))?.without_rollback();
     let probes = probe_factory::probes_from_plan(&plan, &mut sim)?;
     probe_factory::checks_from_plan(&plan, &probes)?;
     let columns: Vec<usize> = probes.iter().map(|p| p.columns().len()).collect();
-    let mut preflight = preflight::preflight(&sim, &plan, still_water, removed_by_solids, &columns);
+    let preflight = preflight::preflight(&sim, &plan, still_water, removed_by_solids, &columns);
+    let mut preflight = preflight.with_file_notes(&file_notes);
     preflight.findings.extend(scene.renamed_names().iter().map(Finding::renamed_name));
     let solids = sim.system().solids().iter().map(|s| SolidSummary {
         name: s.spec.name.clone(),

@@ -59,12 +59,13 @@ where
     /// Builds the scene and, once all is known to be right, makes the run's folder or opens it again.
     pub(crate) fn new(scene: &Scene, origin: RunOrigin) -> Result<Self> {
         let (begun, begun_cpu) = (Instant::now(), ProcessorTime::now());
-        let BuiltScene { setup, plan, removed_by_solids, still_water, .. } = scene.build::<D>()?;
+        let BuiltScene { setup, plan, removed_by_solids, still_water, file_notes, .. } = scene.build::<D>()?;
         let mut sim = Simulation::new(setup).map_err(|e| scene.with_location(e))?;
         let probes = probe_factory::probes_from_plan(&plan, &mut sim)?;
         let checks = probe_factory::checks_from_plan(&plan, &probes)?;
         let columns: Vec<usize> = probes.iter().map(|p| p.columns().len()).collect();
-        let mut warnings = preflight::preflight(&sim, &plan, still_water, removed_by_solids, &columns).warnings();
+        let preflight = preflight::preflight(&sim, &plan, still_water, removed_by_solids, &columns);
+        let mut warnings = preflight.with_file_notes(&file_notes).warnings();
         let text = scene.to_toml()?;
         let values = scene.resolve()?.into_iter().map(ValueInForce::from).collect();
         let (folder, mut checkpoint, resumed, warning, lock) = match origin {

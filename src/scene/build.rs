@@ -2,7 +2,7 @@
 
 use super::{
     Scene,
-    context::Context,
+    context::{Context, FileNote},
     section::{
         analysis::ProbeSeries,
         model::require_depth,
@@ -41,6 +41,8 @@ pub struct BuiltScene<const D: usize> {
     pub removed_by_solids: usize,
     /// Number of lattice points without a new particle because they lie in an earlier body of water.
     pub removed_by_water: usize,
+    /// Notes about the files that the scene names.
+    pub(crate) file_notes: Vec<FileNote>,
     /// The water at rest.
     pub still_water: StillWaterLevel,
 }
@@ -93,12 +95,13 @@ impl Scene {
         }
         let (scene, _) = self.with_defaults()?;
         let ctx = &scene.context();
-        let water = scene.water_bodies::<D>()?;
+        let water = scene.water_bodies::<D>(ctx)?;
         let still = StillWaterLevel::of(&water);
         let model = scene.model.build(ctx, &scene.time, &still)?;
         scene.model.require_stable_lattice::<D>(ctx, &model)?;
         require_depth(ctx, &still, &model)?;
-        let solids = scene.solids::<D>(&StillWater::of(&water))?;
+        let solids = scene.solids::<D>(ctx, &StillWater::of(&water))?;
+        self.require_plausible_units(ctx, &water, &solids)?;
         let constraints = scene.constraints(&solids)?;
         let domain = scene.domain.as_ref().map(|d| Bounds { min: vector(&d.min), max: vector(&d.max) });
         if let Some(domain) = &domain {
@@ -151,6 +154,7 @@ impl Scene {
             plan,
             removed_by_solids: filled.removed_in_solids,
             removed_by_water: filled.removed_in_regions,
+            file_notes: ctx.file_notes.take(),
             still_water: still,
         })
     }
@@ -161,10 +165,11 @@ impl Scene {
     /// The same errors as [`Scene::build`].
     pub fn layout<const D: usize>(&self) -> Result<SceneLayout<D>> {
         let (scene, _) = self.with_defaults()?;
-        let water = scene.water_bodies::<D>()?;
+        let ctx = &scene.context();
+        let water = scene.water_bodies::<D>(ctx)?;
         let still = StillWaterLevel::of(&water);
-        let model = scene.model.build(&scene.context(), &scene.time, &still)?;
-        Ok(SceneLayout { solids: scene.solids::<D>(&StillWater::of(&water))?, model, still_water: still })
+        let model = scene.model.build(ctx, &scene.time, &still)?;
+        Ok(SceneLayout { solids: scene.solids::<D>(ctx, &StillWater::of(&water))?, model, still_water: still })
     }
 
     /// Returns the probes, files, checks and statistics of a run without creating particles.
@@ -190,9 +195,9 @@ impl Scene {
 
     fn estimate<const D: usize>(&self) -> Result<SizeEstimate> {
         let ctx = &self.context();
-        let water = self.water_bodies::<D>()?;
+        let water = self.water_bodies::<D>(ctx)?;
         let model = self.model.build(ctx, &self.time, &StillWaterLevel::of(&water))?;
-        let solids = self.solids::<D>(&StillWater::of(&water))?;
+        let solids = self.solids::<D>(ctx, &StillWater::of(&water))?;
         require_affordable(ctx, &water, &solids)?;
         let (fluid, boundary) = estimated_counts(ctx, &water, &solids);
         let dt = (model.cfl * model.h / model.c0).min(model.dt_max);
@@ -204,7 +209,8 @@ impl Scene {
     /// built.
     pub(super) fn water_particles(&self) -> f64 {
         fn count<const D: usize>(scene: &Scene) -> Result<f64> {
-            Ok(estimated_counts::<D>(&scene.context(), &scene.water_bodies()?, &[]).0)
+            let ctx = &scene.context();
+            Ok(estimated_counts::<D>(ctx, &scene.water_bodies(ctx)?, &[]).0)
         }
         let counted = if self.dimension == 2 { count::<2>(self) } else { count::<3>(self) };
         counted.unwrap_or(0.0)
@@ -212,20 +218,19 @@ impl Scene {
 
     /// The water at rest.
     pub(super) fn still_water(&self) -> Result<StillWaterLevel> {
+        let ctx = &self.context();
         Ok(match self.dimension {
-            2 => StillWaterLevel::of(&self.water_bodies::<2>()?),
-            _ => StillWaterLevel::of(&self.water_bodies::<3>()?),
+            2 => StillWaterLevel::of(&self.water_bodies::<2>(ctx)?),
+            _ => StillWaterLevel::of(&self.water_bodies::<3>(ctx)?),
         })
     }
 
-    fn water_bodies<const D: usize>(&self) -> Result<Vec<WaterBody<D>>> {
-        let ctx = &self.context();
+    fn water_bodies<const D: usize>(&self, ctx: &Context) -> Result<Vec<WaterBody<D>>> {
         self.water.iter().enumerate().map(|(i, water)| water.build(ctx, &format!("water.{i}"))).collect()
     }
 
     /// Returns the solids. Drafts are measured from the level of the water `pool`.
-    fn solids<const D: usize>(&self, pool: &StillWater<D>) -> Result<Vec<SolidSpec<D>>> {
-        let ctx = &self.context();
+    fn solids<const D: usize>(&self, ctx: &Context, pool: &StillWater<D>) -> Result<Vec<SolidSpec<D>>> {
         self.solid.iter().enumerate().map(|(i, solid)| solid.build(ctx, &format!("solid.{i}"), pool)).collect()
     }
 

@@ -1,7 +1,7 @@
 //! The properties of a scene that the validation and construction of its sections use. The file also defines errors
 //! with their location and the record of the defaults.
 
-use std::{collections::BTreeMap, path::Path};
+use std::{cell::RefCell, collections::BTreeMap, path::Path};
 
 use super::{
     diagnostics,
@@ -24,12 +24,49 @@ pub(crate) struct Context<'a> {
     pub(crate) gravity: Option<&'a [f64]>,
     /// Reference density, kg/m³; `None` if the scene does not give it.
     pub(crate) rho0: Option<f64>,
+    /// Notes about the files that were read with this context.
+    pub(super) file_notes: RefCell<Vec<FileNote>>,
+}
+
+/// A property of a file that the scene names: an assumption of its reading, or a probable fault.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct FileNote {
+    /// Whether the results are affected.
+    pub(crate) is_warning: bool,
+    /// Identifier of its kind, for programs.
+    pub(crate) topic: &'static str,
+    /// Description, as one sentence that begins with the name of the file.
+    pub(crate) what: String,
+    /// The correction.
+    pub(crate) mend: String,
+}
+
+impl FileNote {
+    /// Creates a note about an assumption.
+    pub(crate) fn note(topic: &'static str, what: String, mend: String) -> Self {
+        Self { is_warning: false, topic, what, mend }
+    }
+
+    /// Creates a note about a probable fault.
+    pub(crate) fn warning(topic: &'static str, what: String, mend: String) -> Self {
+        Self { is_warning: true, topic, what, mend }
+    }
 }
 
 impl Context<'_> {
     /// Returns the folder of the files that the scene names.
     pub(crate) fn folder(&self) -> &Path {
         &self.origin.folder
+    }
+
+    /// Records notes about a file. The same note is recorded once.
+    pub(crate) fn add_file_notes(&self, notes: Vec<FileNote>) {
+        let mut all = self.file_notes.borrow_mut();
+        for note in notes {
+            if !all.contains(&note) {
+                all.push(note);
+            }
+        }
     }
 
     /// Returns the number of layers of boundary particles within the kernel radius.
