@@ -1,7 +1,7 @@
 //! Completes a surface that is not closed: the mirror image of a half, a cap on open edges, a plate around a sheet.
 
 use super::{
-    surface::{Surface, sorted_edges},
+    surface::{Surface, counted, sorted_edges},
     welding::format_position,
 };
 use crate::{
@@ -42,7 +42,7 @@ pub(super) fn mirror(surface: &mut Surface, axis: usize, notes: &mut Vec<String>
         }
     }
     if moved > 0 {
-        notes.push(format!("{moved} corners are moved into the plane {name} = 0, by {farthest:.1e} m at most"));
+        notes.push(format!("{} moved into the plane {name} = 0, by {farthest:.1e} m at most", counted(moved, "corner is", "corners are")));
     }
     let bounds = surface.bounds();
     if bounds.min[axis] < 0.0 && bounds.max[axis] > 0.0 {

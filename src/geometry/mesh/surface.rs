@@ -118,7 +118,8 @@ impl Surface {
         let mut told = Vec::new();
         if count > 0 {
             told.push(format!(
-                "{count} corners are joined to others within {tolerance:.1e} m, which is {JOINED:.0e} of the size"
+                "{} joined to others within {tolerance:.1e} m, which is {JOINED:.0e} of the size",
+                counted(count, "corner is", "corners are")
             ));
         }
         told.extend(near.remove_doubled_facets());
@@ -127,7 +128,7 @@ impl Surface {
             let (apart, count) = self.join(tolerance, true);
             if apart.is_closed() {
                 if count > 0 {
-                    notes.push(format!("{count} corners of the same part are joined within {tolerance:.1e} m"));
+                    notes.push(format!("{} joined to others of its part within {tolerance:.1e} m", counted(count, "corner is", "corners are")));
                 }
                 return apart;
             }
@@ -214,7 +215,7 @@ impl Surface {
         }
         let mut sentences = Vec::new();
         if equal > 0 {
-            sentences.push(format!("{equal} facets repeat others; each counts once"));
+            sentences.push(format!("{} others; each counts once", counted(equal, "facet repeats", "facets repeat")));
         }
         if opposite > 0 {
             sentences.push(format!("{opposite} facets lie back to back, as walls without thickness; they are removed"));
@@ -312,6 +313,11 @@ fn reversed_facets(reversed: &[bool]) -> Option<String> {
         n if n == reversed.len() => Some("the surface is inside out; all its facets are reversed".into()),
         n => Some(format!("{n} of {} facets are inverted; they are reversed", reversed.len())),
     }
+}
+
+/// Returns a number and its noun, in the singular or plural.
+pub(super) fn counted(n: usize, one: &str, more: &str) -> String {
+    format!("{n} {}", if n == 1 { one } else { more })
 }
 
 fn has_repeated_corner([a, b, c]: &[u32; 3]) -> bool {
