@@ -1,12 +1,12 @@
 //! A solid defined by the triangles of its surface. The module validates the surface and computes its exact properties.
 
-mod shells;
+mod completion;
 #[cfg(feature = "dim3")]
-mod ray;
+mod crossings;
+mod shells;
+mod surface;
 mod tree;
 mod welding;
-
-use std::collections::HashMap;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -16,6 +16,7 @@ use crate::{
     error::{Error, Result},
     math::{Bounds, Matrix, Vector},
 };
+pub(crate) use surface::{Completion, Surface};
 use tree::FacetTree;
 
 /// Largest number of facets of a mesh: far more detail than SPH particles resolve.
@@ -63,25 +64,14 @@ impl Mesh {
     /// or partly inverted, or intersects itself, or a shell lies within a shell of the same orientation. The error
     /// contains the position (m), the number of occurrences and a remedy.
     pub fn new(points: &[Vector<3>], facets: &[[u32; 3]]) -> Result<Self> {
-        if facets.len() > MAX_FACETS {
-            return Err(Error::scene(format!("a mesh of {} facets; the most is {MAX_FACETS}", facets.len()))
-                .help("thin it out (\"decimate\"): what is finer than dp cannot be seen"));
-        }
-        if let Some(i) = points.iter().position(|p| !p.iter().all(|x| x.is_finite())) {
-            return Err(Error::scene(format!("corner {} of a mesh is not a number", i + 1))
-                .help("give finite coordinates: export the mesh again"));
-        }
-        if let Some(i) = facets.iter().position(|f| f.iter().any(|&p| p as usize >= points.len())) {
-            return Err(Error::scene(format!("facet {} of a mesh has a corner that is not there", i + 1))
-                .help(format!("corners are counted from 0, and there are {}", points.len())));
-        }
-        let (points, facets) = joined(points, facets);
-        let size = Bounds::around(&points).size().max();
-        if size > LARGEST {
-            return Err(Error::scene(format!("a mesh {size:.1e} m long; the most is {LARGEST:.0e} m"))
-                .help("in which unit is the file? Write, say,  unit = \"mm\""));
-        }
+        surface::check_input(points, facets)?;
+        let (points, facets) = surface::joined(points, facets);
         welding::check_closed(&points, &facets)?;
+        Ok(Self::checked(points, facets, 0.0)?.0)
+    }
+
+    /// Returns the solid inside a closed surface, and a sentence about crossings of a depth of at most `tolerance` (m).
+    fn checked(points: Vec<Vector<3>>, facets: Vec<[u32; 3]>, tolerance: f64) -> Result<(Self, Option<String>)> {
         let volume = moments(&points, &facets).volume;
         let bounds = Bounds::around(&points);
         if volume <= 1e-12 * bounds.size().product() {
@@ -95,11 +85,12 @@ impl Mesh {
         }
         let tree = FacetTree::new(&points, &facets)?;
         let mesh = Self { points, facets, bounds, tree };
-        mesh.tree
-            .find_crossing(&mesh)
-            .map_or(Ok(()), |(a, b)| Err(welding::crossing_error(&mesh.facet_corners(a), &mesh.facet_corners(b))))?;
+        #[cfg(feature = "dim3")]
+        let crossings = crossings::check(&mesh, tolerance)?;
+        #[cfg(not(feature = "dim3"))]
+        let crossings = (tolerance < 0.0).then(String::new);
         shells::check_orientation(&mesh.points, &mesh.facets)?;
-        Ok(mesh)
+        Ok((mesh, crossings))
     }
 
     /// Returns the corners, m.
@@ -161,23 +152,6 @@ impl std::fmt::Debug for Mesh {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
         write!(f, "Mesh of {} facets", self.facets.len())
     }
-}
-
-/// Merges corners at the same position. Returns the corners that facets use, and the facets with three distinct
-/// corners.
-fn joined(points: &[Vector<3>], facets: &[[u32; 3]]) -> (Vec<Vector<3>>, Vec<[u32; 3]>) {
-    let (mut kept, mut places) = (Vec::new(), HashMap::new());
-    let mut index = |p: u32| {
-        // −0 and 0 are the same position.
-        let x = points[p as usize].add_scalar(0.0);
-        *places.entry([x[0].to_bits(), x[1].to_bits(), x[2].to_bits()]).or_insert_with(|| {
-            kept.push(x);
-            kept.len() as u32 - 1
-        })
-    };
-    let all = facets.iter().map(|f| f.map(&mut index));
-    let facets = all.filter(|[a, b, c]| a != b && b != c && c != a).collect();
-    (kept, facets)
 }
 
 /// Returns the signed sum of the tetrahedra between the facets and the mean of all corners.

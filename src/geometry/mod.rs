@@ -17,6 +17,7 @@ pub(crate) mod overlap;
 mod packing;
 mod shell;
 mod submerged_volume;
+pub(crate) mod triangulation;
 
 use std::sync::Arc;
 

@@ -79,10 +79,10 @@ impl Finding {
         Self::note("old_name", name.to_string(), format!("write  {}", name.new))
     }
 
-    /// Creates the finding of a note on a file.
-    fn of_file(note: &FileNote) -> Self {
-        let create = if note.is_warning { Self::warning } else { Self::note };
-        create(note.topic, note.what.clone(), note.remedy.clone())
+    /// Creates the finding of a note about a file that the scene names.
+    fn file_note(note: &FileNote) -> Self {
+        let severity = if note.is_warning { Severity::Warning } else { Severity::Note };
+        Self { severity, topic: note.topic, what: note.what.clone(), mend: note.remedy.clone() }
     }
 
     /// Creates the finding that the timing stopped with `error` after `steps` steps.
@@ -139,9 +139,9 @@ impl Preflight {
         brief
     }
 
-    /// Returns the preflight with the findings of the notes on the files of the scene.
+    /// Returns the pre-flight with findings about the files that the scene names.
     pub(crate) fn with_file_notes(mut self, notes: &[FileNote]) -> Self {
-        self.findings.extend(notes.iter().map(Finding::of_file));
+        self.findings.extend(notes.iter().map(Finding::file_note));
         self.findings.sort_by_key(|f| f.severity);
         self
     }

@@ -1,6 +1,5 @@
 //! Builds a scene: opens the files that it names, makes shapes and poses, fills the water.
 
-use std::cell::RefCell;
 
 use super::{
     Scene,
@@ -43,10 +42,10 @@ pub struct BuiltScene<const D: usize> {
     pub removed_by_solids: usize,
     /// Number of lattice points without a new particle because they lie in an earlier body of water.
     pub removed_by_water: usize,
+    /// Notes about the files that the scene names.
+    pub(crate) file_notes: Vec<FileNote>,
     /// The water at rest.
     pub still_water: StillWaterLevel,
-    /// The notes on the files that the scene names.
-    pub file_notes: Vec<FileNote>,
 }
 
 /// The data that a drawing of a scene needs: the solids, the model and the still water level.
@@ -96,14 +95,14 @@ impl Scene {
             return Err(Error::new(ErrorKind::Usage, format!("this scene is {}-D, not {D}-D", self.dimension)));
         }
         let (scene, _) = self.with_defaults()?;
-        let notes = RefCell::default();
-        let ctx = &Context { notes: Some(&notes), ..scene.context() };
+        let ctx = &scene.context();
         let water = scene.water_bodies::<D>(ctx)?;
         let still = StillWaterLevel::of(&water);
         let model = scene.model.build(ctx, &scene.time, &still)?;
         scene.model.require_stable_lattice::<D>(ctx, &model)?;
         require_depth(ctx, &still, &model)?;
         let solids = scene.solids::<D>(ctx, &StillWater::of(&water))?;
+        self.require_plausible_units(ctx, &water, &solids)?;
         let constraints = scene.constraints(ctx, &solids)?;
         let domain = scene.domain.as_ref().map(|d| Bounds { min: vector(&d.min), max: vector(&d.max) });
         if let Some(domain) = &domain {
@@ -156,8 +155,8 @@ impl Scene {
             plan,
             removed_by_solids: filled.removed_in_solids,
             removed_by_water: filled.removed_in_regions,
+            file_notes: ctx.file_notes.take(),
             still_water: still,
-            file_notes: notes.into_inner(),
         })
     }
 
@@ -220,9 +219,10 @@ impl Scene {
 
     /// The water at rest.
     pub(super) fn still_water(&self) -> Result<StillWaterLevel> {
+        let ctx = &self.context();
         Ok(match self.dimension {
-            2 => StillWaterLevel::of(&self.water_bodies::<2>(&self.context())?),
-            _ => StillWaterLevel::of(&self.water_bodies::<3>(&self.context())?),
+            2 => StillWaterLevel::of(&self.water_bodies::<2>(ctx)?),
+            _ => StillWaterLevel::of(&self.water_bodies::<3>(ctx)?),
         })
     }
 

@@ -24,21 +24,33 @@ pub(crate) struct Context<'a> {
     pub(crate) gravity: Option<&'a [f64]>,
     /// Reference density, kg/m³; `None` if the scene does not give it.
     pub(crate) rho0: Option<f64>,
-    /// The notes on files, if they are collected.
-    pub(super) notes: Option<&'a RefCell<Vec<FileNote>>>,
+    /// Notes about the files that were read with this context.
+    pub(super) file_notes: RefCell<Vec<FileNote>>,
 }
 
-/// A property of a file that a scene names: its layout, or a probable mistake in its use.
+/// A property of a file that the scene names: an assumption of its reading, or a probable fault.
 #[derive(Clone, Debug, PartialEq)]
-pub struct FileNote {
-    /// Whether the results are probably not the intended ones.
-    pub is_warning: bool,
+pub(crate) struct FileNote {
+    /// Whether the results are affected.
+    pub(crate) is_warning: bool,
     /// Identifier of its kind, for programs.
-    pub topic: &'static str,
-    /// The property, as one sentence.
-    pub what: String,
+    pub(crate) topic: &'static str,
+    /// Description, as one sentence that begins with the name of the file.
+    pub(crate) what: String,
     /// The remedy.
-    pub remedy: String,
+    pub(crate) remedy: String,
+}
+
+impl FileNote {
+    /// Creates a note about an assumption.
+    pub(crate) fn note(topic: &'static str, what: String, remedy: String) -> Self {
+        Self { is_warning: false, topic, what, remedy }
+    }
+
+    /// Creates a note about a probable fault.
+    pub(crate) fn warning(topic: &'static str, what: String, remedy: String) -> Self {
+        Self { is_warning: true, topic, what, remedy }
+    }
 }
 
 impl Context<'_> {
@@ -47,13 +59,17 @@ impl Context<'_> {
         &self.origin.folder
     }
 
-    /// Keeps a note, once.
-    pub(super) fn add_note(&self, note: FileNote) {
-        if let Some(mut notes) = self.notes.map(RefCell::borrow_mut)
-            && !notes.contains(&note)
-        {
-            notes.push(note);
+    /// Records a note about a file. The same note is recorded once.
+    pub(crate) fn add_note(&self, note: FileNote) {
+        let mut all = self.file_notes.borrow_mut();
+        if !all.contains(&note) {
+            all.push(note);
         }
+    }
+
+    /// Records notes about a file.
+    pub(crate) fn add_file_notes(&self, notes: Vec<FileNote>) {
+        notes.into_iter().for_each(|note| self.add_note(note));
     }
 
     /// Returns `key` with the names of solids, for messages.

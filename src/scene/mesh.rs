@@ -1,47 +1,120 @@
 //! Meshes beside a scene: STL, as text or binary, and OBJ, in any unit; the size limit of files.
 
-use std::{
-    fs::File,
-    io::{Cursor, Read},
-    path::Path,
-};
+mod obj;
+mod stl;
 
+use std::{fs::File, io::Read, path::Path};
+
+use super::{
+    context::FileNote,
+    file_content::{self, Text},
+};
 use crate::{
     error::{Error, Result},
-    geometry::{Mesh, mesh::MAX_FACETS},
+    geometry::{
+        Mesh,
+        mesh::{Completion, MAX_FACETS, Surface},
+    },
     math::Vector,
 };
 
 /// Size of the largest mesh or drawing, B.
 const MOST_BYTES: u64 = 64 << 20;
 
-/// Longest line of a mesh in text, B: the loaders store a whole line.
+/// Longest line of a mesh in text, B.
 const LONGEST: usize = 10_000;
 
-/// Corners, in the file's unit, and facets.
-type Facets = (Vec<Vector<3>>, Vec<[u32; 3]>);
+/// Largest shift of corners by single precision without a warning, dp.
+const MOST_SHIFT: f64 = 1e-3;
 
-/// Reads the solid in the file at `path`, whose unit is `unit` (m). `flip` reverses the facets.
+/// The interpretation of a mesh file.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct MeshOptions {
+    /// Length of the file's unit, m.
+    pub(crate) unit: f64,
+    /// Whether the facets are reversed.
+    pub(crate) flip: bool,
+    /// Completion of a surface that is not closed. The tolerance of crossings follows from dp.
+    pub(crate) completion: Completion,
+    /// Particle spacing, m.
+    pub(crate) dp: f64,
+}
+
+/// The content of a mesh file, in its own unit.
+#[derive(Default)]
+struct MeshFile {
+    surface: Surface,
+    /// Sentences about the content.
+    notes: Vec<String>,
+    /// Whether the coordinates are in single precision.
+    single: bool,
+}
+
+impl MeshFile {
+    /// Adds a facet with its own corners.
+    fn push(&mut self, path: &Path, corners: [[f64; 3]; 3], part: u32) -> Result<()> {
+        let first = self.surface.points.len() as u32;
+        self.surface.points.extend(corners.map(Vector::<3>::from));
+        self.push_indices(path, [first, first + 1, first + 2], part)
+    }
+
+    /// Adds a facet of corners that were added before.
+    fn push_indices(&mut self, path: &Path, facet: [u32; 3], part: u32) -> Result<()> {
+        if self.surface.facets.len() == MAX_FACETS {
+            let what = format!("{} has more than {MAX_FACETS} facets", path.display());
+            return Err(Error::scene(what).help("thin it out (\"decimate\"): what is finer than dp cannot be seen"));
+        }
+        self.surface.facets.push(facet);
+        self.surface.parts.push(part);
+        Ok(())
+    }
+}
+
+/// Reads the solid in the file at `path`, and notes about its content.
 ///
 /// # Errors
 /// `File` if the file cannot be read; `Scene` if the file is neither STL nor OBJ, too large, damaged, or not a solid.
-pub(crate) fn read(path: &Path, unit: f64, flip: bool) -> Result<Mesh> {
+pub(crate) fn read(path: &Path, options: &MeshOptions) -> Result<(Mesh, Vec<FileNote>)> {
     let kind = path.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
-    let load = match kind.as_str() {
-        "stl" => stl,
-        "obj" => obj,
+    let (parse, wanted): (fn(&Path, &[u8]) -> Result<MeshFile>, _) = match kind.as_str() {
+        "stl" => (stl::parse, "STL"),
+        "obj" => (obj::parse, "OBJ"),
         _ => {
             let what =
                 format!("{} is not a mesh that is known: its name ends in neither .stl nor .obj", path.display());
             return Err(Error::scene(what).help("export it as STL (text or binary) or OBJ"));
         }
     };
-    let (mut points, mut facets) = load(path, bytes(path)?)?;
-    points.iter_mut().for_each(|p| *p *= unit);
-    if flip {
-        facets.iter_mut().for_each(|f| f.swap(0, 1));
+    let bytes = bytes(path)?;
+    file_content::check(path, &bytes, wanted)?;
+    let MeshFile { mut surface, mut notes, single } = parse(path, &bytes)?;
+    surface.points.iter_mut().for_each(|p| *p *= options.unit);
+    if options.flip {
+        surface.facets.iter_mut().for_each(|f| f.swap(0, 1));
     }
-    Mesh::new(&points, &facets).map_err(|e| Error { message: format!("{}: {}", path.display(), e.message), ..e })
+    let farthest = surface.points.iter().flat_map(|p| p.iter()).fold(0.0, |most: f64, x| most.max(x.abs()));
+    let completion = Completion { crossing: MOST_SHIFT * options.dp, ..options.completion };
+    let (mesh, changes) = surface.into_solid(&completion).map_err(|e| {
+        let first = if notes.is_empty() { String::new() } else { format!("{}. ", notes.join("; ")) };
+        Error { message: format!("{}: {first}{}", path.display(), e.message), ..e }
+    })?;
+    notes.extend(changes);
+    let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
+    let compare = "compare its volume (`pontoon inspect --json`: solids, mesh) with that of the program that made it";
+    let mut notes: Vec<FileNote> =
+        notes.into_iter().map(|what| FileNote::note("mesh", format!("{name}: {what}"), compare.into())).collect();
+    // Half of the distance between neighbouring numbers of 24 bits.
+    let shift = farthest * f64::from(f32::EPSILON) / 2.0;
+    if single && shift > MOST_SHIFT * options.dp {
+        let what = format!(
+            "{name}: binary STL has single precision; so far from the origin, up to {farthest:.4e} m, its corners are off \
+             by up to {shift:.1e} m, {:.1e} dp",
+            shift / options.dp
+        );
+        let mend = "move the model to the origin before its export, or export it as text (STL or OBJ)";
+        notes.push(FileNote::warning("mesh_precision", what, mend.into()));
+    }
+    Ok((mesh, notes))
 }
 
 /// Returns the bytes of the file at `path`.
@@ -63,68 +136,30 @@ fn damaged(path: &Path, why: impl std::fmt::Display) -> Error {
     Error::scene(format!("{} cannot be read: {why}", path.display())).help("export it again; a mesh is STL or OBJ")
 }
 
-/// Returns the error that the mesh has too many facets, without their number.
-fn too_many(path: &Path) -> Error {
-    Error::scene(format!("{} has more than {MAX_FACETS} facets", path.display()))
-        .help("thin it out (\"decimate\"): what is finer than dp cannot be seen")
-}
-
-/// Returns whether the file is text whose lines are short enough for the loaders.
-fn is_text(bytes: &[u8]) -> bool {
-    bytes.split(|b| *b == b'\n').all(|line| line.len() <= LONGEST)
-}
-
-fn stl(path: &Path, mut bytes: Vec<u8>) -> Result<Facets> {
-    // A file of 84 bytes plus 50 bytes for each facet is binary, even if it begins with the keyword of the text format.
-    let count = bytes.get(80..84).and_then(|c| c.try_into().ok()).map_or(0, |c| u32::from_le_bytes(c) as usize);
-    let binary = bytes.len() >= 84 && bytes.len() - 84 >= 50 * count.min(bytes.len());
-    let begun = bytes.iter().position(|b| !b.is_ascii_whitespace()).unwrap_or(0);
-    let named = bytes[begun..].get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid"));
-    let fits = binary && bytes.len() == 84 + 50 * count;
-    if named && !fits {
-        if !is_text(&bytes) {
-            return Err(damaged(path, format!("it has a line of more than {LONGEST} bytes")));
-        }
-        // The loader requires lower case and a name after the first keyword.
-        let text = bytes[begun..].to_ascii_lowercase();
-        let rest = text.iter().position(|b| *b == b'\n').map_or(&[][..], |end| &text[end..]);
-        bytes = [b"solid mesh", rest].concat();
-    } else if !binary {
-        return Err(damaged(path, "it is neither STL as text, which begins with \"solid\", nor as long as it says"));
-    } else {
-        bytes[0] = b' ';
-    }
-    let mut bytes = Cursor::new(bytes);
-    let (mut points, mut facets) = (Vec::new(), Vec::new());
-    for facet in stl_io::create_stl_reader(&mut bytes).map_err(|why| damaged(path, why))? {
-        if facets.len() == MAX_FACETS {
-            return Err(too_many(path));
-        }
-        let first = points.len() as u32;
-        let corners = facet.map_err(|why| damaged(path, why))?.vertices;
-        points.extend(corners.map(|p| Vector::from_fn(|i, _| f64::from(p[i]))));
-        facets.push([first, first + 1, first + 2]);
-    }
-    Ok((points, facets))
-}
-
-fn obj(path: &Path, bytes: Vec<u8>) -> Result<Facets> {
-    if !is_text(&bytes) {
+/// Returns the text of the file, and a note about its encoding.
+fn text(path: &Path, bytes: &[u8]) -> Result<(String, Vec<String>)> {
+    let Text { text, encoding } = file_content::decode(bytes);
+    if text.split('\n').any(|line| line.len() > LONGEST) {
         return Err(damaged(path, format!("it has a line of more than {LONGEST} bytes")));
     }
-    let options =
-        tobj::LoadOptions { triangulate: true, ignore_points: true, ignore_lines: true, ..Default::default() };
-    let no_colours = |_: &Path| Err(tobj::LoadError::OpenFileFailed);
-    let (models, _) =
-        tobj::load_obj_buf(&mut Cursor::new(bytes), &options, no_colours).map_err(|why| damaged(path, why))?;
-    let (mut points, mut facets) = (Vec::new(), Vec::new());
-    for tobj::Model { mesh, .. } in models {
-        let first = points.len() as u32;
-        points.extend(mesh.positions.chunks_exact(3).map(Vector::from_column_slice));
-        facets.extend(mesh.indices.chunks_exact(3).map(|f| [first + f[0], first + f[1], first + f[2]]));
-        if facets.len() > MAX_FACETS {
-            return Err(too_many(path));
-        }
-    }
-    Ok((points, facets))
+    Ok((text, encoding.map(|encoding| format!("it is {encoding}")).into_iter().collect()))
 }
+
+/// Returns the coordinate that `word` in `line` (from 1) gives.
+fn coordinate(path: &Path, line: usize, word: Option<&str>) -> Result<f64> {
+    let Some(word) = word else { return Err(damaged(path, format!("line {line}: a corner has three coordinates"))) };
+    let parsed = word.parse().or_else(|_| word.replace(['d', 'D'], "e").parse::<f64>());
+    match parsed {
+        Ok(x) if x.is_finite() => Ok(x),
+        Ok(_) => Err(damaged(path, format!("line {line}: the coordinate {word} is not a finite number"))),
+        Err(_) if word.contains(',') => {
+            let why = format!("line {line}: the coordinate {word} has a comma in place of the decimal point");
+            Err(damaged(path, why).help("export it with decimal points (a setting of the language, often)"))
+        }
+        Err(_) => Err(damaged(path, format!("line {line}: {word} is not a number"))),
+    }
+}
+
+#[cfg(all(test, feature = "dim3"))]
+#[path = "../../tests/unit/scene/mesh.rs"]
+mod tests;

@@ -12,6 +12,8 @@ mod build;
 mod bundled;
 mod context;
 mod diagnostics;
+mod file_content;
+mod file_units;
 pub(crate) mod files;
 mod mesh;
 mod overrides;
@@ -52,12 +54,12 @@ use serde::{Deserialize, Serialize};
 use crate::error::{Error, Result};
 use toml_source::SceneSource;
 
+pub(crate) use context::FileNote;
 pub(crate) use section::shape::world_bounds;
 pub use {
     crate::probe::ProbeConfig,
     build::BuiltScene,
     bundled::{BundledScene, bundled_scenes},
-    context::FileNote,
     schema::schema,
     section::contact::ContactConfig,
     section::force_element::{ForceConfig, RopeConfig, SpringConfig},

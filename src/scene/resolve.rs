@@ -1,6 +1,6 @@
 //! Checks a scene, fills in its defaults and lists every value in force with its source.
 
-use std::fmt;
+use std::{cell::RefCell, fmt};
 
 use super::{
     FramesChoice, Scene,
@@ -50,7 +50,7 @@ impl Scene {
             until: self.until,
             gravity: self.gravity.as_deref(),
             rho0: self.model.rho0,
-            notes: None,
+            file_notes: RefCell::default(),
         }
     }
 

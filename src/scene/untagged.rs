@@ -145,7 +145,7 @@ pub struct PolylineConfig {
     pub id: Option<String>,
     /// Factor on the drawing's lengths, –; by default 1.
     pub scale: Option<f64>,
-    /// Unit of the drawing's lengths; by default m.
+    /// Unit of a drawing that does not give its own size; by default m.
     pub unit: Option<LengthUnit>,
     /// Thickness of a wall, m; by default as many dp as the kernel reaches.
     pub thickness: Option<f64>,
@@ -175,7 +175,7 @@ struct PolylineTable {
     id: Option<String>,
     /// Factor on the drawing's lengths, –; by default 1.
     scale: Option<f64>,
-    /// Unit of the drawing's lengths; by default m.
+    /// Unit of a drawing that does not give its own size; by default m.
     unit: Option<LengthUnit>,
     /// Thickness of a wall, m; by default as many dp as the kernel reaches.
     thickness: Option<f64>,

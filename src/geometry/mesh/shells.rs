@@ -24,6 +24,7 @@ const ROUND_OFF: f64 = 1e-6;
 /// Facets that share edges.
 struct Shell {
     facets: Vec<[u32; 3]>,
+    numbers: Vec<usize>,
     bounds: Bounds<3>,
     volume: f64,
 }
@@ -40,6 +41,57 @@ pub(crate) fn check_orientation(points: &[Vector<3>], facets: &[[u32; 3]]) -> Re
     };
     let wrong = if shells.len() > 1 { (0..shells.len()).into_par_iter().find_map_first(judged) } else { None };
     wrong.map_or(Ok(()), |(i, x, turns)| Err(refusal(shells[i].volume, &x, turns)))
+}
+
+/// Reverses each outermost shell that is inside out, with the shells in it. Returns whether each facet was reversed.
+/// `turned` marks facets that were reversed before.
+///
+/// # Errors
+/// `Scene` if a shell inside another has facets of both orientations: it bounds a hollow or a solid.
+pub(super) fn turn_outward(points: &[Vector<3>], facets: &mut [[u32; 3]], turned: &[bool]) -> Result<Vec<bool>> {
+    let mut reversed = vec![false; facets.len()];
+    let shells = shells(points, facets);
+    let mixed = |shell: &Shell| shell.numbers.iter().any(|&i| turned[i]);
+    if shells.iter().all(|shell| shell.volume >= 0.0 && (shells.len() == 1 || !mixed(shell))) {
+        return Ok(reversed);
+    }
+    let corners = |facet: &[u32; 3]| facet.map(|p| points[p as usize]);
+    let turns = |shell: &Shell, x: &Vector<3>| -> f64 {
+        shell.facets.iter().map(|facet| solid_angle(&corners(facet), x)).sum::<f64>() / (2.0 * TAU)
+    };
+    let is_inside = |inner: &Shell, outer: &Shell| {
+        if inner.volume.abs() > outer.volume.abs()
+            || !outer.bounds.contains(&inner.bounds.min)
+            || !outer.bounds.contains(&inner.bounds.max)
+        {
+            return false;
+        }
+        let middles = inner.facets.iter().map(|facet| corners(facet).iter().sum::<Vector<3>>() / 3.0);
+        let mut found = middles.map(|x| turns(outer, &x)).filter(|turns| (turns - turns.round()).abs() < ROUND_OFF);
+        found.next().is_some_and(|turns| turns.round() != 0.0)
+    };
+    let around: Vec<Vec<usize>> = (0..shells.len())
+        .into_par_iter()
+        .map(|i| (0..shells.len()).filter(|&j| j != i && is_inside(&shells[i], &shells[j])).collect())
+        .collect();
+    for (i, shell) in shells.iter().enumerate() {
+        let outermost =
+            if around[i].is_empty() { Some(i) } else { around[i].iter().copied().find(|&j| around[j].is_empty()) };
+        if !around[i].is_empty() && mixed(shell) {
+            let at = format_position(&points[shell.facets[0][0] as usize]);
+            let what = format!("facets of a shell inside another, at {at} m, have both orientations");
+            return Err(Error::scene(what).help(
+                "let the normals of a hollow point into it, and those of a solid outward, in the program that made it",
+            ));
+        }
+        if outermost.is_some_and(|j| shells[j].volume < 0.0) {
+            shell.numbers.iter().for_each(|&i| reversed[i] = true);
+        }
+    }
+    for (facet, _) in facets.iter_mut().zip(&reversed).filter(|(_, reversed)| **reversed) {
+        facet.swap(0, 1);
+    }
+    Ok(reversed)
 }
 
 fn refusal(volume: f64, x: &Vector<3>, turns: f64) -> Error {
@@ -66,7 +118,8 @@ fn around(i: usize, shells: &[Shell], points: &[Vector<3>]) -> Option<(Vector<3>
     let corners = |facet: &[u32; 3]| facet.map(|p| points[p as usize]);
     let turns = |x: &Vector<3>| -> f64 {
         let others = shells.iter().enumerate().filter(|(j, other)| *j != i && other.bounds.contains(x));
-        others.flat_map(|(_, other)| &other.facets).map(|facet| angle(&corners(facet), x)).sum::<f64>() / (2.0 * TAU)
+        others.flat_map(|(_, other)| &other.facets).map(|facet| solid_angle(&corners(facet), x)).sum::<f64>()
+            / (2.0 * TAU)
     };
     let middles = shells[i].facets.iter().map(|facet| corners(facet).iter().sum::<Vector<3>>() / 3.0);
     let mut found = middles.map(|x| (x, turns(&x))).filter(|(_, turns)| (turns - turns.round()).abs() < ROUND_OFF);
@@ -75,7 +128,7 @@ fn around(i: usize, shells: &[Shell], points: &[Vector<3>]) -> Option<(Vector<3>
 
 /// Returns the solid angle of a facet seen from `x`, sr, positive from its inner side, after van Oosterom and Strackee
 /// (1983). The result is NaN if `x` lies on the facet.
-fn angle(facet: &[Vector<3>; 3], x: &Vector<3>) -> f64 {
+pub(super) fn solid_angle(facet: &[Vector<3>; 3], x: &Vector<3>) -> f64 {
     let [a, b, c] = facet.map(|p| p - x);
     let (la, lb, lc) = (a.norm(), b.norm(), c.norm());
     let (sine, all) = (a.dot(&b.cross(&c)), la * lb * lc);
@@ -96,17 +149,23 @@ fn shells(points: &[Vector<3>], facets: &[[u32; 3]]) -> Vec<Shell> {
         let (a, b) = (first(&mut above, pair[0].2), first(&mut above, pair[1].2));
         above[a.max(b)] = a.min(b);
     }
-    let mut all: Vec<Vec<[u32; 3]>> = vec![Vec::new(); facets.len()];
-    (0..facets.len()).for_each(|i| all[first(&mut above, i)].push(facets[i]));
-    let shell = |facets: Vec<[u32; 3]>| {
+    let mut all: Vec<Vec<usize>> = vec![Vec::new(); facets.len()];
+    (0..facets.len()).for_each(|i| all[first(&mut above, i)].push(i));
+    let shell = |numbers: Vec<usize>| {
+        let facets: Vec<[u32; 3]> = numbers.iter().map(|&i| facets[i]).collect();
         let around = Bounds::around(facets.iter().flatten().map(|&p| &points[p as usize]));
         let wedge = |facet: &[u32; 3]| {
             let [a, b, c] = facet.map(|p| points[p as usize] - around.min);
             a.dot(&b.cross(&c)) / 6.0
         };
-        Shell { volume: facets.iter().map(wedge).sum(), bounds: around.grown(ON * around.size().max()), facets }
+        Shell {
+            volume: facets.iter().map(wedge).sum(),
+            bounds: around.grown(ON * around.size().max()),
+            facets,
+            numbers,
+        }
     };
-    all.into_iter().filter(|facets| !facets.is_empty()).map(shell).collect()
+    all.into_iter().filter(|numbers| !numbers.is_empty()).map(shell).collect()
 }
 
 /// Returns the first facet of the shell of facet `i`, and shortens the path to it (union-find with path halving).

@@ -16,14 +16,17 @@ mod with_parry {
     };
     use rayon::prelude::*;
 
-    use super::super::{Mesh, ray};
+    use super::super::{
+        Mesh,
+        crossings::{Crossings, crossing},
+    };
     use crate::{
         error::{Error, Result},
         math::Vector,
     };
 
     /// Largest number of nearby facets that the code compares with a facet.
-    const MOST_NEAR: usize = 200;
+    const MOST_NEAR: usize = 2000;
 
     /// The facets in a tree of bounding boxes, with the normals of facets, edges and corners.
     #[derive(Clone)]
@@ -63,22 +66,27 @@ mod with_parry {
             Vector::from(normal.to_array()).try_normalize(1e-12).unwrap_or_else(Vector::zeros)
         }
 
-        /// Returns two facets without a common corner that pass through each other, or `None` if there is no such pair.
-        pub(crate) fn find_crossing(&self, mesh: &Mesh) -> Option<(usize, usize)> {
-            let apart = |a: usize, b: usize| mesh.facets[a].iter().all(|p| !mesh.facets[b].contains(p));
-            (0..mesh.facets.len()).into_par_iter().find_map_first(|a| {
+        /// Returns the places where the mesh passes through itself.
+        pub(crate) fn find_crossings(&self, mesh: &Mesh) -> Crossings {
+            let size = mesh.bounds.size().max();
+            let of_facet = |found: Crossings, a: usize| {
                 let around = self.0.triangle(a as u32).local_aabb();
                 let near = self.0.bvh().leaves(|node| node.aabb().intersects(&around)).take(MOST_NEAR);
-                let mut later = near.map(|b| b as usize).filter(|b| *b > a && apart(a, *b));
-                later.find(|&b| ray::facets_cross(&mesh.facet_corners(a), &mesh.facet_corners(b))).map(|b| (a, b))
-            })
+                let later = near.map(|b| b as usize).filter(|b| *b > a);
+                later
+                    .filter_map(|b| crossing(mesh, size, a, b).map(|crossing| (b, crossing)))
+                    .fold(found, |found, (b, crossing)| found.add(a, b, crossing))
+            };
+            (0..mesh.facets.len())
+                .into_par_iter()
+                .fold(Crossings::default, of_facet)
+                .reduce(Crossings::default, Crossings::and)
         }
     }
 }
 
 #[cfg(not(feature = "dim3"))]
 mod without {
-    use super::super::Mesh;
     use crate::{
         error::{Error, Result},
         math::Vector,
@@ -95,10 +103,6 @@ mod without {
         }
 
         pub(crate) fn distance_and_normal(&self, _: &Vector<3>) -> (f64, Vector<3>) {
-            match *self {}
-        }
-
-        pub(crate) fn find_crossing(&self, _: &Mesh) -> Option<(usize, usize)> {
             match *self {}
         }
     }

@@ -46,13 +46,6 @@ pub(crate) fn check_closed(points: &[Vector<3>], facets: &[[u32; 3]]) -> Result<
     faults.into_iter().flatten().next().map_or(Ok(()), Err)
 }
 
-/// Returns the error for two facets that pass through each other.
-pub(crate) fn crossing_error(a: &[Vector<3>; 3], b: &[Vector<3>; 3]) -> Error {
-    let middle = |f: &[Vector<3>; 3]| format_position(&((f[0] + f[1] + f[2]) / 3.0));
-    let what = format!("the mesh passes through itself: its facets about {} and {} m cross", middle(a), middle(b));
-    Error::scene(what).help("unite its parts (a \"boolean union\") in the program that made it: volume counts once")
-}
-
 /// Formats a position for the user, to one part in ten thousand of a metre or finer.
 pub(crate) fn format_position(x: &Vector<3>) -> String {
     let number = |x: f64| if x != 0.0 && x.abs() < 0.01 { format!("{x:.3e}") } else { format!("{x:.4}") };

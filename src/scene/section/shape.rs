@@ -7,11 +7,14 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     error::{Error, Result},
-    geometry::{ContactGeometry, Shape},
+    geometry::{ContactGeometry, Shape, mesh::Completion},
     math::{Bounds, Pose, Vector, table},
     scene::{
         context::{Context, Defaults, last_part, quoted_list, set_keys},
-        files, mesh, record, svg,
+        files,
+        mesh::{self, MeshOptions},
+        record,
+        svg::{self, DrawingOptions},
         untagged::{DraftChoice, LengthUnit, PolylineConfig},
     },
 };
@@ -72,7 +75,7 @@ pub enum ShapeConfig {
     Compound(Vec<CompoundPartConfig>),
 }
 
-/// A closed surface in a file beside the scene: STL or OBJ.
+/// A surface in a file beside the scene: STL or OBJ. It must be closed, or become closed by `mirror`, `cap` or `thickness`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[non_exhaustive]
@@ -83,8 +86,14 @@ pub struct MeshConfig {
     pub scale: Option<f64>,
     /// Unit of its lengths; by default m.
     pub unit: Option<LengthUnit>,
-    /// `true`: reverses the facets, for a surface that is inside out.
+    /// `true`: reverses the facets.
     pub flip: Option<bool>,
+    /// Adds the mirror image across the plane through the origin normal to this axis, for half a hull.
+    pub mirror: Option<AxisName>,
+    /// Closes open edges that lie in planes normal to this axis, as of panels that end at the waterline.
+    pub cap: Option<AxisName>,
+    /// Makes a plate of this thickness (m) around the surface, half of it on each side.
+    pub thickness: Option<f64>,
     /// The geometry that other bodies touch; by default the fitting one.
     pub contact: Option<ContactGeometry>,
 }
@@ -224,7 +233,8 @@ impl ShapeConfig {
             }
             ShapeConfig::Mesh(config) => {
                 only(3, "mesh", "in 2-D an outline is a polygon:  shape = { polygon = { file = \"hull.svg\" } }")?;
-                ctx.require_positive(&format!("{key}.mesh.scale"), config.scale)
+                ctx.require_positive(&format!("{key}.mesh.scale"), config.scale)?;
+                ctx.require_positive(&format!("{key}.mesh.thickness"), config.thickness)
             }
             ShapeConfig::Compound(parts) => {
                 let key = format!("{key}.compound");
@@ -269,14 +279,8 @@ impl ShapeConfig {
                 defaults.fill(format!("{key}.contact"), &mut config.contact, ContactGeometry::Fitting, why);
             }
             ShapeConfig::Polygon(config) if config.is_drawing() => {
-                let key = format!("{key}.polygon");
-                defaults.fill(format!("{key}.scale"), &mut config.scale, 1.0, "the drawing's own size");
-                defaults.fill(
-                    format!("{key}.unit"),
-                    &mut config.unit,
-                    LengthUnit::M,
-                    "a unit of the drawing is a metre",
-                );
+                let key = format!("{key}.polygon.scale");
+                defaults.fill(key, &mut config.scale, 1.0, "the drawing's own size");
             }
             ShapeConfig::Compound(parts) => {
                 for (i, part) in parts.iter_mut().enumerate() {
@@ -345,7 +349,16 @@ fn verify_drawing(ctx: &Context, key: &str, config: &PolylineConfig) -> Result<(
 fn mesh_shape<const D: usize>(ctx: &Context, config: &MeshConfig) -> Result<Shape<D>> {
     let path = files::path_beside(ctx.folder(), &config.file)?;
     let unit = config.scale.unwrap_or(1.0) * config.unit.unwrap_or_default().metres();
-    let mesh = mesh::read(&path, unit, config.flip.unwrap_or(false))?;
+    let number = |axis: Option<AxisName>| axis.map(|axis| axis as usize);
+    let completion = Completion {
+        mirror: number(config.mirror),
+        cap: number(config.cap),
+        thickness: config.thickness,
+        ..Completion::default()
+    };
+    let options = MeshOptions { unit, flip: config.flip.unwrap_or(false), completion, dp: ctx.dp };
+    let (mesh, notes) = mesh::read(&path, &options)?;
+    ctx.add_file_notes(notes);
     Ok(Shape::Mesh { mesh: Arc::new(mesh), contact: config.contact.unwrap_or_default() })
 }
 
@@ -356,8 +369,14 @@ fn points<const D: usize>(ctx: &Context, config: &PolylineConfig) -> Result<Vec<
     let file = config.file.as_deref().unwrap_or("");
     if config.is_drawing() {
         let path = files::path_beside(ctx.folder(), file)?;
-        let unit = config.scale.unwrap_or(1.0) * config.unit.unwrap_or_default().metres();
-        let points = svg::outline(&path, config.id.as_deref(), unit, CURVE_TOLERANCE * ctx.dp)?;
+        let options = DrawingOptions {
+            id: config.id.as_deref(),
+            scale: config.scale.unwrap_or(1.0),
+            unit: config.unit,
+            tolerance: CURVE_TOLERANCE * ctx.dp,
+        };
+        let (points, notes) = svg::outline(&path, &options)?;
+        ctx.add_file_notes(notes);
         return Ok(points.iter().map(|p| vector(p)).collect());
     }
     let mut table = files::open_table(ctx.folder(), file)?;

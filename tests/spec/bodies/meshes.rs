@@ -119,8 +119,11 @@ fn mesh_files_without_a_closed_solid_are_refused_with_the_reason() {
         "file = \"open.stl\"",
         &["the mesh is open: 3 edges", "(0.0000, 0.0000, 0.0000)", "scene.toml:8", "fill the holes"],
     );
-    assert_refused("file = \"inside_out.stl\"", &["inside out", "flip = true"]);
+    // A surface that is inside out has one possible inside.
+    assert!(mesh("file = \"inside_out.stl\"", &folder).is_ok());
     assert!(mesh("file = \"inside_out.stl\", flip = true", &folder).is_ok());
+    assert_refused("file = \"open.stl\", thickness = -0.1", &["thickness"]);
+    assert_refused("file = \"open.stl\", mirror = \"w\"", &["mirror", "\"x\""]);
     assert_refused("file = \"mesh.ply\"", &["neither .stl nor .obj"]);
     assert_refused("file = \"cut.stl\"", &["cut.stl cannot be read"]);
     assert_refused("file = \"too_many.stl\"", &["too_many.stl cannot be read"]);
@@ -263,6 +266,36 @@ fn a_mesh_ball_floats_at_the_draft_of_archimedes() {
     }
     // The bound of 0.5 dp is that of the ball in the scene buoyancy-3d; a ball does not fit the lattice.
     assert!(most < 0.5 * dp, "{} dp off", most / dp);
+}
+
+#[test]
+fn a_mesh_in_millimetres_or_less_than_dp_large_is_refused_with_the_probable_unit() {
+    let folder = folder("units");
+    fs::write(folder.join("m.stl"), text_stl(&FACETS)).unwrap();
+    fs::write(folder.join("mm.stl"), text_stl(&FACETS).replace("0.5", "500").replace("0.25", "250").replace("0.375", "375"))
+        .unwrap();
+    let message = refusal("file = \"mm.stl\"", &folder);
+    // 500 in water of 1 m: 0.5 m is the nearest size.
+    assert!(message.contains("unit is probably mm, and its size 0.5000 m") && message.contains("scene.toml:8"), "{message}");
+    assert!(mesh("file = \"mm.stl\", unit = \"mm\"", &folder).is_ok());
+    let message = refusal("file = \"m.stl\", unit = \"mm\"", &folder);
+    assert!(message.contains("less than dp") && message.contains("its size 0.5000 m"), "{message}");
+}
+
+#[test]
+fn notes_about_mesh_and_drawing_files_are_findings_of_an_inspection() {
+    let folder = folder("notes");
+    let joined = text_stl(&FACETS).replacen("vertex 0.5 0 0", "vertex 0.50000001 0 0", 1);
+    fs::write(folder.join("near.stl"), joined).unwrap();
+    fs::write(
+        folder.join("scene.toml"),
+        "dimension = 3\ndp = 0.05\nuntil = 1.0\n[[water]]\nfill = { box = { min = [0.0, 0.0, 0.0], max = [1.0, 1.0, 0.5] } }\n\
+         [[solid]]\nname = \"body\"\nshape = { mesh = { file = \"near.stl\" } }\nat = { x = 0.3, y = 0.3, z = 0.0 }\nfixed = true\n",
+    )
+    .unwrap();
+    let report = pontoon::run::inspect(&folder.join("scene.toml"), &Default::default()).unwrap();
+    let finding = report.preflight.findings.iter().find(|finding| finding.topic == "mesh").unwrap();
+    assert!(finding.what.starts_with("near.stl: 1 corner is joined"), "{}", finding.what);
 }
 
 #[test]

@@ -1,0 +1,84 @@
+//! The size of solids from files compared with the water and dp: an implausible size indicates another unit.
+
+use super::{
+    Scene,
+    context::Context,
+    section::{
+        shape::{ShapeConfig, world_bounds},
+        water::WaterBody,
+    },
+    untagged::LengthUnit,
+};
+use crate::{error::Result, math::Bounds, solid::SolidSpec};
+
+/// Largest plausible size of a solid over the size of the water, –.
+const LARGEST: f64 = 20.0;
+
+/// The units that files have other than metres, with their names, the most frequent first.
+const UNITS: [(LengthUnit, &str); 4] =
+    [(LengthUnit::Mm, "mm"), (LengthUnit::Cm, "cm"), (LengthUnit::In, "in"), (LengthUnit::Ft, "ft")];
+
+/// The unit of a file, as a scene gives it.
+struct FileUnit<'a> {
+    file: &'a str,
+    unit: Option<LengthUnit>,
+}
+
+/// Returns the unit of the first file that gives a shape, or `None` if none does.
+fn file_unit(shape: &ShapeConfig) -> Option<FileUnit<'_>> {
+    match shape {
+        ShapeConfig::Mesh(config) => Some(FileUnit { file: &config.file, unit: config.unit }),
+        ShapeConfig::Polygon(config) if config.is_drawing() => {
+            Some(FileUnit { file: config.file.as_deref()?, unit: config.unit })
+        }
+        ShapeConfig::Compound(parts) => parts.iter().find_map(|part| file_unit(&part.shape)),
+        _ => None,
+    }
+}
+
+impl Scene {
+    /// Refuses a solid from a file that is far larger than the water although the scene does not give the unit, or
+    /// smaller than dp.
+    pub(super) fn require_plausible_units<const D: usize>(
+        &self,
+        ctx: &Context,
+        water: &[WaterBody<D>],
+        solids: &[SolidSpec<D>],
+    ) -> Result<()> {
+        let boxes = water.iter().map(|body| world_bounds(&body.region.shape, &body.region.pose));
+        let room = boxes.fold(Bounds::empty(), |a, b| a.union(&b)).size().max();
+        for (i, (config, solid)) in self.solid.iter().zip(solids).enumerate() {
+            let Some(FileUnit { file, unit }) = file_unit(&config.shape) else { continue };
+            let size = solid.shape.bounds().size().max();
+            let key = format!("solid.{i}.shape");
+            if unit.is_none() && size > LARGEST * room {
+                // The unit that brings the size closest to that of the water.
+                let off = |unit: LengthUnit| (size * unit.metres() / room).ln().abs();
+                let nearest = UNITS.iter().min_by(|a, b| off(a.0).total_cmp(&off(b.0)));
+                let (unit, name) = nearest.copied().unwrap_or((LengthUnit::Mm, "mm"));
+                let what = format!(
+                    "{file} makes solid \"{}\" {size:.4} m large, in water {room:.4} m large: its unit is probably {name}, \
+                     and its size {:.4} m",
+                    solid.name,
+                    size * unit.metres()
+                );
+                let help =
+                    format!("write  unit = \"{name}\"  beside the file's name, or  unit = \"m\"  if the size is right");
+                return Err(ctx.error_with_help(&key, what, help));
+            }
+            if size < ctx.dp {
+                let metres = unit.unwrap_or_default().metres();
+                let what = format!(
+                    "{file} makes solid \"{}\" {size:.3e} m large, less than dp = {} m: no particle resolves it",
+                    solid.name, ctx.dp
+                );
+                let help = match metres < 1.0 {
+                    true => format!("its unit is perhaps m, and its size {:.4} m: leave unit out", size / metres),
+                    false => "check unit and scale beside the file's name".into(),
+                };
+                return Err(ctx.error_with_help(&key, what, help));
+            }
+        }
+        Ok(())
+    }
+}

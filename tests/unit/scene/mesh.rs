@@ -1,0 +1,345 @@
+//! Mesh files as programs write them: exact volumes, the notes, and the reasons of refusals.
+
+use std::{
+    f64::consts::PI,
+    fs,
+    sync::atomic::{AtomicUsize, Ordering},
+};
+
+use super::*;
+
+/// Particle spacing of the tests, m.
+const DP: f64 = 0.02;
+
+/// Corners of a box from `min` to `max`, and its six sides, counter-clockwise seen from outside.
+fn block(min: [f64; 3], max: [f64; 3]) -> (Vec<[f64; 3]>, Vec<[usize; 4]>) {
+    let at = |i: usize| std::array::from_fn(|k| if i >> k & 1 == 1 { max[k] } else { min[k] });
+    ((0..8).map(at).collect(), vec![[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]])
+}
+
+/// Triangles of a box.
+fn facets(min: [f64; 3], max: [f64; 3]) -> Vec<[[f64; 3]; 3]> {
+    let (points, sides) = block(min, max);
+    sides.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).map(|f| f.map(|i| points[i])).collect()
+}
+
+/// The box of the tests: 0.4 × 0.2 × 0.1 m, 0.008 m³.
+fn hull() -> Vec<[[f64; 3]; 3]> {
+    facets([-0.2, -0.1, -0.05], [0.2, 0.1, 0.05])
+}
+
+fn solid(name: &str, facets: &[[[f64; 3]; 3]]) -> String {
+    let facet = |f: &[[f64; 3]; 3]| {
+        let corners = f.map(|[x, y, z]| format!("vertex {x} {y} {z}\n")).concat();
+        format!("facet normal nan nan nan\nouter loop\n{corners}endloop\nendfacet\n")
+    };
+    format!("solid {name}\n{}endsolid {name}\n", facets.iter().map(facet).collect::<String>())
+}
+
+fn binary(header: &str, count: usize, facets: &[[[f64; 3]; 3]]) -> Vec<u8> {
+    let mut bytes = format!("{header:80}").into_bytes();
+    bytes.extend((count as u32).to_le_bytes());
+    for facet in facets {
+        let numbers =
+            [[f64::NAN; 3]].iter().chain(facet).flatten().flat_map(|x| (*x as f32).to_le_bytes()).collect::<Vec<_>>();
+        bytes.extend(numbers.into_iter().chain([0, 0]));
+    }
+    bytes
+}
+
+fn obj(solids: &[(Vec<[f64; 3]>, Vec<[usize; 4]>)]) -> String {
+    let (mut text, mut first) = (String::new(), 1);
+    for (points, sides) in solids {
+        points.iter().for_each(|[x, y, z]| text += &format!("v {x} {y} {z}\n"));
+        sides.iter().for_each(|s| text += &format!("f {}\n", s.map(|i| (i + first).to_string()).join(" ")));
+        first += points.len();
+    }
+    text
+}
+
+fn options(completion: Completion) -> MeshOptions {
+    MeshOptions { unit: 1.0, flip: false, completion, dp: DP }
+}
+
+/// Writes `bytes` into a file with this ending and reads it.
+fn read_as(ending: &str, bytes: &[u8], options: &MeshOptions) -> Result<(Mesh, Vec<FileNote>)> {
+    static NUMBER: AtomicUsize = AtomicUsize::new(0);
+    let number = NUMBER.fetch_add(1, Ordering::Relaxed);
+    let path = std::env::temp_dir().join(format!("pontoon-mesh-{}-{number}.{ending}", std::process::id()));
+    fs::write(&path, bytes).unwrap();
+    let result = read(&path, options);
+    fs::remove_file(&path).unwrap();
+    result
+}
+
+/// Asserts the volume of the solid in a file, and returns its notes, joined.
+fn assert_volume(ending: &str, bytes: &[u8], completion: Completion, volume: f64, bound: f64) -> String {
+    let (mesh, notes) = read_as(ending, bytes, &options(completion)).unwrap();
+    let found = mesh.volume_properties().volume;
+    assert!((found - volume).abs() <= bound * volume, "{found} m³ in place of {volume}; {notes:?}");
+    notes.iter().map(|note| note.what.clone()).collect::<Vec<_>>().join("; ")
+}
+
+fn plain(ending: &str, bytes: &[u8], volume: f64) -> String {
+    // Ten sums and products: 1e-14.
+    assert_volume(ending, bytes, Completion::default(), volume, 1e-14)
+}
+
+fn refusal(ending: &str, bytes: &[u8], completion: Completion) -> String {
+    read_as(ending, bytes, &options(completion)).err().map(|e| e.to_string()).unwrap_or_default()
+}
+
+fn assert_parts(message: &str, parts: &[&str]) {
+    parts.iter().for_each(|part| assert!(message.contains(part), "no \"{part}\" in: {message}"));
+}
+
+#[test]
+fn all_solids_of_an_stl_file_count() {
+    let other = facets([0.5, -0.1, -0.05], [0.7, 0.1, 0.05]);
+    let two = solid("a b", &hull()) + &solid("", &other);
+    // 0.008 and 0.004 m³.
+    assert_parts(&plain("stl", two.as_bytes(), 0.012), &["its 2 solids are read as one"]);
+    let headers = [binary("solid a", 12, &hull()), binary("b", 12, &other)].concat();
+    let notes = assert_volume("stl", &headers, Completion::default(), 0.012, 1e-6);
+    assert_parts(&notes, &["its 2 solids are read as one"]);
+    // The faces of one body as a solid each, and two bodies that share a whole face.
+    let faces: String = hull().chunks(2).map(|face| solid("face", face)).collect();
+    plain("stl", faces.as_bytes(), 0.008);
+    let beside = solid("a", &hull()) + &solid("b", &facets([0.2, -0.1, -0.05], [0.4, 0.1, 0.05]));
+    assert_parts(&plain("stl", beside.as_bytes(), 0.012), &["lie back to back"]);
+    // An L: the edge at the top has four facets, but each body is closed.
+    let corner = solid("a", &hull()) + &solid("b", &facets([0.2, -0.1, 0.0], [0.4, 0.1, 0.05]));
+    plain("stl", corner.as_bytes(), 0.010);
+    let objects = obj(&[block([-0.2, -0.1, -0.05], [0.2, 0.1, 0.05]), block([0.2, -0.1, 0.0], [0.4, 0.1, 0.05])]);
+    plain("obj", objects.as_bytes(), 0.010);
+    let twice = solid("a", &hull()) + &solid("a", &hull());
+    assert_parts(&plain("stl", twice.as_bytes(), 0.008), &["12 facets repeat others"]);
+}
+
+#[test]
+fn corners_that_nearly_meet_are_joined_and_counted() {
+    // Shifts of up to 5e-8 m: 1.3e-7 of the size.
+    let mut number = 0_u32;
+    let mut near = |x: f64| {
+        number = (number * 5 + 3) % 11;
+        x + 1e-8 * (f64::from(number) - 5.0)
+    };
+    let text = solid("near", &hull().iter().map(|f| f.map(|p| p.map(&mut near))).collect::<Vec<_>>());
+    // Each of the six sides moves by at most 5e-8 m of 0.1 m: 2 × 5e-8 × (1/0.1 + 1/0.2 + 1/0.4) = 1.8e-6.
+    let notes = assert_volume("stl", text.as_bytes(), Completion::default(), 0.008, 1.8e-6);
+    assert_parts(&notes, &["28 corners are joined", "1e-6 of the size"]);
+    // Corners 2e-5 m apart stay open: 5e-5 of the size.
+    let apart = solid("apart", &hull()).replacen("0.2", "0.20002", 1);
+    assert_parts(&refusal("stl", apart.as_bytes(), Completion::default()), &["the mesh is open"]);
+}
+
+#[test]
+fn text_has_double_precision_and_binary_files_far_away_are_told() {
+    let far = facets([451_234.3, 5_432_100.15, -0.05], [451_234.7, 5_432_100.35, 0.05]);
+    // Coordinates of 5e6 m have steps of 9e-10 m, 5e-9 of 0.2 m.
+    assert_volume("stl", solid("utm", &far).as_bytes(), Completion::default(), 0.008, 1e-8);
+    let (_, notes) =
+        read_as("stl", &binary("b", 12, &facets([1000.0; 3], [1000.5; 3])), &options(Completion::default())).unwrap();
+    assert!(notes.iter().any(|note| note.is_warning && note.what.contains("single precision")), "{notes:?}");
+    assert_eq!(assert_volume("stl", &binary("b", 12, &hull()), Completion::default(), 0.008, 1e-6), "");
+}
+
+#[test]
+fn binary_files_that_begin_as_text_or_say_a_wrong_number_are_read_or_refused() {
+    assert_volume("stl", &binary("solid facet vertex", 12, &hull()), Completion::default(), 0.008, 1e-6);
+    let notes = assert_volume("stl", &binary("b", 7, &hull()), Completion::default(), 0.008, 1e-6);
+    assert_parts(&notes, &["it says 7 facets, and has 12"]);
+    let cut = binary("b", 12, &hull()[..11]);
+    assert_parts(&refusal("stl", &cut, Completion::default()), &["cut short: it says 12 facets, and has 11"]);
+    assert_parts(&refusal("stl", &binary("solid", 12, &hull())[..300], Completion::default()), &["cut short"]);
+    let text = solid("a", &hull());
+    assert_parts(&refusal("stl", &text.as_bytes()[..400], Completion::default()), &["cut short"]);
+    let open = solid("a", &hull()[..11]).replace("endsolid a", "");
+    assert_parts(&refusal("stl", open.as_bytes(), Completion::default()), &["no \"endsolid\"", "the mesh is open"]);
+    let comma = text.replacen("-0.2", "-0,2", 1);
+    assert_parts(&refusal("stl", comma.as_bytes(), Completion::default()), &["line 4", "comma in place of"]);
+    let quad = text.replacen("endloop", "vertex 0 0 0\nendloop", 1);
+    assert_parts(&refusal("stl", quad.as_bytes(), Completion::default()), &["line 8", "4 corners, not 3"]);
+    plain("stl", text.replace('\n', "\r\n").to_uppercase().as_bytes(), 0.008);
+    plain("stl", text.replace('\n', " ").replacen("solid a", "solid a\n", 1).as_bytes(), 0.008);
+}
+
+#[test]
+fn files_of_another_kind_are_named() {
+    let named = |ending: &str, bytes: &[u8], parts: &[&str]| {
+        assert_parts(&refusal(ending, bytes, Completion::default()), parts)
+    };
+    named(
+        "stl",
+        b"version https://git-lfs.github.com/spec/v1\noid sha256:4d\nsize 12\n",
+        &["git-LFS pointer", "git lfs pull"],
+    );
+    named("obj", b"version https://git-lfs.github.com/spec/v1\n", &["git-LFS pointer"]);
+    named("stl", b"\n<!DOCTYPE html>\n<html><body>not found</body></html>", &["a web page"]);
+    named("stl", b"<?xml version=\"1.0\"?><!DOCTYPE html PUBLIC \"\"><html>", &["a web page"]);
+    named("stl", b"PK\x03\x04 and so on", &["zip archive"]);
+    named("stl", b"ISO-10303-21;\nHEADER;", &["STEP"]);
+    named("obj", solid("a", &hull()).as_bytes(), &["STL as text", ".stl"]);
+    named("stl", obj(&[block([0.0; 3], [1.0; 3])]).as_bytes(), &["not STL but OBJ", ".obj"]);
+    named("stl", b"", &["cannot be read", "empty"]);
+    let with_mark = [b"\xef\xbb\xbf", solid("a", &hull()).as_bytes()].concat();
+    assert_parts(&plain("stl", &with_mark, 0.008), &["byte-order mark (BOM)"]);
+    let wide: Vec<u8> =
+        "\u{feff}".encode_utf16().chain(solid("a", &hull()).encode_utf16()).flat_map(u16::to_le_bytes).collect();
+    assert_parts(&plain("stl", &wide, 0.008), &["UTF-16"]);
+}
+
+#[test]
+fn obj_files_of_every_style_define_the_same_solid() {
+    let text = obj(&[block([-0.2, -0.1, -0.05], [0.2, 0.1, 0.05])]);
+    plain("obj", text.as_bytes(), 0.008);
+    let negative = text.replace("f 1 3 4 2", "f -8 -6 -5 -7").replace("f 5 6 8 7", "f -4/1 -3/2/1 -1//3 -2");
+    plain("obj", negative.as_bytes(), 0.008);
+    let continued = text.replace("f 1 3 4 2", "f 1 3 \\\r\n 4 2").replace('\n', "\r\n");
+    plain("obj", continued.as_bytes(), 0.008);
+    let coloured =
+        text.replace("0.05\nv", "0.05 0.5 0.5 1.0\nv").replace("f 1 3", "g a b\no c\ns 1\nusemtl x\nl 1 2\np 3\nf 1 3");
+    plain("obj", coloured.as_bytes(), 0.008);
+    let error = |from: &str, to: &str| refusal("obj", text.replacen(from, to, 1).as_bytes(), Completion::default());
+    assert_parts(&error("f 1 3 4 2", "f 1 3 4 9"), &["line 9", "no corner 9", "only 8"]);
+    assert_parts(&error("f 1 3 4 2", "f 1 3"), &["line 9", "three corners or more"]);
+    assert_parts(&error("f 1 3 4 2", "fx 1 3"), &["line 9", "\"fx\" is no word of OBJ"]);
+    assert_parts(&error("f 1 3 4 2", "cstype bspline"), &["curved surface"]);
+}
+
+#[test]
+fn facets_of_many_corners_are_filled_although_they_are_concave() {
+    // A star prism 0.1 m high: ten corners at radius 0.2 and 0.08 m; area 5 R r sin 36°.
+    let corner = |i: u32| {
+        let (y, x) = (PI * f64::from(i) / 5.0).sin_cos();
+        let radius = if i % 2 == 0 { 0.2 } else { 0.08 };
+        (radius * x, radius * y)
+    };
+    let ring = |z: f64| (0..10).map(move |i| (corner(i), z)).map(|((x, y), z)| format!("v {x} {y} {z}\n"));
+    let mut text: String = ring(0.0).chain(ring(0.1)).collect();
+    text += "f 10 9 8 7 6 5 4 3 2 1\nf 11 12 13 14 15 16 17 18 19 20\n";
+    (1..=10).for_each(|i| text += &format!("f {} {} {} {}\n", i, i % 10 + 1, i % 10 + 11, i + 10));
+    let area = 5.0 * 0.2 * 0.08 * (PI / 5.0).sin();
+    plain("obj", text.as_bytes(), 0.1 * area);
+    // A point in a bay of the star is outside.
+    let (mesh, _) = read_as("obj", text.as_bytes(), &options(Completion::default())).unwrap();
+    let bay = Vector::from([0.12 * (PI / 5.0).cos(), 0.12 * (PI / 5.0).sin(), 0.05]);
+    assert!(mesh.distance_and_normal(&bay).0 > 0.01);
+}
+
+#[test]
+fn inverted_facets_are_reversed_unless_they_bound_a_hollow() {
+    let reverse = |f: &[[f64; 3]; 3]| [f[1], f[0], f[2]];
+    let all: Vec<_> = hull().iter().map(reverse).collect();
+    assert_parts(&plain("stl", solid("a", &all).as_bytes(), 0.008), &["inside out"]);
+    let mut some = hull();
+    some[2..5].iter_mut().for_each(|f| *f = reverse(f));
+    assert_parts(&plain("stl", solid("a", &some).as_bytes(), 0.008), &["3 of 12 facets are inverted"]);
+    let inner = facets([-0.1, -0.05, -0.025], [0.1, 0.05, 0.025]);
+    let inward: Vec<_> = inner.iter().map(reverse).collect();
+    let hollow = |outer: &[[[f64; 3]; 3]], inner: &[[[f64; 3]; 3]]| solid("a", &[outer, inner].concat());
+    // 0.008 less 0.001 m³.
+    assert_eq!(plain("stl", hollow(&hull(), &inward).as_bytes(), 0.007), "");
+    assert_parts(&plain("stl", hollow(&all, &inner).as_bytes(), 0.007), &["inside out"]);
+    assert_parts(&refusal("stl", hollow(&hull(), &inner).as_bytes(), Completion::default()), &["count twice"]);
+    let mut mixed = inward;
+    mixed[3] = inner[3];
+    assert_parts(&refusal("stl", hollow(&hull(), &mixed).as_bytes(), Completion::default()), &["both orientations"]);
+}
+
+#[test]
+fn parts_that_overlap_are_refused_however_flush_they_are() {
+    let first = ([-0.2, -0.1, -0.05], [0.2, 0.1, 0.05]);
+    let both = |min: [f64; 3], max: [f64; 3]| obj(&[block(first.0, first.1), block(min, max)]);
+    let refused = |min: [f64; 3], max: [f64; 3]| {
+        let message = refusal("obj", both(min, max).as_bytes(), Completion::default());
+        assert_parts(&message, &["boolean union"]);
+        message
+    };
+    // Flush on four sides; counted separately they would have 0.016 m³, together they fill 0.012 m³.
+    assert_parts(&refused([0.0, -0.1, -0.05], [0.4, 0.1, 0.05]), &["share volume", "cover the same area"]);
+    // Sides 1e-5 m apart: crossings are 1e-5 m deep at the rim, but the parts share half of their volume.
+    refused([0.0, -0.100_01, -0.050_01], [0.4, 0.100_01, 0.050_01]);
+    refused([0.0, -0.05, -0.05], [0.4, 0.05, 0.05]);
+    refused([0.0, -0.05, -0.02], [0.4, 0.05, 0.02]);
+    // Parts that touch do not overlap.
+    plain("obj", both([0.2, -0.05, -0.05], [0.4, 0.05, 0.05]).as_bytes(), 0.010);
+}
+
+#[test]
+fn shallow_crossings_are_tolerated_and_told() {
+    // The second part enters the first by 1e-5 m: below 1e-3 dp = 2e-5 m and 1e-4 of 0.6 m.
+    let part = |depth: f64| {
+        obj(&[block([-0.2, -0.1, -0.05], [0.2, 0.1, 0.05]), block([0.2 - depth, -0.05, -0.02], [0.4, 0.05, 0.02])])
+    };
+    let notes = assert_volume("obj", part(1e-5).as_bytes(), Completion::default(), 0.0088, 1e-4);
+    assert_parts(&notes, &["passes through itself at", "1.0e-5 m at most", "tolerated"]);
+    assert_parts(
+        &refusal("obj", part(1e-4).as_bytes(), Completion::default()),
+        &["by 1.0e-4 m at most", "2.0e-5 m is tolerated"],
+    );
+}
+
+/// A boat of 0.4 × 0.2 × 0.1 m without its deck and without its side at y = 0.
+fn half_boat() -> Vec<[[f64; 3]; 3]> {
+    let all = facets([-0.2, 0.0, -0.1], [0.2, 0.1, 0.0]);
+    let in_plane = |f: &[[f64; 3]; 3], axis: usize| f.iter().all(|p| p[axis] == 0.0);
+    all.into_iter().filter(|f| !in_plane(f, 1) && !in_plane(f, 2)).collect()
+}
+
+#[test]
+fn half_a_hull_without_deck_becomes_a_hull() {
+    let both = Completion { mirror: Some(1), cap: Some(2), ..Completion::default() };
+    let text = solid("half", &half_boat());
+    assert_eq!(assert_volume("stl", text.as_bytes(), both, 0.008, 1e-14), "");
+    // A centre line 1e-5 m from the plane is moved into it.
+    let off = text.replace(" 0 ", " 0.00001 ");
+    let notes = assert_volume("stl", off.as_bytes(), both, 0.008, 1e-14);
+    assert_parts(&notes, &["moved into the plane y = 0, by 1.0e-5 m"]);
+    // A closed half has a wall in the plane, which disappears.
+    let closed = solid("half", &facets([-0.2, 0.0, -0.1], [0.2, 0.1, 0.0]));
+    assert_volume("stl", closed.as_bytes(), Completion { mirror: Some(1), ..Completion::default() }, 0.008, 1e-14);
+    let mirror = Completion { mirror: Some(1), ..Completion::default() };
+    assert_parts(&refusal("stl", text.as_bytes(), mirror), &["the mesh is open", "cap = \"z\""]);
+    assert_parts(&refusal("stl", solid("a", &hull()).as_bytes(), mirror), &["reaches from y = -0.1000 to 0.1000"]);
+    let away = text.replace(" 0 ", " 0.01 ");
+    assert_parts(&refusal("stl", away.as_bytes(), mirror), &["1.000e-2 m from the plane y = 0"]);
+    let cap_x = Completion { mirror: Some(1), cap: Some(0), ..Completion::default() };
+    assert_parts(&refusal("stl", text.as_bytes(), cap_x), &["reaches from x = -0.2000 to 0.2000"]);
+}
+
+#[test]
+fn a_cap_leaves_the_inside_of_a_ring_open() {
+    // Panels of a square ring, 0.4 m outside and 0.2 m inside, 0.1 m deep: bottom and walls, no top.
+    let ring = |half: f64, z: f64| [[-half, -half, z], [half, -half, z], [half, half, z], [-half, half, z]];
+    let (outer, inner) = ([ring(0.2, -0.1), ring(0.2, 0.0)], [ring(0.1, -0.1), ring(0.1, 0.0)]);
+    let mut panels = Vec::new();
+    for (i, j) in (0..4).map(|i| (i, (i + 1) % 4)) {
+        let quads = [
+            [outer[0][i], outer[0][j], outer[1][j], outer[1][i]],
+            [inner[0][j], inner[0][i], inner[1][i], inner[1][j]],
+            [outer[0][j], outer[0][i], inner[0][i], inner[0][j]],
+        ];
+        panels.extend(quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]));
+    }
+    let cap = Completion { cap: Some(2), ..Completion::default() };
+    // (0.16 − 0.04) m² × 0.1 m.
+    assert_volume("stl", solid("ring", &panels).as_bytes(), cap, 0.012, 1e-14);
+    assert_parts(&assert_volume("stl", solid("a", &hull()).as_bytes(), cap, 0.008, 1e-14), &["has no open edge"]);
+}
+
+#[test]
+fn a_sheet_becomes_a_plate_of_its_thickness() {
+    let plate = |thickness: f64| Completion { thickness: Some(thickness), ..Completion::default() };
+    let sheet = "v 0 0 0\nv 0.5 0 0\nv 0.5 0.3 0\nv 0 0.3 0\nf 1 2 3 4\n";
+    // 0.15 m² × 0.01 m.
+    assert_volume("obj", sheet.as_bytes(), plate(0.01), 0.0015, 1e-13);
+    // An angle of two sheets: each side of the plate is offset by half the thickness, so the middle line counts.
+    let angle = "v 0 0 0\nv 0.5 0 0\nv 0.5 0.3 0\nv 0 0.3 0\nv 0 0 0.2\nv 0 0.3 0.2\nf 1 2 3 4\nf 1 4 6 5\n";
+    assert_volume("obj", angle.as_bytes(), plate(0.01), 0.7 * 0.3 * 0.01, 1e-12);
+    // A closed surface becomes a hollow: 0.41 × 0.21 × 0.11 less 0.39 × 0.19 × 0.09 m³.
+    let hollow = 0.41 * 0.21 * 0.11 - 0.39 * 0.19 * 0.09;
+    assert_volume("stl", solid("a", &hull()).as_bytes(), plate(0.01), hollow, 1e-12);
+    assert_parts(&refusal("obj", sheet.as_bytes(), Completion::default()), &["the mesh is open", "cap = \"z\""]);
+    assert_parts(&refusal("obj", angle.as_bytes(), Completion::default()), &["thickness = 0.01"]);
+}

@@ -1,0 +1,192 @@
+//! Drawings as programs write them: exact sizes, transforms, hidden paths and references.
+
+use std::{
+    fs,
+    sync::atomic::{AtomicUsize, Ordering},
+};
+
+use super::*;
+
+/// Writes a drawing and returns the extent (m) of its outline along x and y, and its notes.
+fn extent(svg: &str, id: Option<&str>, unit: Option<LengthUnit>) -> Result<([f64; 2], String)> {
+    static NUMBER: AtomicUsize = AtomicUsize::new(0);
+    let number = NUMBER.fetch_add(1, Ordering::Relaxed);
+    let path = std::env::temp_dir().join(format!("pontoon-svg-{}-{number}.svg", std::process::id()));
+    fs::write(&path, svg).unwrap();
+    let result = outline(&path, &DrawingOptions { id, scale: 1.0, unit, tolerance: 1e-4 });
+    fs::remove_file(&path).unwrap();
+    let (points, notes) = result?;
+    let range = |i: usize| {
+        let values = || points.iter().map(|p| p[i]);
+        values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min)
+    };
+    Ok(([range(0), range(1)], notes.into_iter().map(|note| note.what).collect::<Vec<_>>().join("; ")))
+}
+
+/// Asserts an extent of 200 × 100 mm, and returns the notes.
+fn assert_200_by_100(svg: &str, id: Option<&str>, unit: Option<LengthUnit>) -> String {
+    let ([x, y], notes) = extent(svg, id, unit).unwrap_or_else(|e| panic!("{e}: {svg}"));
+    // Numbers in the drawings have six digits.
+    assert!((x - 0.2).abs() < 1e-6 && (y - 0.1).abs() < 1e-6, "{x} × {y} m: {svg}");
+    notes
+}
+
+fn refusal(svg: &str, id: Option<&str>) -> String {
+    extent(svg, id, None).err().map(|e| e.to_string()).unwrap_or_default()
+}
+
+/// A rectangle of 200 × 100 units.
+const RECTANGLE: &str = "<path id='hull' d='M 10,10 h 200 v 100 h -200 z'/>";
+
+fn drawing(attributes: &str, content: &str) -> String {
+    format!(
+        "<svg xmlns='http://www.w3.org/2000/svg' xmlns:xlink='http://www.w3.org/1999/xlink' {attributes}>{content}</svg>"
+    )
+}
+
+#[test]
+fn a_drawing_with_units_has_its_own_size() {
+    let mm = Some(LengthUnit::Mm);
+    let path = |x: f64, y: f64| format!("<path d='M 0,0 h {x} v {y} h -{x} z'/>");
+    let cases = [
+        ("width='540mm' height='120mm' viewBox='0 0 540 120'", 200.0, 100.0),
+        ("width='54cm' height='12cm' viewBox='0 0 540 120'", 200.0, 100.0),
+        ("width='601.51996mm' height='473.16891mm' viewBox='0 0 2273.4613 1788.355'", 755.906, 377.953),
+        ("width='10in' height='5in' viewBox='0 0 1000 500'", 787.4016, 393.7008),
+        // 96 px, 72 pt and 6 pc are an inch.
+        ("width='1000px' height='500px' viewBox='0 0 1000 500'", 755.9055, 377.9528),
+        ("width='720pt' viewBox='0 0 720 500'", 566.9291, 283.4646),
+        ("height='60pc' viewBox='0 0 600 600'", 472.4409, 236.2205),
+        // Without a viewBox the unit is the px.
+        ("width='300mm' height='200mm'", 755.9055, 377.9528),
+        // The smaller of both scales holds, unless the aspect ratio is free.
+        ("width='540mm' height='240mm' viewBox='0 0 540 120'", 200.0, 100.0),
+        ("width='540mm' height='240mm' viewBox='0 0 540 120' preserveAspectRatio='none'", 200.0, 50.0),
+        ("width='540mm' height='240mm' viewBox='0 0 540 120' preserveAspectRatio='xMidYMid slice'", 100.0, 50.0),
+    ];
+    for (attributes, x, y) in cases {
+        let svg = drawing(attributes, &path(x, y));
+        let (with, without) = (assert_200_by_100(&svg, None, mm), assert_200_by_100(&svg, None, None));
+        let agrees = x == 200.0 && y == 100.0;
+        assert_eq!(with.is_empty(), agrees, "{with}");
+        assert!(without.contains("the drawing gives its size"), "{without}");
+    }
+}
+
+#[test]
+fn unit_is_the_size_of_a_drawing_without_its_own() {
+    for attributes in [
+        "",
+        "viewBox='0 0 540 120'",
+        "width='540' height='120' viewBox='0 0 540 120'",
+        "width='100%' viewBox='0 0 9 9'",
+    ] {
+        let svg = drawing(attributes, RECTANGLE);
+        assert_eq!(assert_200_by_100(&svg, None, Some(LengthUnit::Mm)), "");
+        let ([x, _], notes) = extent(&svg, None, None).unwrap();
+        assert!((x - 200.0).abs() < 1e-9 && notes.contains("does not give its size"), "{x}: {notes}");
+    }
+    assert!(refusal(&drawing("width='wide'", RECTANGLE), None).contains("\"wide\" is not a length"));
+    assert!(refusal(&drawing("width='5mm' viewBox='0 0 0 0'", RECTANGLE), None).contains("viewBox"));
+}
+
+#[test]
+fn transforms_of_styles_and_attributes_apply() {
+    let size = "width='540mm' height='120mm' viewBox='0 0 540 120'";
+    let half = "d='M 50,60 h 100 v 50 h -100 z'";
+    let upright = "d='M 50,60 h 50 v 100 h -50 z'";
+    for (style, d) in [
+        ("style='transform:translate(10px,5px) scale(2)'", half),
+        ("style='fill:red; transform : scale( 200% ) !important'", half),
+        ("style='transform:scaleX(2) scaleY(2)'", half),
+        ("style='transform:matrix(2,0,0,2,10,5)'", half),
+        ("style='transform:scale(2) rotate(90deg)'", upright),
+        ("style='transform:rotate(0.25turn) scale(2) /* twice */'", upright),
+        ("style='transform:rotate(1.5707963267948966rad) scale(2,2); transform-origin: 3px 4px'", upright),
+        ("transform='scale(2)'", half),
+        ("transform='scale(2) rotate(90 7 8)'", upright),
+        // The style takes precedence.
+        ("transform='scale(7)' style='transform:scale(2)'", half),
+        ("class='big other'", half),
+    ] {
+        let sheet = "<style>/* sizes */ .st0{fill:none} path.big, #none { transform: scale(2) }</style>";
+        let svg = drawing(size, &format!("{sheet}<path {style} {d}/>"));
+        assert_eq!(assert_200_by_100(&svg, None, Some(LengthUnit::Mm)), "");
+        let group = drawing(size, &format!("{sheet}<g {style}><path {d}/></g>").replace("path.big", "g.big"));
+        assert_200_by_100(&group, None, None);
+    }
+    for style in [
+        "transform:scale3d(2,2,2)",
+        "transform:translate(10%)",
+        "scale:2",
+        "transform:scale(2);transform-origin:center",
+    ] {
+        let message = refusal(&drawing(size, &format!("<path style='{style}' {half}/>")), None);
+        assert!(message.contains("is not read"), "{style}: {message}");
+        // A path beside it can be chosen.
+        let two = drawing(size, &format!("<path style='{style}' {half}/>{RECTANGLE}"));
+        assert_200_by_100(&two, Some("hull"), None);
+    }
+    let sheet = "<style>g > path { transform: scale(2) }</style>";
+    assert!(refusal(&drawing(size, &format!("{sheet}{RECTANGLE}")), None).contains("\"g > path\", which is not read"));
+}
+
+#[test]
+fn hidden_paths_and_definitions_do_not_count() {
+    let size = "width='540mm' height='120mm' viewBox='0 0 540 120'";
+    let other = "<path id='other' d='M 0,0 h 1 v 1 z'/>";
+    for hidden in [
+        other.replace("/>", " display='none'/>"),
+        other.replace("/>", " style='fill:none;display:none'/>"),
+        other.replace("/>", " visibility='hidden'/>"),
+        format!("<g style='display:none'><g style='display:inline'>{other}</g></g>"),
+        format!("<g visibility='hidden'>{other}</g>"),
+        format!("<style>.off{{display:none}}</style><g class='off'>{other}</g>"),
+        format!("<defs>{other}</defs>"),
+        format!("<clipPath id='c'>{other}</clipPath>"),
+        format!("<symbol id='s'>{other}</symbol>"),
+        format!("<mask id='m'>{other}</mask>"),
+    ] {
+        assert_200_by_100(&drawing(size, &format!("{hidden}{RECTANGLE}")), None, None);
+        let message = refusal(&drawing(size, &format!("{hidden}{RECTANGLE}")), Some("other"));
+        assert!(message.contains("is hidden, a definition"), "{message}");
+    }
+    // A visible path in a hidden group.
+    let shown = format!("<g visibility='hidden'>{}</g>", RECTANGLE.replace("/>", " visibility='visible'/>"));
+    assert_200_by_100(&drawing(size, &shown), None, None);
+}
+
+#[test]
+fn references_draw_the_path_to_which_they_refer() {
+    let size = "width='540mm' height='120mm' viewBox='0 0 540 120'";
+    let half = "<defs><path id='hull' d='M 10,10 h 100 v 50 h -100 z'/></defs>";
+    for svg in [
+        format!("{half}<use id='copy' xlink:href='#hull' x='5' transform='scale(2)'/>"),
+        format!("{half}<use id='copy' href='#hull' style='transform:scale(2)'/>"),
+        format!("<symbol id='s'>{half}</symbol><g transform='scale(2)'><use id='copy' href='#hull'/></g>"),
+        format!("{half}<symbol id='s'><use href='#hull'/></symbol><use id='copy' href='#s' transform='scale(2)'/>"),
+    ] {
+        for id in [None, Some("hull"), Some("copy")] {
+            assert_200_by_100(&drawing(size, &svg), id, None);
+        }
+    }
+    assert!(refusal(&drawing(size, "<use href='#hul'/>"), None).contains("refers to \"hul\""));
+    assert!(refusal(&drawing(size, "<use href='other.svg#a'/>"), None).contains("which is not in this drawing"));
+    // References in a circle and groups without end are refused.
+    let circle = "<g id='a'><use href='#b'/></g><g id='b'><use href='#a'/></g>";
+    assert!(refusal(&drawing(size, circle), None).contains("too many or too deep"));
+    let deep = "<g>".repeat(5000) + RECTANGLE + &"</g>".repeat(5000);
+    assert!(refusal(&drawing(size, &deep), None).contains("too deep"));
+    let nested = format!("<svg x='1' width='10' viewBox='0 0 1 1'>{RECTANGLE}</svg>");
+    assert!(refusal(&drawing(size, &nested), None).contains("a <svg> with its own size"));
+}
+
+#[test]
+fn files_of_another_kind_are_named() {
+    assert!(refusal("version https://git-lfs.github.com/spec/v1\n", None).contains("git-LFS pointer"));
+    assert!(refusal("<!doctype html><html></html>", None).contains("a web page"));
+    assert!(refusal("<html><svg/></html>", None).contains("a web page"));
+    assert!(refusal("\u{1f}\u{8b}", None).contains("SVG"));
+    let marked = format!("\u{feff}{}", drawing("", RECTANGLE));
+    assert_200_by_100(&marked, None, Some(LengthUnit::Mm));
+}
