@@ -82,6 +82,22 @@ impl<const D: usize> Hollow<D> {
         (volume, first)
     }
 
+    /// Returns the height (m) of the surface of a `volume` of water (m³; m² in 2-D) in the hollow at `pose`.
+    pub(crate) fn level_of(&self, pose: &Pose<D>, volume: f64) -> f64 {
+        let along = pose.rotation * self.along;
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        for column in &self.columns {
+            let end = pose.point(&column.low)[D - 1];
+            low = low.min(end);
+            high = high.max(end + along[D - 1].max(0.0) * column.length);
+        }
+        for _ in 0..50 {
+            let middle = 0.5 * (low + high);
+            if self.volume_and_moment_below(pose, middle).0 < volume { low = middle } else { high = middle }
+        }
+        0.5 * (low + high)
+    }
+
     /// Returns the height (m) of the rim at `pose`; infinity if the hollow is closed.
     pub(crate) fn rim_height(&self, pose: &Pose<D>) -> f64 {
         self.rim.map_or(f64::INFINITY, |rim| pose.position[D - 1] + rim)

@@ -366,3 +366,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         world_bounds(&solid.spec.shape, &solid.kinematics.pose).min[D - 1]
     }
 }
+
+#[cfg(all(test, feature = "dim2", feature = "dim3"))]
+#[path = "../../tests/unit/preflight/floating_bodies.rs"]
+mod tests;

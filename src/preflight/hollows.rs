@@ -36,19 +36,22 @@ impl<const D: usize> SolidHollows<D> {
     }
 }
 
-/// Returns solid number `i` with its hollows that are dry at the start.
+/// Returns solid number `i` with its hollows that are dry at the start, and those with water of their own.
 pub(super) fn hull<'a, const D: usize>(context: &'a PreflightContext<D>, i: usize) -> Hull<'a, D> {
     let solid = &context.solids()[i];
     let mut hull = Hull::new(&solid.spec.shape);
-    if let Some(own) = &context.hollows[i] {
-        let particle = context.dp().powi(D as i32);
-        let dry = |(hollow, particles): (&'_ _, &usize)| {
-            let (volume, _) =
-                Hollow::volume_and_moment_below(hollow, &solid.kinematics.pose, context.still_water.level);
-            *particles as f64 * particle <= DRY * volume
-        };
-        let all = own.enclosure.hollows.iter().zip(&own.particles);
-        hull.dry = all.filter(|pair| dry(*pair)).map(|(hollow, _)| hollow).collect();
+    let Some(own) = &context.hollows[i] else { return hull };
+    let (pose, level, dp) = (&solid.kinematics.pose, context.still_water.level, context.dp());
+    for (hollow, particles) in own.enclosure.hollows.iter().zip(&own.particles) {
+        let volume_below = |level: f64| hollow.volume_and_moment_below(pose, level).0;
+        let water = *particles as f64 * dp.powi(D as i32);
+        if water <= DRY * volume_below(level) {
+            hull.dry.push(hollow);
+        } else if hollow.rim_height(pose) > level {
+            // Half a row is the error of a count.
+            let as_outside = volume_below(level - 0.6 * dp) < water && water < volume_below(level + 0.6 * dp);
+            hull.ballast.push((hollow, if as_outside { volume_below(level) } else { water }));
+        }
     }
     hull
 }
@@ -86,7 +89,7 @@ pub(super) fn check_hollows<const D: usize>(context: &PreflightContext<D>, findi
                 _ => Finding::warning("water_inside", what, mend),
             });
         }
-        let rim = hull(context, i).rim_height(pose);
+        let rim = hull(context, i).dry.iter().map(|hollow| hollow.rim_height(pose)).fold(f64::INFINITY, f64::min);
         if solid.spec.dry == Some(true) && rim < level - 0.5 * context.dp() {
             let what = format!(
                 "the rim of \"{name}\" starts {} m below the still water: water runs in",
@@ -97,3 +100,7 @@ pub(super) fn check_hollows<const D: usize>(context: &PreflightContext<D>, findi
         }
     }
 }
+
+#[cfg(all(test, feature = "dim2", feature = "dim3"))]
+#[path = "../../tests/unit/preflight/hollows.rs"]
+mod tests;

@@ -22,6 +22,9 @@ use crate::{
     },
 };
 
+/// Most trials of the hollows that water fills at an equilibrium.
+const MOST_TRIALS: usize = 200;
+
 /// The solids of a scene, in their places.
 pub(super) struct PlacedSolids<const D: usize> {
     pub(super) specs: Vec<SolidSpec<D>>,
@@ -127,39 +130,55 @@ impl<const D: usize> PlacedSolids<D> {
     fn rise_to_equilibrium(&self, i: usize, mass: f64, rho0: f64, level: f64, water: &[WaterBody<D>]) -> Result<f64> {
         let spec = &self.specs[i];
         let hollows = self.enclosures[i].as_ref().map_or(&[][..], |enclosure| &enclosure.hollows);
-        let mut hull = Hull { shape: &spec.shape, dry: hollows.iter().collect() };
-        loop {
+        let mut hull = Hull { dry: hollows.iter().collect(), ..Hull::new(&spec.shape) };
+        for _ in 0..MOST_TRIALS {
             let rise = hull.equilibrium_height(&spec.pose, mass, rho0, level);
-            let before = hull.dry.len();
             match &rise {
                 Ok(rise) => {
                     let mut pose = spec.pose;
                     pose.position[D - 1] += rise;
-                    hull.dry.retain(|hollow| !self.is_filled(i, hollow, &pose, water));
+                    let next = self.hull_at(i, &pose, level, water);
+                    let same = hull.dry.len() <= next.dry.len()
+                        && hull.ballast.len() == next.ballast.len()
+                        && hull.ballast.iter().zip(&next.ballast).all(|(a, b)| (a.1 - b.1).abs() < 1e-12 * a.1);
+                    if same {
+                        return Ok(*rise);
+                    }
+                    // A hollow that fills in one place stays full.
+                    let dry = |hollow: &&Hollow<D>| hull.dry.iter().any(|own| std::ptr::eq(*own, *hollow));
+                    hull = Hull { dry: next.dry.into_iter().filter(dry).collect(), ..next };
                 }
                 // Without the hollow that floods first.
                 Err(_) => {
-                    let rim = hull.rim_height(&spec.pose);
+                    let (rim, before) = (hull.rim_height(&spec.pose), hull.dry.len());
                     hull.dry.retain(|hollow| keeps_out(spec, hollow) || hollow.rim_height(&spec.pose) > rim);
+                    if hull.dry.len() == before {
+                        return rise;
+                    }
                 }
             }
-            if hull.dry.len() == before {
-                return rise;
-            }
         }
+        hull.equilibrium_height(&spec.pose, mass, rho0, level)
     }
 
-    /// Returns the dry hollows of solid number `i` at `pose` in `water`.
-    fn hull_at(&self, i: usize, pose: &Pose<D>, water: &[WaterBody<D>]) -> Hull<'_, D> {
-        let hollows = self.enclosures[i].as_ref().map_or(&[][..], |enclosure| &enclosure.hollows);
-        let dry = hollows.iter().filter(|hollow| !self.is_filled(i, hollow, pose, water)).collect();
-        Hull { shape: &self.specs[i].shape, dry }
+    /// Returns solid number `i` at `pose` in `water`, whose still level outside is `level` (m), with its hollows.
+    fn hull_at(&self, i: usize, pose: &Pose<D>, level: f64, water: &[WaterBody<D>]) -> Hull<'_, D> {
+        let mut hull = Hull::new(&self.specs[i].shape);
+        for hollow in self.enclosures[i].as_ref().map_or(&[][..], |enclosure| &enclosure.hollows) {
+            match self.level_in(i, hollow, pose, water) {
+                None => hull.dry.push(hollow),
+                // Water as high as outside carries nothing.
+                Some(own) if own == level => (),
+                Some(own) => hull.ballast.push((hollow, hollow.volume_and_moment_below(pose, own).0)),
+            }
+        }
+        hull
     }
 
     /// Returns the mass (kg) of the water that solid number `i` displaces where it is.
     fn displaced_mass(&self, i: usize, rho0: f64, level: f64, water: &[WaterBody<D>]) -> f64 {
         let pose = &self.specs[i].pose;
-        rho0 * self.hull_at(i, pose, water).submerged_volume(pose, level).0
+        rho0 * self.hull_at(i, pose, level, water).submerged_volume(pose, level).0
     }
 
     /// Returns the common rise (m) from the places `rises` (m) at which these bodies displace the mass `more` (kg) in
@@ -178,7 +197,7 @@ impl<const D: usize> PlacedSolids<D> {
             let one = |i: &usize| {
                 let mut pose = self.specs[*i].pose;
                 pose.position[D - 1] += rises[*i] + rise;
-                self.hull_at(*i, &pose, water).submerged_volume(&pose, level).0
+                self.hull_at(*i, &pose, level, water).submerged_volume(&pose, level).0
             };
             rho0 * bodies.iter().map(one).sum::<f64>()
         };
@@ -194,10 +213,10 @@ impl<const D: usize> PlacedSolids<D> {
         Some(0.5 * (under + over))
     }
 
-    /// Returns whether bodies of water fill a hollow of solid number `i` at `pose`.
-    fn is_filled(&self, i: usize, hollow: &Hollow<D>, pose: &Pose<D>, water: &[WaterBody<D>]) -> bool {
+    /// Returns the level (m) of the water that fills a hollow of solid number `i` at `pose`; `None` if it is dry.
+    fn level_in(&self, i: usize, hollow: &Hollow<D>, pose: &Pose<D>, water: &[WaterBody<D>]) -> Option<f64> {
         let spec = &self.specs[i];
-        water.iter().any(|body| {
+        let fills = |body: &&WaterBody<D>| {
             let enters = match body.inside {
                 Some(solid) => solid == i,
                 None => {
@@ -206,7 +225,8 @@ impl<const D: usize> PlacedSolids<D> {
                 }
             };
             enters && hollow.middles_below(pose, body.level).any(|x| body.contains(&x))
-        })
+        };
+        water.iter().filter(fills).map(|body| body.level).reduce(f64::max)
     }
 
     /// Returns the enclosed spaces for a filling around the solids at `poses`.

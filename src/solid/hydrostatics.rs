@@ -7,42 +7,50 @@ use crate::{
     solid::FreeBody,
 };
 
-/// The volume with which a solid displaces water: its material, and its hollows that are dry.
+/// The volume with which a solid displaces water: its material, its hollows that are dry, and those with water of their
+/// own, less that water.
 pub(crate) struct Hull<'a, const D: usize> {
     pub(crate) shape: &'a Shape<D>,
     /// The hollows without water.
     pub(crate) dry: Vec<&'a Hollow<D>>,
+    /// The hollows with water of their own, with its volume, m³ (m² in 2-D).
+    pub(crate) ballast: Vec<(&'a Hollow<D>, f64)>,
 }
 
 impl<'a, const D: usize> Hull<'a, D> {
-    /// A solid without dry hollows.
+    /// A solid without such hollows.
     pub(crate) fn new(shape: &'a Shape<D>) -> Self {
-        Self { shape, dry: Vec::new() }
+        Self { shape, dry: Vec::new(), ballast: Vec::new() }
     }
 
-    /// Volume (m³; m² in 2-D) of the displaced water at `pose` with the still water at `level` (m), and its centroid. A
-    /// hollow whose rim lies below the level is full of water.
+    /// Volume (m³; m² in 2-D) of the displaced water at `pose` with the still water at `level` (m), and its centroid,
+    /// less the water in hollows. A hollow whose rim lies below the level is full of water of that level.
     pub(crate) fn submerged_volume(&self, pose: &Pose<D>, level: f64) -> (f64, Vector<D>) {
         let (volume, centroid) = self.shape.submerged_volume(pose, level);
         // The level stands at the rim up to round-off where the search for an equilibrium begins.
         let slack = 1e-9 * (level.abs() + self.shape.bounds().size().max());
-        let dry: Vec<_> = self.dry.iter().filter(|hollow| hollow.rim_height(pose) >= level - slack).collect();
-        if dry.is_empty() {
-            return (volume, centroid);
-        }
         let (mut all, mut first) = (volume, centroid * volume);
-        for hollow in dry {
+        let mut any = false;
+        for hollow in self.hollows().filter(|hollow| hollow.rim_height(pose) >= level - slack) {
             let (volume, moment) = hollow.volume_and_moment_below(pose, level);
-            all += volume;
-            first += moment;
+            (all, first, any) = (all + volume, first + moment, true);
         }
-        if all > 0.0 { (all, first / all) } else { (all, centroid) }
+        for (hollow, water) in self.ballast.iter().filter(|(hollow, _)| hollow.rim_height(pose) >= level - slack) {
+            (all, first) = (all - water, first - hollow.volume_and_moment_below(pose, hollow.level_of(pose, *water)).1);
+        }
+        if any && all != 0.0 { (all, first / all) } else { (all, centroid) }
+    }
+
+    /// The hollows in which water does not stand as high as outside.
+    fn hollows(&self) -> impl Iterator<Item = &'a Hollow<D>> {
+        self.dry.iter().copied().chain(self.ballast.iter().map(|(hollow, _)| *hollow))
     }
 
     /// Volume (m³; m² in 2-D) of the displaced water, with hollows dry even if their rim lies below the level.
     pub(crate) fn volume_if_dry(&self, pose: &Pose<D>, level: f64) -> f64 {
-        let hollows = self.dry.iter().map(|hollow| hollow.volume_and_moment_below(pose, level).0);
-        self.shape.submerged_volume(pose, level).0 + hollows.sum::<f64>()
+        let hollows: f64 = self.hollows().map(|hollow| hollow.volume_and_moment_below(pose, level).0).sum();
+        let ballast: f64 = self.ballast.iter().map(|(_, water)| water).sum();
+        self.shape.submerged_volume(pose, level).0 + hollows - ballast
     }
 
     /// Lowest and highest height (m) of the box around the hull at `pose`.
@@ -51,9 +59,9 @@ impl<'a, const D: usize> Hull<'a, D> {
         [low, high]
     }
 
-    /// Height (m) of the lowest rim of a dry hollow at `pose`; infinity if none is open.
+    /// Height (m) of the lowest rim of these hollows at `pose`; infinity if none is open.
     pub(crate) fn rim_height(&self, pose: &Pose<D>) -> f64 {
-        self.dry.iter().map(|hollow| hollow.rim_height(pose)).fold(f64::INFINITY, f64::min)
+        self.hollows().map(|hollow| hollow.rim_height(pose)).fold(f64::INFINITY, f64::min)
     }
 
     /// Lowest height (m) of the hull at `pose`, and the height that water reaches before it floods or covers the hull.
