@@ -244,14 +244,34 @@ fn bodies(bodies: &[BodySummary], dimension: usize) -> String {
                     roll.join(" "),
                 ]);
             }
-            None if body.density_ratio >= 1.0 => row.push("sinks".into()),
-            None => {}
+            None => row.extend(match body.support {
+                "bottom" => Some("sinks".into()),
+                "lines" => Some("hangs".into()),
+                "held" | "floods" => Some(body.support.into()),
+                _ => None,
+            }),
         }
         rows.push(row);
         grain.push(vec![body.name.clone(), three_digits(body.thinnest_dp), three_digits(body.least_ratio)]);
     }
+    let mut ties = String::new();
+    for (i, body) in bodies.iter().enumerate() {
+        // Each assembly once, with its first body.
+        if !body.tied_to.is_empty() && !bodies[..i].iter().any(|other| body.tied_to.contains(&other.name)) {
+            let _ = writeln!(
+                ties,
+                "  {} and {} move as one by their joints: GM, heave and roll are those of all",
+                body.name,
+                body.tied_to.join(", ")
+            );
+        }
+        if body.load_kg.abs() > 1e-6 * body.mass_kg {
+            let (way, load) = (if body.load_kg > 0.0 { "down" } else { "up" }, three_digits(body.load_kg.abs()));
+            let _ = writeln!(ties, "  {}: lines and forces pull it {way} with the weight of {load} kg", body.name);
+        }
+    }
     let said = "  heave: without and with an estimate of the water that heaves along; roll: without any\n";
-    format!("{}{said}\n{}", table(&rows), table(&grain))
+    format!("{}{said}{ties}\n{}", table(&rows), table(&grain))
 }
 
 #[cfg(test)]

@@ -9,6 +9,7 @@ use super::{
     Shape,
     boundary_points::for_each_index,
     fit::{Obstacle, pack_around_obstacles},
+    hollow::{Enclosure, Place},
 };
 use crate::{
     error::{Error, Result},
@@ -38,6 +39,61 @@ pub struct FilledWater<const D: usize> {
 /// Largest number of points of a lattice: a larger number indicates a mistyped spacing.
 const MOST: f64 = 4e8;
 
+/// The hollows of a solid, and how water enters them.
+pub(crate) struct EnclosedSpace<'a, const D: usize> {
+    /// Number of the solid.
+    pub(crate) solid: usize,
+    pub(crate) shape: &'a Shape<D>,
+    pub(crate) pose: &'a Pose<D>,
+    pub(crate) enclosure: &'a Enclosure<D>,
+    /// Whether a region of water that reaches around the solid stays out of each hollow.
+    pub(crate) keeps_out: Vec<bool>,
+}
+
+/// A filling with water.
+pub(crate) struct Filling<'a, const D: usize> {
+    pub(crate) regions: &'a [WaterRegion<D>],
+    /// The solid whose hollows each region fills, if it fills nothing else; an empty list: none does.
+    pub(crate) inside: Vec<Option<usize>>,
+    pub(crate) solids: &'a [(&'a Shape<D>, &'a Pose<D>)],
+    pub(crate) spaces: &'a [EnclosedSpace<'a, D>],
+}
+
+/// Water with its origin.
+pub(crate) struct Filled<const D: usize> {
+    pub(crate) water: FilledWater<D>,
+    /// Number of the region of each particle.
+    pub(crate) home: Vec<usize>,
+    /// Whether a region of water lies in each enclosed space without reaching around the solid.
+    pub(crate) has_own_water: Vec<bool>,
+}
+
+/// How a region of water meets an enclosed space.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Entry {
+    /// The region lies within the solid.
+    Within,
+    /// The region reaches around the solid.
+    Around,
+    /// The region fills the hollows and nothing else.
+    Only,
+}
+
+impl<const D: usize> EnclosedSpace<'_, D> {
+    fn place(&self, x: &Vector<D>) -> Place {
+        self.enclosure.place(self.shape, &self.pose.local(x))
+    }
+
+    /// Returns whether the space keeps the point `x` of a region dry.
+    fn excludes(&self, x: &Vector<D>, entry: Entry) -> bool {
+        match entry {
+            Entry::Within => false,
+            Entry::Around => matches!(self.place(x), Place::Hollow(hollow) if self.keeps_out[hollow]),
+            Entry::Only => !matches!(self.place(x), Place::Hollow(_)),
+        }
+    }
+}
+
 /// Fills `regions` with water of spacing `dp` (m) outside the `solids`, and returns the filling.
 ///
 /// Regions share a lattice if their corners are a whole number of dp apart. If a box is not a whole number of dp wide,
@@ -51,41 +107,90 @@ pub fn fill<const D: usize>(
     solids: &[(&Shape<D>, &Pose<D>)],
     dp: f64,
 ) -> Result<FilledWater<D>> {
-    if !(dp > 0.0 && dp.is_finite()) {
-        return Err(
-            Error::scene(format!("the particle spacing dp is {dp}")).help("give a length above zero, in metres")
-        );
+    Ok(Filling { regions, inside: Vec::new(), solids, spaces: &[] }.fill(dp)?.water)
+}
+
+impl<const D: usize> Filling<'_, D> {
+    /// Fills the regions with water of spacing `dp` (m) as [`fill`], but for the hollows that stay dry.
+    ///
+    /// # Errors
+    /// The same errors as [`fill`].
+    pub(crate) fn fill(&self, dp: f64) -> Result<Filled<D>> {
+        if !(dp > 0.0 && dp.is_finite()) {
+            return Err(
+                Error::scene(format!("the particle spacing dp is {dp}")).help("give a length above zero, in metres")
+            );
+        }
+        let mut lattices: Vec<Lattice<D>> = Vec::new();
+        for region in self.regions {
+            lattices.push(Lattice::new(region, lattices.first().map(|l| l.origin), dp)?);
+        }
+        let mut obstacles: Vec<_> = self.solids.iter().map(|(shape, pose)| Obstacle::new(shape, pose, dp)).collect();
+        let mut filled = FilledWater { r: Vec::new(), removed_in_solids: 0, removed_in_regions: 0 };
+        let mut home = Vec::new();
+        let entries: Vec<Vec<Entry>> = lattices.iter().enumerate().map(|(k, l)| self.entries(k, l)).collect();
+        let excludes = |k: usize, x: &Vector<D>| {
+            self.spaces.iter().zip(&entries[k]).any(|(space, entry)| space.excludes(x, *entry))
+        };
+        for (k, lattice) in lattices.iter().enumerate() {
+            lattice.for_each_point(0, |x| {
+                if !lattice.contains(x) || excludes(k, x) {
+                    return;
+                }
+                if lattices[..k].iter().enumerate().any(|(i, earlier)| earlier.contains(x) && !excludes(i, x)) {
+                    filled.removed_in_regions += 1;
+                } else if obstacles.iter_mut().any(|o| o.claims_cell(x)) {
+                    filled.removed_in_solids += 1;
+                } else {
+                    obstacles.iter_mut().for_each(|o| o.check_fit(x, |cell| lattice.contains(cell)));
+                    filled.r.push(*x);
+                    home.push(k);
+                }
+            });
+        }
+        pack_around_obstacles(&mut filled.r, &home, &lattices, &mut obstacles, dp);
+        if obstacles.iter().any(Obstacle::needs_packing) {
+            let before = filled.r.len();
+            let keep =
+                |(x, k): (&Vector<D>, &usize)| !obstacles.iter().any(|o| o.is_in_narrow_gap(x)) && !excludes(*k, x);
+            let keep: Vec<bool> = filled.r.iter().zip(&home).map(keep).collect();
+            let mut flags = keep.iter();
+            filled.r.retain(|_| flags.next() == Some(&true));
+            let mut flags = keep.iter();
+            home.retain(|_| flags.next() == Some(&true));
+            filled.removed_in_solids += before - filled.r.len();
+        }
+        let has_own_water = (0..self.spaces.len()).map(|s| self.has_own_water(s, &lattices, &entries)).collect();
+        Ok(Filled { water: filled, home, has_own_water })
     }
-    let mut lattices: Vec<Lattice<D>> = Vec::new();
-    for region in regions {
-        lattices.push(Lattice::new(region, lattices.first().map(|l| l.origin), dp)?);
-    }
-    let mut obstacles: Vec<_> = solids.iter().map(|(shape, pose)| Obstacle::new(shape, pose, dp)).collect();
-    let mut filled = FilledWater { r: Vec::new(), removed_in_solids: 0, removed_in_regions: 0 };
-    let mut home = Vec::new();
-    for (k, lattice) in lattices.iter().enumerate() {
-        lattice.for_each_point(0, |x| {
-            if !lattice.contains(x) {
-                return;
+
+    /// Returns how region number `k` meets each enclosed space.
+    fn entries(&self, k: usize, lattice: &Lattice<D>) -> Vec<Entry> {
+        let only = self.inside.get(k).copied().flatten();
+        let entry = |space: &EnclosedSpace<D>| {
+            if only.is_some() {
+                return if only == Some(space.solid) { Entry::Only } else { Entry::Within };
             }
-            if lattices[..k].iter().any(|earlier| earlier.contains(x)) {
-                filled.removed_in_regions += 1;
-            } else if obstacles.iter_mut().any(|o| o.claims_cell(x)) {
-                filled.removed_in_solids += 1;
-            } else {
-                obstacles.iter_mut().for_each(|o| o.check_fit(x, |cell| lattice.contains(cell)));
-                filled.r.push(*x);
-                home.push(k);
-            }
-        });
+            let mut around = false;
+            lattice.for_each_point(0, |x| {
+                around = around || (lattice.contains(x) && space.place(x) == Place::Outside);
+            });
+            if around { Entry::Around } else { Entry::Within }
+        };
+        self.spaces.iter().map(entry).collect()
     }
-    pack_around_obstacles(&mut filled.r, &home, &lattices, &mut obstacles, dp);
-    if obstacles.iter().any(Obstacle::needs_packing) {
-        let before = filled.r.len();
-        filled.r.retain(|x| !obstacles.iter().any(|o| o.is_in_narrow_gap(x)));
-        filled.removed_in_solids += before - filled.r.len();
+
+    /// Returns whether a region of water that does not reach around the solid enters enclosed space number `s`.
+    fn has_own_water(&self, s: usize, lattices: &[Lattice<D>], entries: &[Vec<Entry>]) -> bool {
+        let space = &self.spaces[s];
+        lattices.iter().zip(entries).filter(|(_, entries)| entries[s] != Entry::Around).any(|(lattice, _)| {
+            let mut enters = false;
+            lattice.for_each_point(0, |x| {
+                enters = enters || (lattice.contains(x) && matches!(space.place(x), Place::Hollow(_)));
+            });
+            enters
+        })
     }
-    Ok(filled)
 }
 
 /// The lattice of a region: point i lies at origin + (i + ½) dp.

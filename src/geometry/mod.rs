@@ -10,6 +10,7 @@ mod check;
 mod distance;
 pub mod fill;
 mod fit;
+pub(crate) mod hollow;
 pub(crate) mod mesh;
 mod moments;
 mod offset;

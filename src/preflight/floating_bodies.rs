@@ -14,21 +14,27 @@ use std::f64::consts::{PI, TAU};
 
 use serde::Serialize;
 
-use super::{Finding, PreflightContext, surface_samples::SurfaceSample, thickness::thinnest_part};
+use super::{
+    Finding, PreflightContext,
+    hollows::{hull, is_in_dry_hollow},
+    surface_samples::SurfaceSample,
+    thickness::thinnest_part,
+};
 use crate::{
-    math::{
-        Bivector, Pose, Vector,
-        format::{three_digits, two_digits_down, two_digits_up},
-    },
+    math::format::{three_digits, two_digits_down, two_digits_up},
     scene::world_bounds,
     solid::{
-        FreeBody, Role, Solid,
-        hydrostatics::{equilibrium_height, metacentric_height},
+        FreeBody, Role, Solid, SolidSpec,
+        statics::{JointGroups, StaticBody, StaticSystem, Support, WaterAtRest},
     },
 };
 
 /// Heel (rad) from equilibrium below which no finding is reported: half a degree.
 const LEVEL: f64 = 0.5 * PI / 180.0;
+
+/// Metacentric height over the least extent of a body below which it is neutral: facets and round-off give a
+/// homogeneous ball a small one; its true one is 0.
+const NEUTRAL: f64 = 1e-3;
 
 /// A free body before its first step. In 2-D masses are kg/m and volumes m².
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -46,8 +52,15 @@ pub struct BodySummary {
     /// Depth of the lowest point of the body below the still water level at its start, m; negative if the point is
     /// above the level.
     pub draft_m: f64,
-    /// Equilibrium in the initial orientation; absent if the body sinks, its height is held, or nothing floats.
+    /// Equilibrium in the initial orientation; absent unless the water carries it.
     pub afloat: Option<Equilibrium>,
+    /// The effect that carries it at rest: `water`, `lines` (it hangs on them, or they hold it down), `held` (by a joint
+    /// or a lock), `bottom` (it sinks, or lies on a solid), `floods` (water runs over its rim), `none` without gravity.
+    pub support: &'static str,
+    /// Names of the other bodies of its assembly, between which there are joints.
+    pub tied_to: Vec<String>,
+    /// Load of lines and steady forces on it at rest, over gravity, kg; positive downward.
+    pub load_kg: f64,
     /// Thickness of its thinnest part, m, except for tips.
     pub thinnest_m: f64,
     /// The same thickness over dp.
@@ -92,16 +105,42 @@ impl<const D: usize> PreflightContext<'_, D> {
     /// Returns the summaries of the free bodies and adds findings about them. `touching` marks the solids that touch
     /// another.
     pub(super) fn bodies(&self, touching: &[bool], findings: &mut Vec<Finding>) -> Vec<BodySummary> {
+        let statics = self.statics(touching);
+        let specs: Vec<&SolidSpec<D>> = self.solids().iter().map(|solid| &solid.spec).collect();
+        let groups = JointGroups::of(&specs, self.system.constraints());
         let mut bodies = Vec::new();
         for (i, solid) in self.solids().iter().enumerate() {
             let Role::Free(body) = &solid.spec.role else { continue };
-            let found = self.body(solid, body, &self.surface_samples[i]);
-            self.flotation_findings(&found, touching[i], findings);
-            self.resolution_findings(&found, findings);
+            let mut found = self.body(i, body, (&statics, bodies.len()));
+            let others = (0..specs.len()).filter(|j| *j != i && groups.jointed[*j] == groups.jointed[i]);
+            found.tied_to = others.map(|j| specs[j].name.clone()).collect();
             bodies.push(found);
+            let first = bodies.len() - 1;
+            let touches = (0..specs.len()).any(|j| touching[j] && groups.jointed[j] == groups.jointed[i]);
+            self.flotation_findings(&bodies[first], (&statics, first), touches, findings);
+            self.resolution_findings(&bodies[first], findings);
         }
         self.thin_bodies(&bodies, findings);
         bodies
+    }
+
+    /// Returns the free bodies with their ties, at rest; `None` without gravity.
+    fn statics(&self, touching: &[bool]) -> Option<StaticSystem<'_, D>> {
+        if self.g == 0.0 {
+            return None;
+        }
+        let level = self.still_water.level;
+        let body = |(i, solid): (usize, &'_ Solid<D>)| {
+            let Role::Free(body) = &self.solids()[i].spec.role else { return None };
+            let (hull, pose) = (hull(self, i), solid.kinematics.pose);
+            let [start, _] = hull.extent(&pose);
+            let bottom = if touching[i] { start } else { start.min(level - self.still_water.depth) };
+            Some(StaticBody { solid: i, hull, body, pose, bottom })
+        };
+        let bodies = self.solids().iter().enumerate().filter_map(body).collect();
+        let specs: Vec<&SolidSpec<D>> = self.solids().iter().map(|solid| &solid.spec).collect();
+        let water = WaterAtRest { rho0: self.system.model().rho0, g: self.g, level };
+        Some(StaticSystem::new(bodies, &specs, self.system.constraints(), water))
     }
 
     /// Adds findings about bodies that are thick enough to separate the water of both sides, but whose middle still
@@ -121,16 +160,25 @@ impl<const D: usize> PreflightContext<'_, D> {
         findings.push(Finding::note("slender_body", what, mend));
     }
 
-    fn body(&self, solid: &Solid<D>, body: &FreeBody<D>, faces: &[SurfaceSample<D>]) -> BodySummary {
+    /// Returns the summary of solid number `i`, a free body with this number in the static system.
+    fn body(&self, i: usize, body: &FreeBody<D>, (statics, number): (&Option<StaticSystem<D>>, usize)) -> BodySummary {
+        let (solid, faces) = (&self.solids()[i], &self.surface_samples[i]);
         let (model, shape, pose) = (self.system.model(), &solid.spec.shape, &solid.kinematics.pose);
         let volume = shape.volume_properties().volume;
-        let rest = self.equilibrium_pose(solid, body);
-        let wet =
-            |face: &&SurfaceSample<D>| rest.is_none_or(|pose| pose.point(&face.x)[D - 1] < self.still_water.level);
+        let support = statics.as_ref().map(|statics| statics.support(number));
+        let afloat = statics.as_ref().filter(|_| support == Some(Support::Water));
+        let rest = afloat.map(|statics| statics.pose(number));
+        let wet = |face: &&SurfaceSample<D>| {
+            let below = rest.is_none_or(|pose| pose.point(&face.x)[D - 1] < self.still_water.level);
+            below && !is_in_dry_hollow(self, i, &(face.x + face.n * (0.5 * model.dp)))
+        };
         let share = faces.iter().filter(wet).count() as f64 / faces.len().max(1) as f64;
         let least = 0.5 * model.cfl * model.rho0 * model.h * share * shape.surface_area();
         let thinnest_m = thinnest_part(shape, faces, model.dp).unwrap_or(model.dp);
-        let displaced = if self.g > 0.0 { shape.submerged_volume(pose, self.still_water.level).0 } else { volume };
+        let displaced = match statics {
+            Some(_) => hull(self, i).submerged_volume(pose, self.still_water.level).0,
+            None => volume,
+        };
         BodySummary {
             name: solid.spec.name.clone(),
             mass_kg: body.mass,
@@ -138,7 +186,17 @@ impl<const D: usize> PreflightContext<'_, D> {
             density_ratio: body.mass / (model.rho0 * volume),
             displaced_kg: model.rho0 * displaced,
             draft_m: self.still_water.level - self.lowest_point(solid),
-            afloat: rest.map(|pose| self.afloat(solid, body, &pose)),
+            afloat: afloat.map(|statics| self.afloat(solid, statics, number)),
+            support: match support {
+                Some(Support::Water) => "water",
+                Some(Support::Lines) => "lines",
+                Some(Support::Held) => "held",
+                Some(Support::Bottom) => "bottom",
+                Some(Support::Floods) => "floods",
+                None => "none",
+            },
+            tied_to: Vec::new(),
+            load_kg: statics.as_ref().map_or(0.0, |statics| statics.tie_load(number) / self.g),
             thinnest_m,
             thinnest_dp: thinnest_m / model.dp,
             over_limit: body.mass / least,
@@ -146,84 +204,53 @@ impl<const D: usize> PreflightContext<'_, D> {
         }
     }
 
-    /// Returns the pose of the body in vertical equilibrium with its initial orientation.
-    fn equilibrium_pose(&self, solid: &Solid<D>, body: &FreeBody<D>) -> Option<Pose<D>> {
-        if self.g == 0.0 || body.locked_translations[D - 1] || self.is_pinned(solid) {
-            return None;
-        }
-        let mut pose = solid.kinematics.pose;
-        let rho0 = self.system.model().rho0;
-        pose.position[D - 1] +=
-            equilibrium_height(&solid.spec.shape, &pose, body.mass, rho0, self.still_water.level).ok()?;
-        Some(pose)
-    }
-
-    /// Returns whether a joint to a solid that is not free holds a point of `solid`.
-    fn is_pinned(&self, solid: &Solid<D>) -> bool {
-        let number = self.system.find_solid(&solid.spec.name);
-        let free = |i: usize| matches!(self.solids()[i].spec.role, Role::Free(_));
-        self.system.constraints().joints.iter().any(|joint| {
-            let [one, other] = joint.between;
-            (0..D).all(|mode| joint.is_locked(mode))
-                && ((one == number && !other.is_some_and(free)) || (other == number && !one.is_some_and(free)))
-        })
-    }
-
-    /// Returns the equilibrium of the body at `pose`.
-    fn afloat(&self, solid: &Solid<D>, body: &FreeBody<D>, pose: &Pose<D>) -> Equilibrium {
-        let (shape, level, rho0) = (&solid.spec.shape, self.still_water.level, self.system.model().rho0);
-        let bounds = world_bounds(shape, pose);
-        let step = 1e-4 * bounds.size()[D - 1];
-        let area = (shape.submerged_volume(pose, level + step).0 - shape.submerged_volume(pose, level - step).0)
-            / (2.0 * step);
+    /// Returns the equilibrium of body `number` with its assembly.
+    fn afloat(&self, solid: &Solid<D>, statics: &StaticSystem<D>, number: usize) -> Equilibrium {
+        let (level, rho0) = (self.still_water.level, self.system.model().rho0);
+        let area = statics.waterplane(number);
         let added = rho0 * if D == 2 { PI * area * area / 8.0 } else { 4.0 / 3.0 * (area / PI).powf(1.5) };
-        let heave = |mass: f64| TAU * (mass / (rho0 * self.g * area)).sqrt();
-        let tilts = self.tilts(solid, body, pose);
-        let mut up = Vector::zeros();
-        up[D - 1] = 1.0;
-        let lever = Bivector::torque(&(shape.submerged_volume(pose, level).1 - pose.point(&body.centre)), &up).axial();
-        let along = |axis: &[f64]| lever.iter().zip(axis).map(|(l, a)| l * a).sum::<f64>();
+        let (mass, stiffness) = statics.heaving_mass_and_stiffness(number);
+        let heave = |mass: f64| TAU * (mass / (rho0 * self.g * area + stiffness)).sqrt();
+        let tilts = self.tilts(statics, number);
+        let along = |axis: &[f64]| statics.lever(number, axis, 0.0).iter().zip(axis).map(|(l, a)| l * a).sum::<f64>();
         // A body of revolution on its side has GM = 0 and no heel.
         let heel = |t: &Tilt| if t.gm_m > 0.0 { along(&t.axis) / t.gm_m } else { 0.0 };
         let turned = tilts.iter().map(|t| heel(t).powi(2)).sum::<f64>().sqrt();
         Equilibrium {
-            draft_m: level - bounds.min[D - 1],
+            draft_m: level - world_bounds(&solid.spec.shape, &statics.pose(number)).min[D - 1],
             waterplane_m2: area,
-            heave_s: heave(body.mass),
+            heave_s: heave(mass),
             heave_added_kg: added,
-            heave_with_added_s: heave(body.mass + added),
+            heave_with_added_s: heave(mass + added),
             heel_deg: tilts.iter().all(|t| t.gm_m >= 0.0).then(|| turned.to_degrees()),
             tilts,
         }
     }
 
-    /// Returns the tilts that are not locked, with their metacentric heights.
-    fn tilts(&self, solid: &Solid<D>, body: &FreeBody<D>, pose: &Pose<D>) -> Vec<Tilt> {
-        let rho0 = self.system.model().rho0;
-        let size = solid.spec.shape.bounds().size().max();
-        let gm = |axis: &[f64]| {
-            let gm =
-                metacentric_height(&solid.spec.shape, pose, body, rho0, self.still_water.level, axis).unwrap_or(0.0);
-            // Round-off and facets give a ball a small GM; its true GM is 0.
-            if gm.abs() < 1e-4 * size { 0.0 } else { gm }
-        };
+    /// Returns the tilts of the assembly of body `number` that are not locked, with their metacentric heights.
+    fn tilts(&self, statics: &StaticSystem<D>, number: usize) -> Vec<Tilt> {
+        let sizes = statics.assembly_of(number).map(|j| statics.bodies[j].hull.shape.bounds().size().min());
+        let neutral = NEUTRAL * sizes.fold(0.0, f64::max);
+        let flat = |x: f64| if x.abs() < neutral { 0.0 } else { x };
+        let gm = |axis: &[f64]| flat(statics.metacentric_height(number, axis));
         let tilt = |axis: Vec<f64>, gm_m: f64| {
-            let own = pose.rotation.transpose() * Vector::<D>::from_fn(|i, _| axis.get(i).copied().unwrap_or(0.0));
-            let inertia = if D == 2 { body.inertia[(0, 0)] } else { own.dot(&(body.inertia * own)) };
-            let period_s = (gm_m > 0.0).then(|| TAU * (inertia / (body.mass * self.g * gm_m)).sqrt());
+            let (inertia, displaced) = statics.inertia_and_displacement(number, &axis);
+            let period_s = (gm_m > 0.0).then(|| TAU * (inertia / (displaced * self.g * gm_m)).sqrt());
             Tilt { axis, gm_m, period_s }
         };
         let (x, y) = (vec![1.0, 0.0, 0.0], vec![0.0, 1.0, 0.0]);
-        match (D, body.locked_rotations) {
-            (2, [true, ..]) | (3, [true, true, _]) => Vec::new(),
-            (2, _) => vec![tilt(vec![1.0], gm(&[1.0]))],
-            (_, [false, true, _]) => vec![tilt(x.clone(), gm(&x))],
-            (_, [true, false, _]) => vec![tilt(y.clone(), gm(&y))],
-            _ => {
+        let locked = |axis: &[f64]| statics.is_tilt_locked(number, axis, self.system.constraints());
+        if D == 2 {
+            return if locked(&[1.0]) { Vec::new() } else { vec![tilt(vec![1.0], gm(&[1.0]))] };
+        }
+        match [locked(&x), locked(&y)] {
+            [true, true] => Vec::new(),
+            [false, true] => vec![tilt(x.clone(), gm(&x))],
+            [true, false] => vec![tilt(y.clone(), gm(&y))],
+            [false, false] => {
                 // GM is a tensor in the waterplane; three directions determine its principal axes.
                 let (xx, yy, between) = (gm(&x), gm(&y), gm(&[0.5f64.sqrt(), 0.5f64.sqrt(), 0.0]));
-                let xy = between - 0.5 * (xx + yy);
-                let xy = if xy.abs() < 1e-4 * size { 0.0 } else { xy };
+                let xy = flat(between - 0.5 * (xx + yy));
                 let (sin, cos) = (0.5 * (2.0 * xy).atan2(xx - yy)).sin_cos();
                 let (middle, half) = (0.5 * (xx + yy), (0.5 * (xx - yy)).hypot(xy));
                 vec![tilt(vec![-sin, cos, 0.0], middle - half), tilt(vec![cos, sin, 0.0], middle + half)]
@@ -231,38 +258,72 @@ impl<const D: usize> PreflightContext<'_, D> {
         }
     }
 
-    /// Adds findings about the equilibrium of a body.
-    fn flotation_findings(&self, body: &BodySummary, touches: bool, findings: &mut Vec<Finding>) {
-        let (name, Some(afloat)) = (&body.name, &body.afloat) else { return };
-        let least = afloat.tilts.iter().map(|t| t.gm_m).fold(f64::INFINITY, f64::min);
-        if least < 0.0 {
-            let what = format!("\"{name}\" will turn over: its metacentric height is {} m", three_digits(least));
-            let mend = format!(
-                "lower its centre of mass by {} m or more (centre_offset), or lock its turn",
-                two_digits_up(-least)
-            );
-            findings.push(Finding::warning("capsizes", what, mend));
-        } else if afloat.heel_deg.is_some_and(|heel| heel > LEVEL.to_degrees()) {
-            let heel = afloat.heel_deg.unwrap_or_default();
-            // The metacentric height holds for small tilts only.
-            let far = if heel > 45.0 { "more than 45".into() } else { format!("about {}", three_digits(heel)) };
-            let what = format!("\"{name}\" starts {far}° out of the trim in which it rests");
-            let mend = "turn it by so much (angle_deg, turn_deg), or put its centre of mass under its buoyancy".into();
-            findings.push(Finding::note("lists", what, mend));
+    /// Adds findings about the equilibrium of a body, of an assembly with its first body.
+    fn flotation_findings(
+        &self,
+        body: &BodySummary,
+        (statics, number): (&Option<StaticSystem<D>>, usize),
+        touches: bool,
+        findings: &mut Vec<Finding>,
+    ) {
+        let Some(statics) = statics else { return };
+        if body.support == "floods" {
+            let what = format!("\"{}\" floods: at its mass, the still water would stand above its rim", body.name);
+            let mend = "make it lighter, or its sides higher".into();
+            findings.push(Finding::warning("hull_floods", what, mend));
+        }
+        let Some(afloat) = &body.afloat else { return };
+        let all: Vec<String> =
+            statics.assembly_of(number).map(|j| format!("\"{}\"", self.body_name(statics, j))).collect();
+        let (name, verb, its) = match &all[..] {
+            [own] => (own.clone(), "s", "its"),
+            all => (all.join(" with "), "", "their"),
+        };
+        if statics.assembly_of(number).next() == Some(number) {
+            let least = afloat.tilts.iter().map(|t| t.gm_m).fold(f64::INFINITY, f64::min);
+            if least < 0.0 {
+                let what = format!("{name} will turn over: {its} metacentric height is {} m", three_digits(least));
+                let mend = format!(
+                    "lower {its} centre of mass by {} m or more (centre_offset), or lock {its} turn",
+                    two_digits_up(-least)
+                );
+                findings.push(Finding::warning("capsizes", what, mend));
+            } else if afloat.heel_deg.is_some_and(|heel| heel > LEVEL.to_degrees()) {
+                let heel = afloat.heel_deg.unwrap_or_default();
+                // The metacentric height holds for small tilts only.
+                let far = if heel > 45.0 { "more than 45".into() } else { format!("about {}", three_digits(heel)) };
+                let rests = if verb == "s" { "it rests" } else { "they rest" };
+                let what = format!("{name} start{verb} {far}° out of the trim in which {rests}");
+                let mend =
+                    "turn it by so much (angle_deg, turn_deg), or put its centre of mass under its buoyancy".into();
+                findings.push(Finding::note("lists", what, mend));
+            }
         }
         // A body that rests on another solid need not float at equilibrium.
         let off = body.draft_m - afloat.draft_m;
-        if off.abs() > self.dp() && !touches {
+        let first = statics.assembly_of(number).find(|j| statics.rise_together(*j, number)) == Some(number);
+        if off.abs() > self.dp() && !touches && first {
             let side = if off > 0.0 { "below" } else { "above" };
             let what = format!(
-                "\"{name}\" starts {} m, {} dp, {side} its draft of {} m",
+                "\"{}\" starts {} m, {} dp, {side} its draft of {} m",
+                body.name,
                 three_digits(off.abs()),
                 three_digits(off.abs() / self.dp()),
                 three_digits(afloat.draft_m)
             );
-            let mend = "it starts at rest with  draft = \"equilibrium\"".into();
+            let mend = match all.len() {
+                1 => "it starts at rest with  draft = \"equilibrium\"".into(),
+                _ => {
+                    let way = if off > 0.0 { "raise" } else { "lower" };
+                    format!("{way} it by so much, and the bodies and joints of its assembly with it")
+                }
+            };
             findings.push(Finding::note("off_draft", what, mend));
         }
+    }
+
+    fn body_name(&self, statics: &StaticSystem<D>, number: usize) -> &str {
+        &self.solids()[statics.bodies[number].solid].spec.name
     }
 
     /// Adds findings about whether the particles can support a body.
@@ -305,3 +366,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         world_bounds(&solid.spec.shape, &solid.kinematics.pose).min[D - 1]
     }
 }
+
+#[cfg(all(test, feature = "dim2", feature = "dim3"))]
+#[path = "../../tests/unit/preflight/floating_bodies.rs"]
+mod tests;

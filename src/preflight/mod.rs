@@ -7,6 +7,7 @@
 mod absorption_limits;
 mod misplaced_bodies;
 mod floating_bodies;
+mod hollows;
 mod surface_samples;
 mod gaps;
 mod wavemaker_checks;
@@ -31,12 +32,14 @@ pub(crate) use sound_speed::{SoundSpeed, StepSizeLimits};
 
 use crate::{
     error::Error,
+    math::Bounds,
     plan::Plan,
     scene::{FileNote, RenamedName, StillWaterLevel},
     simulation::Simulation,
     solid::{Role, Solid},
     system::System,
 };
+use hollows::SolidHollows;
 use surface_samples::SurfaceSample;
 
 /// Number of findings of a kind that are listed individually, because many bodies have a finding each.
@@ -161,6 +164,8 @@ struct PreflightContext<'a, const D: usize> {
     g: f64,
     /// The outermost layer of each solid; empty for solids that no check evaluates.
     surface_samples: Vec<Vec<SurfaceSample<D>>>,
+    /// The space that each solid encloses.
+    hollows: Vec<Option<SolidHollows<D>>>,
 }
 
 /// Evaluates a simulation before its first step. `columns` is the number of columns that each probe of the plan writes,
@@ -176,12 +181,16 @@ pub fn preflight<const D: usize>(
     let down = -system.gravity()[D - 1];
     let g = if down > 0.9 * system.gravity().norm() { down } else { 0.0 };
     let samples = system.solids().iter().map(|s| surface_samples::of_solid(s, system.model().dp)).collect();
-    let look = PreflightContext { system, plan, still_water: still, g, surface_samples: samples };
+    let (water, dp) = (system.fluid().r, system.model().dp);
+    let around = Bounds::around(water);
+    let hollows = system.solids().iter().map(|solid| SolidHollows::of(solid, water, &around, dp)).collect();
+    let look = PreflightContext { system, plan, still_water: still, g, surface_samples: samples, hollows };
     let mut findings = Vec::new();
     let sound = look.sound_speed(&mut findings);
     let step = look.step_size_limits(sim.spring_step_limit(), &mut findings);
     let size = look.size(&step, columns, overlapped, &mut findings);
     let gaps = look.gaps(&mut findings);
+    hollows::check_hollows(&look, &mut findings);
     let bodies = look.bodies(&gaps.touching, &mut findings);
     look.misplaced_bodies(&gaps.touching, &mut findings);
     look.check_thickness(&mut findings);

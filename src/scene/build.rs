@@ -1,22 +1,22 @@
 //! Builds a scene: opens the files that it names, makes shapes and poses, fills the water.
 
-
 use super::{
     Scene,
+    afloat::placed_solids,
     context::{Context, FileNote},
     section::{
         analysis::ProbeSeries,
         model::require_depth,
         shape::{vector, world_bounds},
-        solid::SolidConfig,
-        water::{StillWater, StillWaterLevel, WaterBody, require_near_origin},
+        solid::{SolidConfig, require_solid},
+        water::{StillWaterLevel, WaterBody, WaterConfig, require_near_origin},
     },
 };
 use crate::{
     error::{Error, ErrorKind, Result},
     geometry::{
         Shape,
-        fill::{WaterRegion, fill},
+        fill::{Filled, Filling, WaterRegion},
     },
     math::{Bounds, Pose, Vector},
     model::{Model, TimeScheme},
@@ -43,7 +43,7 @@ pub struct BuiltScene<const D: usize> {
     /// Number of lattice points without a new particle because they lie in an earlier body of water.
     pub removed_by_water: usize,
     /// Notes about the files that the scene names.
-    pub(crate) file_notes: Vec<FileNote>,
+    pub file_notes: Vec<FileNote>,
     /// The water at rest.
     pub still_water: StillWaterLevel,
 }
@@ -101,42 +101,63 @@ impl Scene {
         let model = scene.model.build(ctx, &scene.time, &still)?;
         scene.model.require_stable_lattice::<D>(ctx, &model)?;
         require_depth(ctx, &still, &model)?;
-        let solids = scene.solids::<D>(ctx, &StillWater::of(&water))?;
-        self.require_plausible_units(ctx, &water, &solids)?;
-        let constraints = scene.constraints(ctx, &solids)?;
+        let mut placed = placed_solids::<D>(&scene, ctx, &water, true)?;
+        let solids = &placed.specs;
+        self.require_plausible_units(ctx, &water, solids)?;
+        let constraints = scene.constraints(ctx, solids)?;
         let domain = scene.domain.as_ref().map(|d| Bounds { min: vector(&d.min), max: vector(&d.max) });
         if let Some(domain) = &domain {
-            require_inside_domain(ctx, domain, &water, &solids)?;
+            require_inside_domain(ctx, domain, &water, solids)?;
         }
         let periodic = scene.periodic.clone().unwrap_or_default().build();
-        periodic::check(&periodic, &model, &solids).map_err(|e| ctx.with_location(e, "periodic"))?;
-        require_affordable(ctx, &water, &solids)?;
+        periodic::check(&periodic, &model, solids).map_err(|e| ctx.with_location(e, "periodic"))?;
+        require_affordable(ctx, &water, solids)?;
         let regions: Vec<WaterRegion<D>> =
             water.iter().map(|b| WaterRegion { shape: b.region.shape.clone(), pose: b.region.pose }).collect();
         // The initial position of a driven solid follows from its motion.
         let starts: Vec<Pose<D>> = solids.iter().map(|s| s.initial_kinematics().pose).collect();
         let solid_shapes: Vec<(&Shape<D>, &Pose<D>)> =
             solids.iter().zip(&starts).map(|(s, start)| (&s.shape, start)).collect();
-        let mut filled = fill(&regions, &solid_shapes, scene.dp).map_err(|e| ctx.with_location(e, "water"))?;
+        let spaces = placed.spaces(&starts);
+        let inside = water.iter().map(|body| body.inside).collect();
+        let filling = Filling { regions: &regions, inside, solids: &solid_shapes, spaces: &spaces };
+        let Filled { water: mut filled, mut home, has_own_water } =
+            filling.fill(scene.dp).map_err(|e| ctx.with_location(e, "water"))?;
         if scene.water.iter().any(|w| w.level.is_some() && w.fill.shape.is_some()) {
-            filled.r.retain(|x| water.iter().any(|body| body.contains(x) && x[D - 1] < body.level));
+            let below = |x: &Vector<D>| water.iter().any(|body| body.contains(x) && x[D - 1] < body.level);
+            let (r, own) = filled.r.iter().zip(&home).filter(|(x, _)| below(x)).unzip();
+            (filled.r, home) = (r, own);
         }
         if filled.r.is_empty() {
-            return Err(no_water_error(ctx, &water, &solids));
+            return Err(no_water_error(ctx, &water, solids));
         }
+        let own_water: Vec<usize> =
+            spaces.iter().zip(has_own_water).filter(|(_, own)| *own).map(|(space, _)| space.solid).collect();
         let plan = scene.resolved_plan(ctx, &still)?;
         // The packing algorithm can move a particle slightly out of its body of water.
-        let nearest = |x: &Vector<D>| water.iter().min_by(|a, b| a.distance(x).total_cmp(&b.distance(x)));
-        let level = |x: &Vector<D>| nearest(x).map_or(still.level, |body| body.level);
-        let levels = filled.r.iter().map(level).collect();
-        let flow = |x: &Vector<D>| nearest(x).map_or((Vector::zeros(), 0.0), |body| body.flow.at(x));
+        let nearest = |(x, home): (&Vector<D>, &usize)| match &water[*home] {
+            own if own.inside.is_some() => Some(own),
+            _ => {
+                let open = water.iter().filter(|body| body.inside.is_none());
+                open.min_by(|a, b| a.distance(x).total_cmp(&b.distance(x)))
+            }
+        };
+        let origins: Vec<_> = filled.r.iter().zip(&home).map(nearest).collect();
+        let levels = origins.iter().map(|body| body.map_or(still.level, |body| body.level)).collect();
+        let flow =
+            |(x, body): (&Vector<D>, &Option<&WaterBody<D>>)| body.map_or((Vector::zeros(), 0.0), |b| b.flow.at(x));
         let moves = scene.water.iter().any(|water| water.velocity.is_some() || water.pressure.is_some());
-        let (velocity, pressure) = filled.r.iter().filter(|_| moves).map(flow).unzip();
+        let (velocity, pressure) = filled.r.iter().zip(&origins).filter(|_| moves).map(flow).unzip();
         if let Some(part) = scene.jitter {
             jitter(&mut filled.r, part * scene.dp);
         }
         let limits = scene.guard.clone().unwrap_or_default().build();
         let sponge_layers = scene.damping.iter().map(|layer| layer.build(ctx, &still)).collect();
+        // Water in a hull that does not reach around it is meant.
+        own_water.into_iter().for_each(|i| {
+            placed.specs[i].dry.get_or_insert(false);
+        });
+        let solids = placed.specs;
         let setup = Setup {
             model,
             water: filled.r,
@@ -170,7 +191,7 @@ impl Scene {
         let water = scene.water_bodies::<D>(ctx)?;
         let still = StillWaterLevel::of(&water);
         let model = scene.model.build(ctx, &scene.time, &still)?;
-        Ok(SceneLayout { solids: scene.solids::<D>(ctx, &StillWater::of(&water))?, model, still_water: still })
+        Ok(SceneLayout { solids: placed_solids::<D>(&scene, ctx, &water, false)?.specs, model, still_water: still })
     }
 
     /// Returns the probes, files, checks and statistics of a run without creating particles.
@@ -198,7 +219,7 @@ impl Scene {
         let ctx = &self.context();
         let water = self.water_bodies::<D>(ctx)?;
         let model = self.model.build(ctx, &self.time, &StillWaterLevel::of(&water))?;
-        let solids = self.solids::<D>(ctx, &StillWater::of(&water))?;
+        let solids = placed_solids::<D>(self, ctx, &water, false)?.specs;
         require_affordable(ctx, &water, &solids)?;
         let (fluid, boundary) = estimated_counts(ctx, &water, &solids);
         let dt = (model.cfl * model.h / model.c0).min(model.dt_max);
@@ -227,16 +248,19 @@ impl Scene {
     }
 
     fn water_bodies<const D: usize>(&self, ctx: &Context) -> Result<Vec<WaterBody<D>>> {
-        self.water.iter().enumerate().map(|(i, water)| water.build(ctx, &format!("water.{i}"))).collect()
-    }
-
-    /// Returns the solids. Drafts are measured from the level of the water `pool`.
-    fn solids<const D: usize>(&self, ctx: &Context, pool: &StillWater<D>) -> Result<Vec<SolidSpec<D>>> {
-        self.solid.iter().enumerate().map(|(i, solid)| solid.build(ctx, &format!("solid.{i}"), pool)).collect()
+        let body = |(i, water): (usize, &WaterConfig)| {
+            let mut body = water.build(ctx, &format!("water.{i}"))?;
+            if let Some(name) = &water.inside {
+                require_solid(ctx, &self.solid, &format!("water.{i}.inside"), name)?;
+                body.inside = self.solid.iter().position(|solid| solid.name == *name);
+            }
+            Ok(body)
+        };
+        self.water.iter().enumerate().map(body).collect()
     }
 
     /// Returns the joints, force elements and contact rules of `solids`, which must be in the order of the scene.
-    fn constraints<const D: usize>(&self, ctx: &Context, solids: &[SolidSpec<D>]) -> Result<Constraints<D>> {
+    pub(super) fn constraints<const D: usize>(&self, ctx: &Context, solids: &[SolidSpec<D>]) -> Result<Constraints<D>> {
         let number = |name: &String| self.solid.iter().position(|solid| solid.name == *name);
         let mut constraints = Constraints::default();
         for (i, joint) in self.joint.iter().enumerate() {

@@ -30,15 +30,15 @@ pub(crate) struct Context<'a> {
 
 /// A property of a file that the scene names: an assumption of its reading, or a probable fault.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct FileNote {
+pub struct FileNote {
     /// Whether the results are affected.
-    pub(crate) is_warning: bool,
+    pub is_warning: bool,
     /// Identifier of its kind, for programs.
-    pub(crate) topic: &'static str,
+    pub topic: &'static str,
     /// Description, as one sentence that begins with the name of the file.
-    pub(crate) what: String,
+    pub what: String,
     /// The remedy.
-    pub(crate) remedy: String,
+    pub remedy: String,
 }
 
 impl FileNote {

@@ -8,6 +8,7 @@
 //! numbers in 2-D and three numbers in 3-D. Units are SI; keys that end in `_deg` are in degrees.
 //! `docs/reference/scene.md` explains every key.
 
+mod afloat;
 mod build;
 mod bundled;
 mod context;
@@ -54,7 +55,7 @@ use serde::{Deserialize, Serialize};
 use crate::error::{Error, Result};
 use toml_source::SceneSource;
 
-pub(crate) use context::FileNote;
+pub use context::FileNote;
 pub(crate) use section::shape::world_bounds;
 pub use {
     crate::probe::ProbeConfig,
@@ -204,7 +205,7 @@ impl Scene {
     pub fn water_box(mut self, min: impl Into<Vec<f64>>, max: impl Into<Vec<f64>>) -> Self {
         let corners = Some(BoxConfig { min: min.into(), max: max.into() });
         let fill = FillConfig { corners, ..FillConfig::default() };
-        self.water.push(WaterConfig { fill, level: None, velocity: None, pressure: None });
+        self.water.push(WaterConfig { fill, level: None, inside: None, velocity: None, pressure: None });
         self
     }
 

@@ -3,7 +3,7 @@
 use crate::{
     error::{Error, ErrorCode, Result},
     geometry::Shape,
-    math::{Bivector, Matrix, Pose, Vector},
+    math::{Bivector, Bounds, Matrix, Pose, Vector},
     solid::{
         DEFAULT_CONTACT_SKIN, DEFAULT_FRICTION, DEFAULT_RESTITUTION, FreeBody, Kinematics, PrescribedMotion, Role,
         SolidSpec,
@@ -23,6 +23,7 @@ impl<const D: usize> SolidSpec<D> {
             friction: DEFAULT_FRICTION,
             restitution: DEFAULT_RESTITUTION,
             contact_skin: DEFAULT_CONTACT_SKIN,
+            dry: None,
         }
     }
 
@@ -120,6 +121,14 @@ impl<const D: usize> SolidSpec<D> {
             require(self.has_valid_contact_skin(), || format!("its contact skin is {skin} m"), &right)
         })
         .map_err(|e| self.named(e))
+    }
+
+    /// Whether it may be a hull among `water` (m): not if it is a fixed basin around all of the water, or a fixed bed.
+    pub(crate) fn may_be_hull(&self, water: &Bounds<D>) -> bool {
+        let bounds = self.shape.bounds_at(&self.initial_kinematics().pose);
+        let is_basin = (0..D - 1).all(|i| bounds.min[i] <= water.min[i] && water.max[i] <= bounds.max[i]);
+        let fixed = matches!(self.role, Role::Fixed);
+        self.dry.is_some() || !(fixed && (is_basin || matches!(self.shape, Shape::Polyline { .. })))
     }
 
     /// Whether it has no contact skin, or one that is not thicker than half of its smallest extent.

@@ -2,15 +2,122 @@
 
 use crate::{
     error::{Error, Result},
-    geometry::Shape,
+    geometry::{Shape, hollow::Hollow},
     math::{Bivector, Bounds, Pose, Vector},
     solid::FreeBody,
 };
 
+/// The volume with which a solid displaces water: its material, its hollows that are dry, and those with water of their
+/// own, less that water.
+pub(crate) struct Hull<'a, const D: usize> {
+    pub(crate) shape: &'a Shape<D>,
+    /// The hollows without water.
+    pub(crate) dry: Vec<&'a Hollow<D>>,
+    /// The hollows with water of their own, with its volume, m³ (m² in 2-D).
+    pub(crate) ballast: Vec<(&'a Hollow<D>, f64)>,
+}
+
+impl<'a, const D: usize> Hull<'a, D> {
+    /// A solid without such hollows.
+    pub(crate) fn new(shape: &'a Shape<D>) -> Self {
+        Self { shape, dry: Vec::new(), ballast: Vec::new() }
+    }
+
+    /// Volume (m³; m² in 2-D) of the displaced water at `pose` with the still water at `level` (m), and its centroid,
+    /// less the water in hollows. A hollow whose rim lies below the level is full of water of that level.
+    pub(crate) fn submerged_volume(&self, pose: &Pose<D>, level: f64) -> (f64, Vector<D>) {
+        let (volume, centroid) = self.shape.submerged_volume(pose, level);
+        // The level stands at the rim up to round-off where the search for an equilibrium begins.
+        let slack = 1e-9 * (level.abs() + self.shape.bounds().size().max());
+        let (mut all, mut first) = (volume, centroid * volume);
+        let mut any = false;
+        for hollow in self.hollows().filter(|hollow| hollow.rim_height(pose) >= level - slack) {
+            let (volume, moment) = hollow.volume_and_moment_below(pose, level);
+            (all, first, any) = (all + volume, first + moment, true);
+        }
+        for (hollow, water) in self.ballast.iter().filter(|(hollow, _)| hollow.rim_height(pose) >= level - slack) {
+            (all, first) = (all - water, first - hollow.volume_and_moment_below(pose, hollow.level_of(pose, *water)).1);
+        }
+        if any && all != 0.0 { (all, first / all) } else { (all, centroid) }
+    }
+
+    /// The hollows in which water does not stand as high as outside.
+    fn hollows(&self) -> impl Iterator<Item = &'a Hollow<D>> {
+        self.dry.iter().copied().chain(self.ballast.iter().map(|(hollow, _)| *hollow))
+    }
+
+    /// Volume (m³; m² in 2-D) of the displaced water, with hollows dry even if their rim lies below the level.
+    pub(crate) fn volume_if_dry(&self, pose: &Pose<D>, level: f64) -> f64 {
+        let hollows: f64 = self.hollows().map(|hollow| hollow.volume_and_moment_below(pose, level).0).sum();
+        let ballast: f64 = self.ballast.iter().map(|(_, water)| water).sum();
+        self.shape.submerged_volume(pose, level).0 + hollows - ballast
+    }
+
+    /// Lowest and highest height (m) of the box around the hull at `pose`.
+    pub(crate) fn extent(&self, pose: &Pose<D>) -> [f64; 2] {
+        let (low, high) = vertical_extent(self.shape, pose);
+        [low, high]
+    }
+
+    /// Height (m) of the lowest rim of these hollows at `pose`; infinity if none is open.
+    pub(crate) fn rim_height(&self, pose: &Pose<D>) -> f64 {
+        self.hollows().map(|hollow| hollow.rim_height(pose)).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Lowest height (m) of the hull at `pose`, and the height that water reaches before it floods or covers the hull.
+    fn floating_extent(&self, pose: &Pose<D>) -> [f64; 2] {
+        let (low, high) = vertical_extent(self.shape, pose);
+        [low, high.min(self.rim_height(pose))]
+    }
+
+    /// The same as [`equilibrium_height`]. With the level above the rim the hull counts as sunk.
+    pub(crate) fn equilibrium_height(&self, pose: &Pose<D>, mass: f64, rho0: f64, level: f64) -> Result<f64> {
+        let lifted = |height: f64| {
+            let mut pose = *pose;
+            pose.position[D - 1] += height;
+            pose
+        };
+        // From just submerged, or about to flood, to just out of the water.
+        let [low, high] = self.floating_extent(pose);
+        let (mut under, mut over) = (level - high, level - low);
+        let whole = self.submerged_volume(&lifted(under), level).0;
+        if !(mass > 0.0 && mass < rho0 * whole) {
+            return Err(self.sinking_error(pose, mass, rho0 * whole));
+        }
+        while over - under > 1e-14 * (high - low + level.abs()) {
+            let middle = 0.5 * (under + over);
+            if middle <= under || middle >= over {
+                break;
+            }
+            if rho0 * self.submerged_volume(&lifted(middle), level).0 > mass {
+                under = middle;
+            } else {
+                over = middle;
+            }
+        }
+        Ok(0.5 * (under + over))
+    }
+
+    fn sinking_error(&self, pose: &Pose<D>, mass: f64, whole: f64) -> Error {
+        let part = mass / whole;
+        if self.rim_height(pose).is_finite() {
+            let what = format!(
+                "the hull floods: its mass {mass} is {part:.3} of the {whole} of water that it displaces with the water at \
+                 its rim"
+            );
+            return Error::scene(what).help("make it lighter, or its sides higher");
+        }
+        Error::scene(format!(
+            "the body sinks: its mass {mass} is {part:.3} of the {whole} of water that it can displace"
+        ))
+        .help("a floating body needs a density between 0 and the water's; place a heavier one by its position")
+    }
+}
+
 /// Change of the pose's last coordinate (m) that floats the body as posed: ρ₀ V_submerged = m.
 ///
 /// `mass`: kg (kg/m in 2-D); `rho0`: density of the water, kg/m³; `level`: height of the still water, m.
-/// The pose is only lifted or lowered, not turned.
+/// The pose is only lifted or lowered, not turned. Hollows of the shape count as full of water.
 ///
 /// # Errors
 /// `Scene` if the body sinks: says how many times too dense it is.
@@ -23,35 +130,7 @@ pub fn equilibrium_height<const D: usize>(
     rho0: f64,
     level: f64,
 ) -> Result<f64> {
-    let (low, high) = vertical_extent(shape, pose);
-    let lifted = |height: f64| {
-        let mut pose = *pose;
-        pose.position[D - 1] += height;
-        pose
-    };
-    // From just submerged to just out of the water.
-    let (mut under, mut over) = (level - high, level - low);
-    let whole = shape.submerged_volume(&lifted(under), level).0;
-    if !(mass > 0.0 && mass < rho0 * whole) {
-        return Err(Error::scene(format!(
-            "the body sinks: its mass {mass} is {:.3} of the {} of water that it can displace",
-            mass / (rho0 * whole),
-            rho0 * whole
-        ))
-        .help("a floating body needs a density between 0 and the water's; place a heavier one by its position"));
-    }
-    while over - under > 1e-14 * (high - low + level.abs()) {
-        let middle = 0.5 * (under + over);
-        if middle <= under || middle >= over {
-            break;
-        }
-        if rho0 * shape.submerged_volume(&lifted(middle), level).0 > mass {
-            under = middle;
-        } else {
-            over = middle;
-        }
-    }
-    Ok(0.5 * (under + over))
+    Hull::new(shape).equilibrium_height(pose, mass, rho0, level)
 }
 
 /// Metacentric height GM (m) of a floating body as posed, for tilts about the horizontal `axis`.
@@ -72,12 +151,13 @@ pub fn metacentric_height<const D: usize>(
     level: f64,
     axis: &[f64],
 ) -> Result<f64> {
+    let hull = Hull::new(shape);
     let tilt = 1e-4;
     let righting = |angle: f64| -> Result<f64> {
         let mut tilted = *pose;
         tilted.rotation = (Bivector::from_axial(axis) * angle).exp() * pose.rotation;
-        tilted.position[D - 1] += equilibrium_height(shape, &tilted, body.mass, rho0, level)?;
-        let buoyancy = shape.submerged_volume(&tilted, level).1;
+        tilted.position[D - 1] += hull.equilibrium_height(&tilted, body.mass, rho0, level)?;
+        let buoyancy = hull.submerged_volume(&tilted, level).1;
         let mut up = Vector::zeros();
         up[D - 1] = 1.0;
         let lever = Bivector::torque(&(buoyancy - tilted.point(&body.centre)), &up);

@@ -9,6 +9,8 @@ pub mod hydrostatics;
 mod load;
 pub(crate) mod prescribed_motion;
 pub(crate) mod rapier;
+pub(crate) mod statics;
+pub(crate) mod tie_loads;
 #[cfg(all(test, feature = "dim2", feature = "dim3"))]
 #[path = "../../tests/unit/solid/engine.rs"]
 mod tests;
@@ -74,6 +76,9 @@ pub struct SolidSpec<const D: usize> {
     pub restitution: f64,
     /// Distance outside its faces at which contact begins, m; 0: at the faces. The water is not affected.
     pub contact_skin: f64,
+    /// Whether the space that it encloses starts dry: `Some(true)` also of an open hull below its rim; `Some(false)`
+    /// if the water in it is meant. `None`: closed hollows are dry, and water in an open hull is reported.
+    pub dry: Option<bool>,
 }
 
 /// What moves a solid.

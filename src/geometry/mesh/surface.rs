@@ -128,7 +128,10 @@ impl Surface {
             let (apart, count) = self.join(tolerance, true);
             if apart.is_closed() {
                 if count > 0 {
-                    notes.push(format!("{} joined to others of its part within {tolerance:.1e} m", counted(count, "corner is", "corners are")));
+                    notes.push(format!(
+                        "{} joined to others of its part within {tolerance:.1e} m",
+                        counted(count, "corner is", "corners are")
+                    ));
                 }
                 return apart;
             }

@@ -17,10 +17,7 @@ use crate::{
         context::{Context, Defaults, quoted_list, set_keys},
         untagged::DraftChoice,
     },
-    solid::{
-        DEFAULT_CONTACT_SKIN, DEFAULT_FRICTION, DEFAULT_RESTITUTION, FreeBody, Role, SolidSpec,
-        hydrostatics::equilibrium_height,
-    },
+    solid::{DEFAULT_CONTACT_SKIN, DEFAULT_FRICTION, DEFAULT_RESTITUTION, FreeBody, Role, SolidSpec},
 };
 
 /// Largest extent, dp, of bodies that must weigh half a water particle.
@@ -58,6 +55,8 @@ pub struct SolidConfig {
     pub restitution: Option<f64>,
     /// Distance from its faces at which contact begins, m.
     pub contact_skin: Option<f64>,
+    /// Whether the space that it encloses below its rim starts without water.
+    pub dry: Option<bool>,
 }
 
 /// A body that water, weight and contacts move.
@@ -133,6 +132,7 @@ impl SolidConfig {
             friction: None,
             restitution: None,
             contact_skin: None,
+            dry: None,
         }
     }
 
@@ -175,6 +175,11 @@ impl SolidConfig {
     /// Returns the same solid, with contact beginning at this distance (m) from its faces.
     pub fn contact_skin(self, contact_skin: f64) -> Self {
         Self { contact_skin: Some(contact_skin), ..self }
+    }
+
+    /// Returns the same solid, with its enclosed space without water at the start, or with water that is meant.
+    pub fn dry(self, dry: bool) -> Self {
+        Self { dry: Some(dry), ..self }
     }
 
     /// Refuses a solid that is not complete; `others` are the solids before it and `all` those of the scene.
@@ -241,7 +246,13 @@ impl SolidConfig {
         Ok(())
     }
 
-    /// The solid in the water `pool`, from whose level drafts are measured.
+    /// Whether it starts at the draft of its equilibrium.
+    pub(crate) fn is_afloat(&self) -> bool {
+        self.at.as_ref().is_some_and(|at| at.draft == Some(DraftChoice::Equilibrium))
+    }
+
+    /// The solid in the water `pool`, from whose level drafts are measured. One that starts at its equilibrium is placed
+    /// with its lowest point at the level.
     pub(crate) fn build<const D: usize>(&self, ctx: &Context, key: &str, pool: &StillWater<D>) -> Result<SolidSpec<D>> {
         let level = pool.still.level;
         let place = |part: &str| {
@@ -250,7 +261,7 @@ impl SolidConfig {
         };
         let shape: Shape<D> = self.shape.build(ctx).map_err(place("shape"))?;
         let (name, at) = (&self.name, self.at.clone().unwrap_or_default());
-        let mut pose = at.build(&shape, level);
+        let pose = at.build(&shape, level);
         let role = match (&self.driven, &self.free) {
             (Some(config), _) => {
                 let key = format!("{key}.driven");
@@ -269,18 +280,13 @@ impl SolidConfig {
             }
             (None, None) => Role::Fixed,
         };
-        if at.draft == Some(DraftChoice::Equilibrium) {
-            let Role::Free(body) = &role else {
-                let key = format!("{key}.at.draft");
-                return Err(ctx.error_with_help(
-                    &key,
-                    "only a free body finds its own draft",
-                    "give the height or a draft in metres",
-                ));
-            };
-            let rho0 = ctx.rho0.unwrap_or_default();
-            let rise = equilibrium_height(&shape, &pose, body.mass, rho0, level).map_err(place("at.draft"))?;
-            pose.position[D - 1] += rise;
+        if self.is_afloat() && !matches!(role, Role::Free(_)) {
+            let key = format!("{key}.at.draft");
+            return Err(ctx.error_with_help(
+                &key,
+                "only a free body finds its own draft",
+                "give the height or a draft in metres",
+            ));
         }
         let spec = SolidSpec {
             name: self.name.clone(),
@@ -290,6 +296,7 @@ impl SolidConfig {
             friction: self.friction.unwrap_or(DEFAULT_FRICTION),
             restitution: self.restitution.unwrap_or(DEFAULT_RESTITUTION),
             contact_skin: self.contact_skin.unwrap_or(DEFAULT_CONTACT_SKIN),
+            dry: self.dry,
         };
         let blamed = if spec.has_valid_contact_skin() { key.to_string() } else { format!("{key}.contact_skin") };
         spec.check().map_err(|e| ctx.with_location(e, &blamed))?;

@@ -23,6 +23,8 @@ pub struct WaterConfig {
     pub fill: FillConfig,
     /// Height of its surface, m, if that lies below the top of `fill`.
     pub level: Option<f64>,
+    /// Name of a solid: this water fills the space that the solid encloses, and nothing else.
+    pub inside: Option<String>,
     /// Velocity at the start, m/s: for each axis a formula in the position or a number.
     pub velocity: Option<Vec<FieldFormulaConfig>>,
     /// Pressure at the start beyond the hydrostatic one, Pa: a formula in the position or a number.
@@ -91,7 +93,7 @@ impl WaterConfig {
             let what = format!("the level is not above {bottom} m, the bottom of this water");
             return Err(ctx.error_at(&format!("{key}.level"), what));
         }
-        Ok(WaterBody { region: WaterRegion { shape, pose }, bottom, level, flow: self.flow(ctx, key)? })
+        Ok(WaterBody { region: WaterRegion { shape, pose }, bottom, level, flow: self.flow(ctx, key)?, inside: None })
     }
 
     /// Its motion at the start.
@@ -135,6 +137,8 @@ pub(crate) struct WaterBody<const D: usize> {
     /// Height of the still surface, m.
     pub(crate) level: f64,
     pub(crate) flow: InitialFlow<D>,
+    /// Number of the solid whose enclosed space it fills, if it fills nothing else.
+    pub(crate) inside: Option<usize>,
 }
 
 impl<const D: usize> WaterBody<D> {
@@ -164,12 +168,18 @@ pub struct StillWaterLevel {
 }
 
 impl StillWaterLevel {
-    /// Of all bodies of water.
+    /// Of all bodies of water but those inside solids, if there are others.
     pub(crate) fn of<const D: usize>(water: &[WaterBody<D>]) -> Self {
-        let level = water.iter().map(|body| body.level).fold(f64::NEG_INFINITY, f64::max);
-        let bottom = water.iter().map(|body| body.bottom).fold(f64::INFINITY, f64::min);
+        let level = outside_solids(water).map(|body| body.level).fold(f64::NEG_INFINITY, f64::max);
+        let bottom = outside_solids(water).map(|body| body.bottom).fold(f64::INFINITY, f64::min);
         Self { level, depth: level - bottom }
     }
+}
+
+/// The bodies of water that no solid encloses; all of them if there are no such.
+fn outside_solids<const D: usize>(water: &[WaterBody<D>]) -> impl Iterator<Item = &WaterBody<D>> {
+    let all = water.iter().all(|body| body.inside.is_some());
+    water.iter().filter(move |body| all || body.inside.is_none())
 }
 
 /// The water at rest and the box around it.
@@ -179,11 +189,11 @@ pub(crate) struct StillWater<const D: usize> {
 }
 
 impl<const D: usize> StillWater<D> {
-    /// Of all bodies of water; there is one at least.
+    /// Of the same bodies of water as [`StillWaterLevel::of`]; there is one at least.
     pub(crate) fn of(water: &[WaterBody<D>]) -> Self {
         let mut bounds: Bounds<D> =
             Bounds { min: Vector::repeat(f64::INFINITY), max: Vector::repeat(f64::NEG_INFINITY) };
-        for body in water {
+        for body in outside_solids(water) {
             let own = body.bounds();
             bounds = Bounds { min: bounds.min.inf(&own.min), max: bounds.max.sup(&own.max) };
         }

@@ -305,6 +305,24 @@ impl<const D: usize> JointSpec<D> {
         }
     }
 
+    /// Whether its two solids can move against one another along the unit vector `along`, or mostly so.
+    pub(in crate::solid) fn frees_translation(&self, along: &Vector<D>) -> bool {
+        self.freedom(0..D, along) > 0.5
+    }
+
+    /// Whether its two solids can turn against one another about this axis (axial components, of length 1), or mostly so.
+    pub(in crate::solid) fn frees_rotation(&self, axis: &[f64]) -> bool {
+        if D == 2 { !self.is_locked(D) } else { self.freedom(D..2 * D, &Vector::from_fn(|i, _| axis[i])) > 0.5 }
+    }
+
+    /// Square of the part of `direction` along the axes of those of these modes that are free.
+    fn freedom(&self, modes: std::ops::Range<usize>, direction: &Vector<D>) -> f64 {
+        let axis = if D == 2 && self.kind == JointKind::Hinge { Vector::zeros() } else { self.axis };
+        let (first, frame) = (modes.start, frame(&axis));
+        let free = modes.filter(|mode| !self.is_locked(*mode));
+        free.map(|mode| frame.column(mode - first).dot(direction).powi(2)).sum()
+    }
+
     /// The modes that have end stops, with these, in the order of the engine.
     pub(in crate::solid) fn end_stops(&self) -> Vec<(usize, [f64; 2])> {
         let of = |mode: usize| match self.coordinate_mode() == Some(mode) {

@@ -21,6 +21,7 @@ fn spec(mass: f64, inertia: [f64; 3]) -> SolidSpec<3> {
         friction: 0.3,
         restitution: 0.0,
         contact_skin: 0.0,
+        dry: None,
     }
 }
 

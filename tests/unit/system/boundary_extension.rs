@@ -17,6 +17,7 @@ fn paddle(foot: f64, motion: PrescribedMotion<2>) -> Vec<ExtensionParticle<2>> {
         friction: 0.0,
         restitution: 0.0,
         contact_skin: 0.0,
+        dry: None,
     };
     let specs =
         [solid("bed", [10.0, 1.0], -0.5, Role::Fixed), solid("paddle", [0.4, 2.0], foot + 1.0, Role::Driven(motion))];

@@ -114,7 +114,16 @@ pub(in crate::solid) fn bar<const D: usize>(name: &str, length: f64, at: Vector<
     let long = if lies { 0 } else { D - 1 };
     let shape = Shape::Box { size: Vector::from_fn(|i, _| if i == long { length } else { 0.1 }) };
     let role = Role::Free(FreeBody::from_density(&shape, 1000.0));
-    SolidSpec { name: name.into(), shape, pose: Pose::at(at), role, friction: 0.5, restitution: 0.0, contact_skin: 0.0 }
+    SolidSpec {
+        name: name.into(),
+        shape,
+        pose: Pose::at(at),
+        role,
+        friction: 0.5,
+        restitution: 0.0,
+        contact_skin: 0.0,
+        dry: None,
+    }
 }
 
 pub(in crate::solid) fn body<const D: usize>(solid: &SolidSpec<D>) -> FreeBody<D> {

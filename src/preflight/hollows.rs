@@ -1,0 +1,106 @@
+//! Hollows of solids: which are dry at the start, and hulls that water enters without being asked for.
+
+use super::{Finding, PreflightContext};
+use crate::{
+    geometry::hollow::{Enclosure, Hollow, Place, may_enclose},
+    math::{Bounds, Vector, format::three_digits},
+    solid::{Role, Solid, hydrostatics::Hull},
+};
+
+/// Share of a hollow's volume below the still level that water may take while the hollow counts as dry.
+const DRY: f64 = 0.05;
+
+/// The space that a solid encloses, before the first step.
+pub(super) struct SolidHollows<const D: usize> {
+    enclosure: Enclosure<D>,
+    /// Number of water particles in each hollow.
+    particles: Vec<usize>,
+}
+
+impl<const D: usize> SolidHollows<D> {
+    /// The hollows of `solid` among the `water` (m), which lies in the box `around` (m), with particles of spacing `dp`
+    /// (m); `None` if there is none.
+    pub(super) fn of(solid: &Solid<D>, water: &[Vector<D>], around: &Bounds<D>, dp: f64) -> Option<Self> {
+        let (shape, pose) = (&solid.spec.shape, &solid.kinematics.pose);
+        if !may_enclose(shape, solid.spec.may_be_hull(around)) {
+            return None;
+        }
+        let enclosure = Enclosure::of(shape, &pose.rotation, dp)?;
+        let (bounds, mut particles) = (shape.bounds_at(pose), vec![0; enclosure.hollows.len()]);
+        for x in water.iter().filter(|x| bounds.contains(x)) {
+            if let Place::Hollow(hollow) = enclosure.place(shape, &pose.local(x)) {
+                particles[hollow] += 1;
+            }
+        }
+        Some(Self { enclosure, particles })
+    }
+}
+
+/// Returns solid number `i` with its hollows that are dry at the start, and those with water of their own.
+pub(super) fn hull<'a, const D: usize>(context: &'a PreflightContext<D>, i: usize) -> Hull<'a, D> {
+    let solid = &context.solids()[i];
+    let mut hull = Hull::new(&solid.spec.shape);
+    let Some(own) = &context.hollows[i] else { return hull };
+    let (pose, level, dp) = (&solid.kinematics.pose, context.still_water.level, context.dp());
+    for (hollow, particles) in own.enclosure.hollows.iter().zip(&own.particles) {
+        let volume_below = |level: f64| hollow.volume_and_moment_below(pose, level).0;
+        let water = *particles as f64 * dp.powi(D as i32);
+        if water <= DRY * volume_below(level) {
+            hull.dry.push(hollow);
+        } else if hollow.rim_height(pose) > level {
+            // Half a row is the error of a count.
+            let as_outside = volume_below(level - 0.6 * dp) < water && water < volume_below(level + 0.6 * dp);
+            hull.ballast.push((hollow, if as_outside { volume_below(level) } else { water }));
+        }
+    }
+    hull
+}
+
+/// Returns whether the point `x` (m, own frame) of solid number `i` lies in a hollow that is dry at the start.
+pub(super) fn is_in_dry_hollow<const D: usize>(context: &PreflightContext<D>, i: usize, x: &Vector<D>) -> bool {
+    let Some(own) = &context.hollows[i] else { return false };
+    let place = own.enclosure.place(&context.solids()[i].spec.shape, x);
+    matches!(place, Place::Hollow(hollow) if own.particles[hollow] == 0)
+}
+
+/// Adds findings about hulls with water inside that the scene does not ask for, and about dry hulls that flood.
+pub(super) fn check_hollows<const D: usize>(context: &PreflightContext<D>, findings: &mut Vec<Finding>) {
+    if context.g == 0.0 {
+        return;
+    }
+    let level = context.still_water.level;
+    for (i, (solid, own)) in context.solids().iter().zip(&context.hollows).enumerate() {
+        let (Some(own), name) = (own, &solid.spec.name) else { continue };
+        let pose = &solid.kinematics.pose;
+        let above = |hollow: &Hollow<D>| hollow.rim.is_some() && hollow.rim_height(pose) > level;
+        let filled = own.enclosure.hollows.iter().zip(&own.particles).filter(|(hollow, n)| **n > 0 && above(hollow));
+        let particles: usize = filled.map(|(_, n)| n).sum();
+        if particles > 0 && solid.spec.dry.is_none() {
+            let what = format!(
+                "{particles} water particles start inside \"{name}\", below its rim and beside the water outside: it is \
+                 a hull full of water"
+            );
+            let mend = format!(
+                "dry = true  of the solid keeps them out;  dry = false, or a [[water]] with  inside = \"{name}\",  says \
+                 that they are meant"
+            );
+            findings.push(match solid.spec.role {
+                Role::Fixed => Finding::note("water_inside", what, mend),
+                _ => Finding::warning("water_inside", what, mend),
+            });
+        }
+        let rim = hull(context, i).dry.iter().map(|hollow| hollow.rim_height(pose)).fold(f64::INFINITY, f64::min);
+        if solid.spec.dry == Some(true) && rim < level - 0.5 * context.dp() {
+            let what = format!(
+                "the rim of \"{name}\" starts {} m below the still water: water runs in",
+                three_digits(level - rim)
+            );
+            let mend = "place it higher, make it lighter or its sides higher".into();
+            findings.push(Finding::warning("hull_floods", what, mend));
+        }
+    }
+}
+
+#[cfg(all(test, feature = "dim2", feature = "dim3"))]
+#[path = "../../tests/unit/preflight/hollows.rs"]
+mod tests;

@@ -1,0 +1,244 @@
+//! The solids of a scene in their places: bodies that start at their equilibrium, and hollows that start dry.
+
+use super::{
+    Scene,
+    context::Context,
+    section::{
+        solid::SolidConfig,
+        water::{StillWater, WaterBody},
+    },
+    world_bounds,
+};
+use crate::{
+    error::Result,
+    geometry::{
+        fill::EnclosedSpace,
+        hollow::{Enclosure, Hollow, may_enclose},
+    },
+    math::Pose,
+    solid::{
+        Role, SolidSpec,
+        hydrostatics::Hull,
+        tie_loads::{StartState, TieLoads},
+    },
+};
+
+/// Most trials of the hollows that water fills at an equilibrium.
+const MOST_TRIALS: usize = 200;
+
+/// The solids of a scene, in their places.
+pub(super) struct PlacedSolids<const D: usize> {
+    pub(super) specs: Vec<SolidSpec<D>>,
+    /// The space that each solid encloses in its place.
+    pub(super) enclosures: Vec<Option<Enclosure<D>>>,
+}
+
+/// Returns the solids in their places in `water`; `all`: with the space that each one encloses, else only with that
+/// of bodies that start at their equilibrium.
+pub(super) fn placed_solids<const D: usize>(
+    scene: &Scene,
+    ctx: &Context,
+    water: &[WaterBody<D>],
+    all: bool,
+) -> Result<PlacedSolids<D>> {
+    let pool = StillWater::of(water);
+    let configs = scene.solid.iter().enumerate();
+    let specs = configs.map(|(i, solid)| solid.build(ctx, &format!("solid.{i}"), &pool)).collect::<Result<_>>()?;
+    let mut placed = PlacedSolids { specs, enclosures: Vec::new() };
+    for (i, (config, spec)) in scene.solid.iter().zip(&placed.specs).enumerate() {
+        let named = water.iter().any(|body| body.inside == Some(i));
+        let found = if all || config.is_afloat() { enclosure(spec, named, &pool, scene.dp) } else { None };
+        if all && found.is_none() && (config.dry == Some(true) || named) {
+            let key = if named { "water" } else { &format!("solid.{i}.dry") };
+            let what = format!("\"{}\" encloses no space that could be dry or hold water", spec.name);
+            let help = "a hull encloses space below its rim, two dp deep or more, as it is placed";
+            return Err(ctx.error_with_help(key, what, help));
+        }
+        placed.enclosures.push(found);
+    }
+    if scene.solid.iter().any(|config| config.is_afloat()) {
+        float_bodies(scene, ctx, &mut placed, water, &pool)?;
+    }
+    Ok(placed)
+}
+
+/// Lifts the bodies that start at their equilibrium. They carry the ties as they are at the start: bodies at given
+/// heights that are joined to them or hang on taut ropes, springs and steady forces.
+fn float_bodies<const D: usize>(
+    scene: &Scene,
+    ctx: &Context,
+    placed: &mut PlacedSolids<D>,
+    water: &[WaterBody<D>],
+    pool: &StillWater<D>,
+) -> Result<()> {
+    let (rho0, level) = (ctx.rho0.unwrap_or_default(), pool.still.level);
+    let constraints = scene.constraints(ctx, &placed.specs)?;
+    let specs: Vec<&SolidSpec<D>> = placed.specs.iter().collect();
+    let afloat: Vec<bool> = scene.solid.iter().map(SolidConfig::is_afloat).collect();
+    let bottom = level - pool.still.depth;
+    let state = StartState {
+        specs: &specs,
+        afloat: &afloat,
+        displaced: &|i| placed.displaced_mass(i, rho0, level, water),
+        above_bottom: &|i| world_bounds(&specs[i].shape, &specs[i].pose).min[D - 1] - bottom - 0.5 * scene.dp,
+        g: ctx.gravity_norm(),
+    };
+    let loads = TieLoads::at_start(&state, &constraints);
+    let rise = |i: usize, mass: f64| {
+        placed
+            .rise_to_equilibrium(i, mass, rho0, level, water)
+            .map_err(|e| ctx.with_location(loads.explain(i, e), &format!("solid.{i}.at.draft")))
+    };
+    let mut rises = vec![0.0; specs.len()];
+    for group in loads.groups() {
+        let own: Vec<usize> = group.iter().copied().filter(|i| afloat[*i]).collect();
+        for &i in &own {
+            let Role::Free(body) = &specs[i].role else { continue };
+            // One body carries all; several carry their own loads first, and what is left together.
+            let carried = if own.len() == 1 { loads.of_group(i) } else { 0.0 } + loads.on(i);
+            rises[i] = rise(i, body.mass + carried)?;
+        }
+        let left = own.first().map_or(0.0, |i| loads.of_group(*i));
+        if own.len() > 1 && left != 0.0 {
+            let more = placed.common_rise(&own, &rises, left, rho0, level, water);
+            let error = || {
+                let what =
+                    format!("the bodies that are tied to \"{}\" are too heavy for it to float", specs[own[0]].name);
+                ctx.error_with_help(&format!("solid.{}.at.draft", own[0]), what, "make them lighter, or give heights")
+            };
+            let more = more.ok_or_else(error)?;
+            own.iter().for_each(|i| rises[*i] += more);
+        }
+    }
+    let floats = (0..afloat.len()).filter(|i| afloat[*i]);
+    floats.for_each(|i| placed.specs[i].pose.position[D - 1] += rises[i]);
+    Ok(())
+}
+
+/// Returns the space that a solid encloses, if it can matter; `named`: whether a body of water names the solid.
+fn enclosure<const D: usize>(spec: &SolidSpec<D>, named: bool, pool: &StillWater<D>, dp: f64) -> Option<Enclosure<D>> {
+    let open = named || spec.may_be_hull(&pool.bounds);
+    may_enclose(&spec.shape, open).then(|| Enclosure::of(&spec.shape, &spec.initial_kinematics().pose.rotation, dp))?
+}
+
+/// Returns whether `spec` keeps water that surrounds it out of a hollow.
+fn keeps_out<const D: usize>(spec: &SolidSpec<D>, hollow: &Hollow<D>) -> bool {
+    spec.dry.unwrap_or(hollow.rim.is_none())
+}
+
+impl<const D: usize> PlacedSolids<D> {
+    /// Returns the rise (m) of solid number `i` to its equilibrium as a body of `mass` (kg), in water of density `rho0`
+    /// (kg/m³) at `level` (m). Its hollows are dry if they stay so in that place and no body of water fills them.
+    fn rise_to_equilibrium(&self, i: usize, mass: f64, rho0: f64, level: f64, water: &[WaterBody<D>]) -> Result<f64> {
+        let spec = &self.specs[i];
+        let hollows = self.enclosures[i].as_ref().map_or(&[][..], |enclosure| &enclosure.hollows);
+        let mut hull = Hull { dry: hollows.iter().collect(), ..Hull::new(&spec.shape) };
+        for _ in 0..MOST_TRIALS {
+            let rise = hull.equilibrium_height(&spec.pose, mass, rho0, level);
+            match &rise {
+                Ok(rise) => {
+                    let mut pose = spec.pose;
+                    pose.position[D - 1] += rise;
+                    let next = self.hull_at(i, &pose, level, water);
+                    let same = hull.dry.len() <= next.dry.len()
+                        && hull.ballast.len() == next.ballast.len()
+                        && hull.ballast.iter().zip(&next.ballast).all(|(a, b)| (a.1 - b.1).abs() < 1e-12 * a.1);
+                    if same {
+                        return Ok(*rise);
+                    }
+                    // A hollow that fills in one place stays full.
+                    let dry = |hollow: &&Hollow<D>| hull.dry.iter().any(|own| std::ptr::eq(*own, *hollow));
+                    hull = Hull { dry: next.dry.into_iter().filter(dry).collect(), ..next };
+                }
+                // Without the hollow that floods first.
+                Err(_) => {
+                    let (rim, before) = (hull.rim_height(&spec.pose), hull.dry.len());
+                    hull.dry.retain(|hollow| keeps_out(spec, hollow) || hollow.rim_height(&spec.pose) > rim);
+                    if hull.dry.len() == before {
+                        return rise;
+                    }
+                }
+            }
+        }
+        hull.equilibrium_height(&spec.pose, mass, rho0, level)
+    }
+
+    /// Returns solid number `i` at `pose` in `water`, whose still level outside is `level` (m), with its hollows.
+    fn hull_at(&self, i: usize, pose: &Pose<D>, level: f64, water: &[WaterBody<D>]) -> Hull<'_, D> {
+        let mut hull = Hull::new(&self.specs[i].shape);
+        for hollow in self.enclosures[i].as_ref().map_or(&[][..], |enclosure| &enclosure.hollows) {
+            match self.level_in(i, hollow, pose, water) {
+                None => hull.dry.push(hollow),
+                // Water as high as outside carries nothing.
+                Some(own) if own == level => (),
+                Some(own) => hull.ballast.push((hollow, hollow.volume_and_moment_below(pose, own).0)),
+            }
+        }
+        hull
+    }
+
+    /// Returns the mass (kg) of the water that solid number `i` displaces where it is.
+    fn displaced_mass(&self, i: usize, rho0: f64, level: f64, water: &[WaterBody<D>]) -> f64 {
+        let pose = &self.specs[i].pose;
+        rho0 * self.hull_at(i, pose, level, water).submerged_volume(pose, level).0
+    }
+
+    /// Returns the common rise (m) from the places `rises` (m) at which these bodies displace the mass `more` (kg) in
+    /// addition; `None` if they cannot.
+    fn common_rise(
+        &self,
+        bodies: &[usize],
+        rises: &[f64],
+        more: f64,
+        rho0: f64,
+        level: f64,
+        water: &[WaterBody<D>],
+    ) -> Option<f64> {
+        let size = bodies.iter().map(|i| self.specs[*i].shape.bounds().size().norm()).fold(0.0, f64::max);
+        let displaced = |rise: f64| -> f64 {
+            let one = |i: &usize| {
+                let mut pose = self.specs[*i].pose;
+                pose.position[D - 1] += rises[*i] + rise;
+                self.hull_at(*i, &pose, level, water).submerged_volume(&pose, level).0
+            };
+            rho0 * bodies.iter().map(one).sum::<f64>()
+        };
+        let wanted = displaced(0.0) + more;
+        let (mut under, mut over) = (-size, size);
+        if displaced(under) < wanted || displaced(over) > wanted {
+            return None;
+        }
+        for _ in 0..60 {
+            let middle = 0.5 * (under + over);
+            if displaced(middle) > wanted { under = middle } else { over = middle }
+        }
+        Some(0.5 * (under + over))
+    }
+
+    /// Returns the level (m) of the water that fills a hollow of solid number `i` at `pose`; `None` if it is dry.
+    fn level_in(&self, i: usize, hollow: &Hollow<D>, pose: &Pose<D>, water: &[WaterBody<D>]) -> Option<f64> {
+        let spec = &self.specs[i];
+        let fills = |body: &&WaterBody<D>| {
+            let enters = match body.inside {
+                Some(solid) => solid == i,
+                None => {
+                    let (own, other) = (spec.shape.bounds_at(pose), body.bounds());
+                    !keeps_out(spec, hollow) || (own.contains(&other.min) && own.contains(&other.max))
+                }
+            };
+            enters && hollow.middles_below(pose, body.level).any(|x| body.contains(&x))
+        };
+        water.iter().filter(fills).map(|body| body.level).reduce(f64::max)
+    }
+
+    /// Returns the enclosed spaces for a filling around the solids at `poses`.
+    pub(super) fn spaces<'a>(&'a self, poses: &'a [Pose<D>]) -> Vec<EnclosedSpace<'a, D>> {
+        let all = self.specs.iter().zip(poses).zip(&self.enclosures).enumerate();
+        let space = |(solid, ((spec, pose), enclosure)): (usize, ((&'a SolidSpec<D>, &'a Pose<D>), &'a Option<_>))| {
+            let enclosure: &Enclosure<D> = enclosure.as_ref()?;
+            let keeps_out = enclosure.hollows.iter().map(|hollow| keeps_out(spec, hollow)).collect();
+            Some(EnclosedSpace { solid, shape: &spec.shape, pose, enclosure, keeps_out })
+        };
+        all.filter_map(space).collect()
+    }
+}

@@ -1,0 +1,580 @@
+//! Static equilibrium of free bodies that joints, ropes, springs and steady forces tie together, in their initial
+//! orientation.
+//!
+//! Bodies that a joint keeps from rising against one another rise together; each such group has one unknown, its rise.
+//! Newton's method finds the rises at which buoyancy, weight, lines and forces balance. A rope is a stiff spring that
+//! bears tension only, as is the bottom of the water.
+
+use super::{Constraints, FreeBody, LineEnd, Role, SolidSpec, constraint::lines::start_length, hydrostatics::Hull};
+use crate::math::{Bivector, Bounds, Pose, Vector};
+
+/// Stiffness of a taut rope and of the bottom over that of the largest waterplane.
+const STIFF: f64 = 1e5;
+/// Most iterations of Newton's method.
+const ITERATIONS: usize = 200;
+/// Half of the angle (rad) of the difference that gives a metacentric height.
+const TILT: f64 = 1e-4;
+
+/// The still water.
+#[derive(Clone, Copy)]
+pub(crate) struct WaterAtRest {
+    /// Density, kg/m³.
+    pub(crate) rho0: f64,
+    /// Gravity, m/s².
+    pub(crate) g: f64,
+    /// Height of the surface, m.
+    pub(crate) level: f64,
+}
+
+/// The effect that carries a body at rest.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Support {
+    /// The water: the body, or the group that rises with it, cuts the surface.
+    Water,
+    /// Lines and forces: the body hangs in the air, or in the water below its surface.
+    Lines,
+    /// A joint or a lock holds its height.
+    Held,
+    /// The bottom, or a solid that it lies on.
+    Bottom,
+    /// None: its rim is below the surface, and water fills the hull.
+    Floods,
+}
+
+/// A free body of a static system.
+pub(crate) struct StaticBody<'a, const D: usize> {
+    /// Number of the solid.
+    pub(crate) solid: usize,
+    pub(crate) hull: Hull<'a, D>,
+    pub(crate) body: &'a FreeBody<D>,
+    /// Initial pose.
+    pub(crate) pose: Pose<D>,
+    /// Height (m) below which its lowest point cannot sink.
+    pub(crate) bottom: f64,
+}
+
+/// A line between two bodies, or a body and the ground.
+struct Line<const D: usize> {
+    /// Numbers of the bodies; `None`: the ground.
+    bodies: [Option<usize>; 2],
+    at: [Vector<D>; 2],
+    stiffness: f64,
+    /// Length without tension, m.
+    length: f64,
+    /// Whether it bears compression.
+    pushes: bool,
+    is_rope: bool,
+    /// Whether its ends come to hang one above the other.
+    hangs: bool,
+}
+
+/// A steady force on a body, N, and its point of application, m.
+struct SteadyForce<const D: usize> {
+    body: usize,
+    at: Vector<D>,
+    force: Vector<D>,
+    torque: Bivector<D>,
+}
+
+/// Free bodies with their ties.
+pub(crate) struct StaticSystem<'a, const D: usize> {
+    pub(crate) bodies: Vec<StaticBody<'a, D>>,
+    /// Number of the group of each body that rises together.
+    group: Vec<usize>,
+    /// Number of the assembly of each body: bodies between which there are joints.
+    assembly: Vec<usize>,
+    /// Whether a joint or a lock holds each group.
+    held: Vec<bool>,
+    lines: Vec<Line<D>>,
+    forces: Vec<SteadyForce<D>>,
+    water: WaterAtRest,
+    /// Rise of each group from the start to rest, m.
+    rise: Vec<f64>,
+}
+
+/// The bodies that joints tie together, as numbers that they share.
+pub(crate) struct JointGroups {
+    /// Of each solid: a number that solids share which rise together.
+    pub(crate) rising: Vec<usize>,
+    /// Of each solid: a number that solids share between which there are joints.
+    pub(crate) jointed: Vec<usize>,
+    /// Whether a joint to a solid that is not free, or a lock, holds the height of each solid.
+    pub(crate) held: Vec<bool>,
+}
+
+impl JointGroups {
+    /// The groups of `solids`. A number is that of the first solid of its group.
+    pub(crate) fn of<const D: usize>(solids: &[&SolidSpec<D>], constraints: &Constraints<D>) -> Self {
+        let n = solids.len();
+        let free = |i: usize| matches!(solids[i].role, Role::Free(_));
+        let (mut rising, mut jointed): (Vec<usize>, Vec<usize>) = ((0..n).collect(), (0..n).collect());
+        let locked = |i: usize| matches!(&solids[i].role, Role::Free(body) if body.locked_translations[D - 1]);
+        let mut held: Vec<bool> = (0..n).map(locked).collect();
+        for joint in &constraints.joints {
+            let rises_alone = joint.frees_translation(&up());
+            match joint.between {
+                [Some(a), Some(b)] if free(a) && free(b) => {
+                    merge(&mut jointed, a, b);
+                    if !rises_alone {
+                        merge(&mut rising, a, b);
+                    }
+                }
+                ends => ends.into_iter().flatten().filter(|i| free(*i)).for_each(|i| held[i] |= !rises_alone),
+            }
+        }
+        for i in 0..n {
+            let own = (0..n).any(|j| rising[j] == rising[i] && held[j]);
+            held[i] |= own;
+        }
+        Self { rising, jointed, held }
+    }
+}
+
+/// Unites the groups of `a` and `b`.
+fn merge(group: &mut [usize], a: usize, b: usize) {
+    let (first, other) = (group[a].min(group[b]), group[a].max(group[b]));
+    group.iter_mut().filter(|number| **number == other).for_each(|number| *number = first);
+}
+
+/// The upward unit vector.
+fn up<const D: usize>() -> Vector<D> {
+    Vector::from_fn(|i, _| if i == D - 1 { 1.0 } else { 0.0 })
+}
+
+/// The pose, lifted by `rise` (m).
+fn lifted<const D: usize>(pose: &Pose<D>, rise: f64) -> Pose<D> {
+    Pose { position: pose.position + up() * rise, ..*pose }
+}
+
+impl<'a, const D: usize> StaticSystem<'a, D> {
+    /// The system of these free bodies among `solids`, at rest.
+    pub(crate) fn new(
+        bodies: Vec<StaticBody<'a, D>>,
+        solids: &[&SolidSpec<D>],
+        constraints: &Constraints<D>,
+        water: WaterAtRest,
+    ) -> Self {
+        let groups = JointGroups::of(solids, constraints);
+        let number = |solid: Option<usize>| bodies.iter().position(|body| Some(body.solid) == solid);
+        let of = |by: &[usize]| bodies.iter().map(|body| by[body.solid]).collect::<Vec<_>>();
+        let (group, assembly) = (of(&groups.rising), of(&groups.jointed));
+        let stiff = bodies.iter().map(|body| plan_area(&body.hull, &body.pose)).fold(0.0, f64::max);
+        let stiff = STIFF * water.rho0 * water.g * stiff;
+        let line = |ends: &[LineEnd<D>; 2], stiffness: f64, length: f64, pushes: bool, is_rope: bool| Line {
+            bodies: ends.map(|end| number(end.solid)),
+            at: ends.map(|end| end.at),
+            stiffness,
+            length,
+            pushes,
+            is_rope,
+            hangs: false,
+        };
+        let springs = constraints.springs.iter().map(|s| {
+            line(&s.ends, s.stiffness, s.rest_length.unwrap_or(start_length(&s.ends)), !s.tension_only, false)
+        });
+        let ropes = constraints
+            .ropes
+            .iter()
+            .map(|r| line(&r.ends, stiff, r.max_length.unwrap_or(start_length(&r.ends)), false, true));
+        let mut lines: Vec<Line<D>> = springs.chain(ropes).collect();
+        // A slack line of a body that has no other tie comes to hang.
+        let ties = |i: usize| lines.iter().flat_map(|line| line.bodies).filter(|end| *end == Some(i)).count();
+        let alone = |i: usize| {
+            let jointed = assembly.iter().filter(|number| **number == assembly[i]).count() > 1;
+            !jointed && ties(i) == 1 && !groups.held[bodies[i].solid] && !bodies[i].body.locked_translations[0]
+        };
+        let alone: Vec<bool> = (0..bodies.len()).map(alone).collect();
+        for line in &mut lines {
+            let slack = !line.pushes && (line.at[1] - line.at[0]).norm() < line.length * (1.0 - 1e-6);
+            line.hangs = slack && line.bodies.iter().flatten().any(|i| alone[*i]);
+        }
+        let force = |force: &super::ForceSpec<D>| {
+            let body = number(Some(force.solid))?;
+            let own = &bodies[body];
+            let at = force.at.unwrap_or_else(|| own.pose.point(&own.body.centre));
+            let (force, torque) = force.steady_load()?;
+            Some(SteadyForce { body, at, force, torque })
+        };
+        let forces = constraints.forces.iter().filter_map(force).collect();
+        let (rise, held) = (vec![0.0; solids.len()], groups.held);
+        let mut made = Self { bodies, group, assembly, held, lines, forces, water, rise };
+        made.find_rest();
+        made
+    }
+
+    /// Finds the rises of all groups, those that lines connect at once.
+    fn find_rest(&mut self) {
+        let mut linked: Vec<usize> = (0..self.rise.len()).collect();
+        for line in &self.lines {
+            if let [Some(a), Some(b)] = line.bodies {
+                merge(&mut linked, self.group[a], self.group[b]);
+            }
+        }
+        let mut groups: Vec<usize> = self.group.iter().copied().filter(|g| !self.held[*g]).collect();
+        groups.sort_unstable();
+        groups.dedup();
+        while let Some(first) = groups.first().copied() {
+            let (own, rest): (Vec<usize>, Vec<usize>) = groups.into_iter().partition(|g| linked[*g] == linked[first]);
+            groups = rest;
+            self.solve(&own);
+        }
+    }
+
+    /// Returns the upward forces (N) on `groups` and their derivatives by the rises (N/m).
+    fn forces(&self, groups: &[usize]) -> (Vec<f64>, Vec<Vec<f64>>) {
+        let n = groups.len();
+        let (mut force, mut slope) = (vec![0.0; n], vec![vec![0.0; n]; n]);
+        let place = |body: usize| groups.iter().position(|g| *g == self.group[body]);
+        let WaterAtRest { rho0, g, level } = self.water;
+        for (i, body) in self.bodies.iter().enumerate() {
+            let Some(k) = place(i) else { continue };
+            let pose = self.pose(i);
+            let area = plan_area(&body.hull, &pose);
+            let step = 1e-6 * self.size(i);
+            let volume = |rise: f64| body.hull.volume_if_dry(&lifted(&pose, rise), level);
+            force[k] += g * (rho0 * volume(0.0) - body.body.mass);
+            slope[k][k] += rho0 * g * (volume(step) - volume(-step)) / (2.0 * step);
+            let sunk = body.bottom - body.hull.extent(&pose)[0];
+            if sunk > 0.0 {
+                force[k] += STIFF * rho0 * g * area * sunk;
+                slope[k][k] -= STIFF * rho0 * g * area;
+            }
+        }
+        for own in &self.forces {
+            if let Some(k) = place(own.body) {
+                force[k] += own.force[D - 1];
+            }
+        }
+        for line in &self.lines {
+            let (pull, stiffness) = self.pull(line);
+            let ends = line.bodies.map(|end| end.and_then(place));
+            for (end, sign) in ends.into_iter().zip([1.0, -1.0]) {
+                let Some(k) = end else { continue };
+                force[k] += sign * pull[D - 1];
+                slope[k][k] -= stiffness;
+                if let Some(other) = if sign > 0.0 { ends[1] } else { ends[0] } {
+                    slope[k][other] += stiffness;
+                }
+            }
+        }
+        (force, slope)
+    }
+
+    /// Returns the force (N) of a line on its first end, and its stiffness (N/m) against a rise of an end.
+    fn pull(&self, line: &Line<D>) -> (Vector<D>, f64) {
+        let [a, b] = [0, 1].map(|k| line.at[k] + up::<D>() * line.bodies[k].map_or(0.0, |i| self.rise[self.group[i]]));
+        let mut along = b - a;
+        if line.hangs {
+            along = up::<D>() * along[D - 1];
+        }
+        let length = along.norm();
+        let stretch = length - line.length;
+        if length == 0.0 || (stretch <= 0.0 && !line.pushes) {
+            return (Vector::zeros(), 0.0);
+        }
+        let (unit, tension) = (along / length, line.stiffness * stretch);
+        let steep = unit[D - 1] * unit[D - 1];
+        (unit * tension, line.stiffness * steep + (tension / length).max(0.0) * (1.0 - steep))
+    }
+
+    /// Finds the rises of `groups` that lines connect.
+    fn solve(&mut self, groups: &[usize]) {
+        if let &[group] = groups
+            && let Some(i) = self.untied(group)
+        {
+            let body = &self.bodies[i];
+            let sinks = body.bottom - body.hull.extent(&body.pose)[0];
+            self.rise[group] = body
+                .hull
+                .equilibrium_height(&body.pose, body.body.mass, self.water.rho0, self.water.level)
+                .unwrap_or(sinks);
+            return;
+        }
+        let members = || (0..self.bodies.len()).filter(|i| groups.contains(&self.group[*i]));
+        let size = members().map(|i| self.size(i)).fold(0.0, f64::max);
+        let weight: f64 = members().map(|i| self.bodies[i].body.mass * self.water.g).sum();
+        let area: f64 = members().map(|i| plan_area(&self.bodies[i].hull, &self.bodies[i].pose)).sum();
+        let least = 1e-3 * self.water.rho0 * self.water.g * area;
+        for _ in 0..ITERATIONS {
+            let (force, mut slope) = self.forces(groups);
+            if force.iter().all(|f| f.abs() < 1e-9 * weight) {
+                break;
+            }
+            slope.iter_mut().flatten().for_each(|x| *x = -*x);
+            (0..groups.len()).for_each(|k| slope[k][k] = slope[k][k].max(least));
+            let mut step = solve_linear(slope, force);
+            let longest = step.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+            if longest < 1e-13 * size {
+                break;
+            }
+            step.iter_mut().for_each(|x| *x *= (0.25 * size / longest).min(1.0));
+            let start: Vec<f64> = groups.iter().map(|g| self.rise[*g]).collect();
+            // The energy is convex: beyond its least value along the step the forces point back.
+            let (mut part, mut low, mut high) = (1.0, 0.0, 1.0);
+            for _ in 0..12 {
+                groups.iter().enumerate().for_each(|(k, g)| self.rise[*g] = start[k] + part * step[k]);
+                let ahead: f64 = self.forces(groups).0.iter().zip(&step).map(|(f, x)| f * x).sum();
+                if ahead >= 0.0 {
+                    low = part;
+                } else {
+                    high = part;
+                }
+                if low == 1.0 {
+                    break;
+                }
+                part = 0.5 * (low + high);
+            }
+        }
+    }
+
+    /// Returns the only body of a group, if nothing is tied to it.
+    fn untied(&self, group: usize) -> Option<usize> {
+        let mut own = (0..self.bodies.len()).filter(|i| self.group[*i] == group);
+        let i = own.next()?;
+        let tied = own.next().is_some()
+            || self.lines.iter().any(|line| line.bodies.contains(&Some(i)))
+            || self.forces.iter().any(|force| force.body == i);
+        (!tied).then_some(i)
+    }
+
+    fn size(&self, i: usize) -> f64 {
+        self.bodies[i].hull.shape.bounds().size().max()
+    }
+
+    /// Pose of body `i` at rest.
+    pub(crate) fn pose(&self, i: usize) -> Pose<D> {
+        lifted(&self.bodies[i].pose, self.rise[self.group[i]])
+    }
+
+    /// Returns whether a lock of a body, or a joint to a solid that is not free, holds the assembly of body `i` against
+    /// tilts about this axis.
+    pub(crate) fn is_tilt_locked(&self, i: usize, axis: &[f64], constraints: &Constraints<D>) -> bool {
+        let locked = |j: usize| (0..axis.len()).all(|k| axis[k] == 0.0 || self.bodies[j].body.locked_rotations[k]);
+        let number = |solid: usize| self.bodies.iter().position(|body| body.solid == solid);
+        let member = |end: Option<usize>| end.and_then(number).map(|j| self.assembly[j]);
+        let grounded = constraints.joints.iter().any(|joint| {
+            let ends = joint.between.map(member);
+            ends.contains(&Some(self.assembly[i])) && ends.contains(&None) && !joint.frees_rotation(axis)
+        });
+        grounded || self.assembly_of(i).any(locked)
+    }
+
+    /// Returns whether two bodies rise together.
+    pub(crate) fn rise_together(&self, i: usize, j: usize) -> bool {
+        self.group[i] == self.group[j]
+    }
+
+    /// Returns the bodies between which and body `i` there are joints, with it.
+    pub(crate) fn assembly_of(&self, i: usize) -> impl Iterator<Item = usize> {
+        let own = self.assembly[i];
+        (0..self.bodies.len()).filter(move |j| self.assembly[*j] == own)
+    }
+
+    /// Returns the bodies that rise with body `i`, with it.
+    fn group_of(&self, i: usize) -> impl Iterator<Item = usize> {
+        let own = self.group[i];
+        (0..self.bodies.len()).filter(move |j| self.group[*j] == own)
+    }
+
+    /// Returns the load (N, downward) of lines and steady forces on body `i` at rest.
+    pub(crate) fn tie_load(&self, i: usize) -> f64 {
+        let mut load = 0.0;
+        for line in &self.lines {
+            let pull = self.pull(line).0[D - 1];
+            load -=
+                if line.bodies[0] == Some(i) { pull } else { 0.0 } - if line.bodies[1] == Some(i) { pull } else { 0.0 };
+        }
+        load - self.forces.iter().filter(|own| own.body == i).map(|own| own.force[D - 1]).sum::<f64>()
+    }
+
+    /// Returns the effect that carries body `i` at rest.
+    pub(crate) fn support(&self, i: usize) -> Support {
+        let level = self.water.level;
+        if self.held[self.group[i]] {
+            return Support::Held;
+        }
+        let on_bottom = |j: usize| {
+            let lowest = self.bodies[j].hull.extent(&self.pose(j))[0];
+            let displaced = self.water.rho0 * self.bodies[j].hull.volume_if_dry(&self.pose(j), level);
+            lowest <= self.bodies[j].bottom + 1e-6 * self.size(j) && displaced < (1.0 - 1e-6) * self.bodies[j].body.mass
+        };
+        if self.group_of(i).any(on_bottom) {
+            let open = self.bodies[i].hull.rim_height(&self.bodies[i].pose).is_finite();
+            return if open { Support::Floods } else { Support::Bottom };
+        }
+        let floods = |j: usize| self.bodies[j].hull.rim_height(&self.pose(j)) < level - 1e-6 * self.size(j);
+        if self.group_of(i).any(floods) {
+            return Support::Floods;
+        }
+        let floats = self.waterplane(i) > 1e-6 * plan_area(&self.bodies[i].hull, &self.bodies[i].pose);
+        if floats { Support::Water } else { Support::Lines }
+    }
+
+    /// Returns the area (m²; m in 2-D) of the waterplane of the bodies that rise with body `i`.
+    pub(crate) fn waterplane(&self, i: usize) -> f64 {
+        let area = |j: usize| {
+            let pose = self.pose(j);
+            let [low, high] = self.bodies[j].hull.extent(&pose);
+            let step = 1e-4 * (high - low);
+            let volume = |level: f64| self.bodies[j].hull.volume_if_dry(&pose, level);
+            (volume(self.water.level + step) - volume(self.water.level - step)) / (2.0 * step)
+        };
+        self.group_of(i).map(area).sum()
+    }
+
+    /// Returns the mass (kg) that heaves with body `i`: of bodies that rise with it and of those that hang on ropes or
+    /// springs below it, and the stiffness (N/m) of lines to the ground.
+    pub(crate) fn heaving_mass_and_stiffness(&self, i: usize) -> (f64, f64) {
+        let (mut mass, mut stiffness) = (self.group_of(i).map(|j| self.bodies[j].body.mass).sum::<f64>(), 0.0);
+        for line in &self.lines {
+            let (pull, stiff) = self.pull(line);
+            for (own, other) in [(0, 1), (1, 0)] {
+                if line.bodies[own].is_none_or(|j| self.group[j] != self.group[i]) || pull.norm() == 0.0 {
+                    continue;
+                }
+                match line.bodies[other] {
+                    None => stiffness += stiff,
+                    Some(j) if self.group[j] != self.group[i] && self.support(j) == Support::Lines => {
+                        mass += self.bodies[j].body.mass;
+                    }
+                    Some(_) => (),
+                }
+            }
+        }
+        (mass, stiffness)
+    }
+
+    /// Returns the righting lever (m, axial components) of the assembly of body `i`, turned from rest by `angle` (rad)
+    /// about the horizontal `axis` and afloat again.
+    pub(crate) fn lever(&self, i: usize, axis: &[f64], angle: f64) -> Vec<f64> {
+        let WaterAtRest { rho0, g, level } = self.water;
+        let members: Vec<usize> = self.assembly_of(i).collect();
+        let rest: Vec<Pose<D>> = members.iter().map(|j| self.pose(*j)).collect();
+        let mass: f64 = members.iter().map(|j| self.bodies[*j].body.mass).sum();
+        let masses = members
+            .iter()
+            .zip(&rest)
+            .map(|(j, pose)| pose.point(&self.bodies[*j].body.centre) * self.bodies[*j].body.mass);
+        let centre = masses.fold(Vector::zeros(), |a, b| a + b) / mass;
+        let turn = (Bivector::from_axial(axis) * angle).exp();
+        let turned = |x: &Vector<D>, rise: f64| centre + turn * (x - centre) + up::<D>() * rise;
+        let displaced = |rise: f64| -> (f64, Vector<D>) {
+            members.iter().zip(&rest).fold((0.0, Vector::zeros()), |sum, (j, pose)| {
+                let pose = Pose { position: turned(&pose.position, rise), rotation: turn * pose.rotation };
+                let (volume, centroid) = self.bodies[*j].hull.submerged_volume(&pose, level);
+                (sum.0 + volume, sum.1 + centroid * volume)
+            })
+        };
+        let whole: f64 =
+            members.iter().zip(&rest).map(|(j, pose)| self.bodies[*j].hull.submerged_volume(pose, level).0).sum();
+        let size = members.iter().map(|j| self.size(*j)).fold(0.0, f64::max);
+        let step = 1e-6 * size;
+        let mut rise = 0.0;
+        for _ in 0..20 {
+            let slope = (displaced(rise + step).0 - displaced(rise - step).0) / (2.0 * step);
+            let lack = whole - displaced(rise).0;
+            if slope >= 0.0 || lack.abs() < 1e-13 * whole {
+                break;
+            }
+            rise += (lack / slope).clamp(-0.1 * size, 0.1 * size);
+        }
+        let (volume, first) = displaced(rise);
+        let middle = centre + up::<D>() * rise;
+        let mut torque = Bivector::torque(&(first - middle * volume), &(up::<D>() * (rho0 * g)));
+        let member = |end: Option<usize>| end.filter(|j| self.assembly[*j] == self.assembly[i]);
+        let mut add = |at: &Vector<D>, force: &Vector<D>| torque = torque + Bivector::torque(&(at - middle), force);
+        for line in &self.lines {
+            let ends = line.bodies.map(member);
+            for (own, sign) in [(0, 1.0), (1, -1.0)] {
+                let (Some(j), None) = (ends[own], ends[1 - own]) else { continue };
+                let at = turned(&(line.at[own] + up::<D>() * self.rise[self.group[j]]), rise);
+                let force = match line.bodies[1 - own] {
+                    // The other body follows, and its weight or lift stays.
+                    Some(_) => self.pull(line).0 * sign,
+                    None => tension_towards(line, &at, &line.at[1 - own], self.pull(line).0.norm()),
+                };
+                add(&at, &force);
+            }
+        }
+        for own in self.forces.iter().filter(|own| self.assembly[own.body] == self.assembly[i]) {
+            let at = own.at + up::<D>() * self.rise[self.group[own.body]];
+            add(&turned(&at, rise), &own.force);
+        }
+        for own in self.forces.iter().filter(|own| self.assembly[own.body] == self.assembly[i]) {
+            torque = torque + own.torque;
+        }
+        torque.axial().iter().map(|t| t / (rho0 * g * whole)).collect()
+    }
+
+    /// Returns the metacentric height (m) of the assembly of body `i` for tilts about the horizontal `axis`.
+    pub(crate) fn metacentric_height(&self, i: usize, axis: &[f64]) -> f64 {
+        let along = |angle: f64| self.lever(i, axis, angle).iter().zip(axis).map(|(t, a)| t * a).sum::<f64>();
+        -(along(TILT) - along(-TILT)) / (2.0 * TILT)
+    }
+
+    /// Returns the inertia (kg m²) of the assembly of body `i` about the horizontal `axis` through its centre of mass,
+    /// and the displaced mass (kg).
+    pub(crate) fn inertia_and_displacement(&self, i: usize, axis: &[f64]) -> (f64, f64) {
+        let members: Vec<(usize, Pose<D>)> = self.assembly_of(i).map(|j| (j, self.pose(j))).collect();
+        let centre_of = |(j, pose): &(usize, Pose<D>)| pose.point(&self.bodies[*j].body.centre);
+        let mass: f64 = members.iter().map(|(j, _)| self.bodies[*j].body.mass).sum();
+        let sum = members.iter().map(|own| centre_of(own) * self.bodies[own.0].body.mass);
+        let centre = sum.fold(Vector::zeros(), |a, b| a + b) / mass;
+        let axis = Vector::<D>::from_fn(|i, _| axis.get(i).copied().unwrap_or(0.0));
+        let (mut inertia, mut displaced) = (0.0, 0.0);
+        for own in &members {
+            let body = self.bodies[own.0].body;
+            let arm = centre_of(own) - centre;
+            let local = own.1.rotation.transpose() * axis;
+            inertia += match D {
+                2 => body.inertia[(0, 0)] + body.mass * arm.norm_squared(),
+                _ => local.dot(&(body.inertia * local)) + body.mass * (arm.norm_squared() - arm.dot(&axis).powi(2)),
+            };
+            displaced += self.water.rho0 * self.bodies[own.0].hull.submerged_volume(&own.1, self.water.level).0;
+        }
+        (inertia, displaced)
+    }
+}
+
+/// Returns the force (N) of a line at `at` towards its fixed end: of a spring by its length, of a rope as at rest.
+fn tension_towards<const D: usize>(line: &Line<D>, at: &Vector<D>, end: &Vector<D>, rest: f64) -> Vector<D> {
+    let along = end - at;
+    let length = along.norm();
+    let stretch = length - line.length;
+    if rest == 0.0 || length == 0.0 {
+        return Vector::zeros();
+    }
+    along / length * if line.is_rope { rest } else { line.stiffness * stretch }
+}
+
+/// Returns the area (m²; m in 2-D) of the horizontal box around a hull.
+fn plan_area<const D: usize>(hull: &Hull<D>, pose: &Pose<D>) -> f64 {
+    let Bounds { min, max } = hull.shape.bounds_at(pose);
+    (0..D - 1).map(|i| max[i] - min[i]).product()
+}
+
+/// Solves `matrix` x = `right` by elimination with pivots.
+fn solve_linear(mut matrix: Vec<Vec<f64>>, mut right: Vec<f64>) -> Vec<f64> {
+    let n = right.len();
+    for k in 0..n {
+        let pivot = (k..n).max_by(|a, b| matrix[*a][k].abs().total_cmp(&matrix[*b][k].abs())).unwrap_or(k);
+        matrix.swap(k, pivot);
+        right.swap(k, pivot);
+        for i in k + 1..n {
+            let factor = matrix[i][k] / matrix[k][k];
+            for j in k..n {
+                matrix[i][j] -= factor * matrix[k][j];
+            }
+            right[i] -= factor * right[k];
+        }
+    }
+    for k in (0..n).rev() {
+        let known: f64 = (k + 1..n).map(|j| matrix[k][j] * right[j]).sum();
+        right[k] = (right[k] - known) / matrix[k][k];
+    }
+    right
+}
+
+#[cfg(test)]
+#[path = "../../tests/unit/solid/statics.rs"]
+mod tests;

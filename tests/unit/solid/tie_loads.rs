@@ -1,0 +1,77 @@
+//! Unit tests of `src/solid/tie_loads.rs`.
+
+use super::*;
+use crate::{
+    geometry::Shape,
+    math::Vector,
+    solid::{ForceSpec, JointKind, JointSpec, RopeSpec, SpringSpec},
+};
+
+/// Loads of bodies of these masses (kg), each displacing 1 kg, 2 m above the bottom; the first `afloat` ones float.
+fn loads(masses: &[f64], afloat: usize, ties: &Constraints<2>) -> TieLoads {
+    let body = |(i, mass): (usize, &f64)| {
+        SolidSpec::free(format!("{i}"), Shape::Box { size: Vector::from([1.0, 1.0]) }, *mass)
+    };
+    let solids: Vec<SolidSpec<2>> = masses.iter().enumerate().map(body).collect();
+    let specs: Vec<&SolidSpec<2>> = solids.iter().collect();
+    let afloat: Vec<bool> = (0..masses.len()).map(|i| i < afloat).collect();
+    let state = StartState { specs: &specs, afloat: &afloat, displaced: &|_| 1.0, above_bottom: &|_| 2.0, g: 10.0 };
+    TieLoads::at_start(&state, ties)
+}
+
+fn rope(upper: LineEnd<2>, lower: LineEnd<2>) -> RopeSpec<2> {
+    RopeSpec::new("rope", [upper, lower])
+}
+
+#[test]
+fn a_chain_of_weights_hangs_on_the_float_above_it() {
+    let mut ties = Constraints::default();
+    // In any order, and with any end first.
+    ties.ropes.push(rope(LineEnd::on(2, [0.0, 1.0]), LineEnd::on(1, [0.0, 2.0])));
+    ties.ropes.push(rope(LineEnd::on(0, [0.0, 4.0]), LineEnd::on(1, [0.0, 3.0])));
+    let found = loads(&[5.0, 4.0, 3.0], 1, &ties);
+    assert_eq!((found.on(0), found.of_group(0)), (5.0, 0.0));
+    // A rope so long that the last weight reaches the bottom.
+    ties.ropes[0].max_length = Some(4.0);
+    assert_eq!(loads(&[5.0, 4.0, 3.0], 1, &ties).on(0), 3.0);
+    // A light body does not push on a rope.
+    assert_eq!(
+        loads(&[5.0, 0.5], 1, &Constraints { ropes: vec![ties.ropes[1].clone()], ..Constraints::default() }).on(0),
+        0.0
+    );
+}
+
+#[test]
+fn a_weight_between_two_floats_loads_each_with_half() {
+    let mut ties = Constraints::default();
+    ties.ropes.push(rope(LineEnd::on(0, [-1.0, 4.0]), LineEnd::on(2, [0.0, 3.0])));
+    ties.ropes.push(rope(LineEnd::on(1, [1.0, 4.0]), LineEnd::on(2, [0.0, 3.0])));
+    let found = loads(&[5.0, 5.0, 3.0], 2, &ties);
+    assert_eq!((found.on(0), found.on(1)), (1.0, 1.0));
+}
+
+#[test]
+fn a_bolted_keel_loads_its_group_and_a_ground_joint_carries_all() {
+    let bolt = |between| JointSpec::new("bolt", JointKind::Fixed, between, Vector::zeros(), Vector::zeros());
+    let mut ties = Constraints::default();
+    ties.joints.push(bolt([Some(0), Some(1)]));
+    let found = loads(&[5.0, 4.0], 1, &ties);
+    assert_eq!((found.on(0), found.of_group(0)), (0.0, 3.0));
+    assert_eq!(found.groups(), [vec![0, 1]]);
+    ties.joints.push(bolt([None, Some(1)]));
+    let found = loads(&[5.0, 4.0], 1, &ties);
+    assert_eq!((found.on(0), found.of_group(0)), (0.0, 0.0));
+}
+
+#[test]
+fn a_tense_mooring_and_a_steady_force_load_a_buoy() {
+    let mut ties = Constraints::default();
+    let ends = [LineEnd::on(0, [3.0, 4.0]), LineEnd::ground([0.0, 0.0])];
+    ties.springs.push(SpringSpec::new("line", ends, 100.0).rest_length(4.0).tension_only());
+    // 100 N along 3-4-5: 80 N down.
+    assert!((loads(&[5.0], 1, &ties).on(0) - 8.0).abs() < 1e-12);
+    ties.springs[0].rest_length = Some(6.0);
+    assert_eq!(loads(&[5.0], 1, &ties).on(0), 0.0, "slack");
+    ties.forces.push(ForceSpec::new("crane", 0).force([0.0, 30.0]));
+    assert_eq!(loads(&[5.0], 1, &ties).on(0), -3.0);
+}
