@@ -51,6 +51,16 @@ pub fn fill<const D: usize>(
     solids: &[(&Shape<D>, &Pose<D>)],
     dp: f64,
 ) -> Result<FilledWater<D>> {
+    let ground: Vec<_> = solids.iter().map(|(shape, pose)| (*shape, *pose, true)).collect();
+    fill_around(regions, &ground, dp)
+}
+
+/// Fills as [`fill()`] does. Of each solid the third value is whether its open polylines are beds, with ground below.
+pub(crate) fn fill_around<const D: usize>(
+    regions: &[WaterRegion<D>],
+    solids: &[(&Shape<D>, &Pose<D>, bool)],
+    dp: f64,
+) -> Result<FilledWater<D>> {
     if !(dp > 0.0 && dp.is_finite()) {
         return Err(
             Error::scene(format!("the particle spacing dp is {dp}")).help("give a length above zero, in metres")
@@ -60,7 +70,8 @@ pub fn fill<const D: usize>(
     for region in regions {
         lattices.push(Lattice::new(region, lattices.first().map(|l| l.origin), dp)?);
     }
-    let mut obstacles: Vec<_> = solids.iter().map(|(shape, pose)| Obstacle::new(shape, pose, dp)).collect();
+    let mut obstacles: Vec<_> =
+        solids.iter().map(|(shape, pose, ground)| Obstacle::new(shape, pose, *ground, dp)).collect();
     let mut filled = FilledWater { r: Vec::new(), removed_in_solids: 0, removed_in_regions: 0 };
     let mut home = Vec::new();
     for (k, lattice) in lattices.iter().enumerate() {

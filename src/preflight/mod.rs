@@ -16,6 +16,7 @@ mod sound_speed;
 mod wavemaker_site;
 mod driven_motion;
 mod thickness;
+mod thin_parts;
 mod generated_waves;
 
 use std::collections::BTreeMap;
@@ -162,7 +163,8 @@ pub fn preflight<const D: usize>(
     let system = sim.system();
     let down = -system.gravity()[D - 1];
     let g = if down > 0.9 * system.gravity().norm() { down } else { 0.0 };
-    let samples = system.solids().iter().map(|s| surface_samples::of_solid(s, system.model().dp)).collect();
+    let (dp, reach) = (system.model().dp, system.model().support_radius());
+    let samples = system.solids().iter().map(|s| surface_samples::of_solid(s, dp, reach)).collect();
     let look = PreflightContext { system, plan, still_water: still, g, surface_samples: samples };
     let mut findings = Vec::new();
     let sound = look.sound_speed(&mut findings);
@@ -172,6 +174,7 @@ pub fn preflight<const D: usize>(
     let bodies = look.bodies(&gaps.touching, &mut findings);
     look.misplaced_bodies(&gaps.touching, &mut findings);
     look.check_thickness(&mut findings);
+    thin_parts::check_parts(&look, &mut findings);
     look.check_probes(&sound, &mut findings);
     let (waves, absorbers) = (look.generated_waves(&mut findings), look.absorbers());
     findings.sort_by_key(|f| f.severity);

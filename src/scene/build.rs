@@ -15,7 +15,7 @@ use crate::{
     error::{Error, ErrorKind, Result},
     geometry::{
         Shape,
-        fill::{WaterRegion, fill},
+        fill::{WaterRegion, fill_around},
     },
     math::{Bounds, Pose, Vector},
     model::{Model, TimeScheme},
@@ -111,9 +111,10 @@ impl Scene {
             water.iter().map(|b| WaterRegion { shape: b.region.shape.clone(), pose: b.region.pose }).collect();
         // The initial position of a driven solid follows from its motion.
         let starts: Vec<Pose<D>> = solids.iter().map(|s| s.initial_kinematics().pose).collect();
-        let solid_shapes: Vec<(&Shape<D>, &Pose<D>)> =
-            solids.iter().zip(&starts).map(|(s, start)| (&s.shape, start)).collect();
-        let mut filled = fill(&regions, &solid_shapes, scene.dp).map_err(|e| ctx.with_location(e, "water"))?;
+        let rests = |s: &SolidSpec<D>| !matches!(s.role, Role::Free(_));
+        let solid_shapes: Vec<(&Shape<D>, &Pose<D>, bool)> =
+            solids.iter().zip(&starts).map(|(s, start)| (&s.shape, start, rests(s))).collect();
+        let mut filled = fill_around(&regions, &solid_shapes, scene.dp).map_err(|e| ctx.with_location(e, "water"))?;
         if scene.water.iter().any(|w| w.level.is_some() && w.fill.shape.is_some()) {
             filled.r.retain(|x| water.iter().any(|body| body.contains(x) && x[D - 1] < body.level));
         }
