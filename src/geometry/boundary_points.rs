@@ -7,11 +7,15 @@ use super::{
     cells::spacing_flags,
     offset::{polygon_points, polyline_points},
     shell::points_by_distance,
+    thin::{has_thin_parts, middle_points, thin_place},
 };
 use crate::math::{Pose, Vector};
 
 /// Least distance between two particles of the same solid, dp.
 pub(super) const MIN_SPACING: f64 = 0.7;
+
+/// Thickness of a polygon's part below which it has a single layer, dp: as a box, round(thickness/dp) cells.
+const MIDDLE: f64 = 1.5;
 
 impl<const D: usize> Shape<D> {
     /// Returns the boundary particles in `layers` layers, with a spacing of about `dp` (m).
@@ -19,23 +23,39 @@ impl<const D: usize> Shape<D> {
     /// Layer k lies (k + ½) dp inside the face. A box has round(size/dp) cells along each edge, so a box whose size is
     /// a multiple of dp reproduces the lattice. Round shapes have rings and shells, and outlines have parallel curves.
     /// Meshes have evenly spaced points on surfaces of constant depth; if two faces are too close, the innermost points
-    /// lack up to a quarter dp of that depth. The layers of a tank extend outwards into its walls, always `layers` in
-    /// number. If a polygon or a tip is thinner than dp, the depth of half a dp does not exist, and the shape has no
-    /// particles there.
+    /// lack up to a quarter dp of that depth. Walls of tanks and polylines have layers from both faces, and from the rim
+    /// or the ends; walls thinner than twice `layers` dp are filled. Parts of
+    /// polygons and meshes that are thinner than dp have a single layer in their middle. A tip between faces that are
+    /// not nearly parallel has no particles where it is thinner than dp.
     pub fn boundary_points(&self, dp: f64, layers: usize) -> Vec<BoundaryPoint<D>> {
         let layers = layers.min(u8::MAX as usize);
         let points = match self {
             Shape::Box { size } => return box_skin(size, dp, layers),
-            Shape::Tank { size, .. } => return tank_skin(size, dp, layers),
+            Shape::Tank { size, thickness } => return tank_skin(size, *thickness, dp, layers),
             Shape::Cylinder { length, radius, axis } => return cylinder_skin(*length, *radius, *axis, dp, layers),
             Shape::Ball { radius } => capsule_skin(0.0, *radius, D - 1, dp, layers),
             Shape::Capsule { length, radius, axis } => capsule_skin(*length, *radius, *axis, dp, layers),
-            Shape::Polygon { points } => polygon_points(points, dp, layers),
-            Shape::Polyline { points, .. } => polyline_points(points, dp, layers),
-            Shape::Mesh { .. } => points_by_distance(self, dp, layers),
+            Shape::Polygon { points } => self.with_thin_parts(polygon_points(points, dp, layers), MIDDLE * dp, dp),
+            Shape::Polyline { points, thickness } => polyline_points(points, *thickness, dp, layers),
+            Shape::Mesh { .. } => self.with_thin_parts(points_by_distance(self, dp, layers), dp, dp),
             Shape::Compound(parts) => return compound_skin(parts, dp, layers),
         };
         thinned(points, MIN_SPACING * dp)
+    }
+
+    /// Returns the particles with those in the middle of parts thinner than `limit` (m), which replace all others there.
+    fn with_thin_parts(&self, mut points: Vec<BoundaryPoint<D>>, limit: f64, dp: f64) -> Vec<BoundaryPoint<D>> {
+        if !has_thin_parts(self, limit, dp) {
+            return points;
+        }
+        let in_thick = |p: &&BoundaryPoint<D>| thin_place(self, &p.r, limit, 1e-3 * dp).is_none();
+        let thick: Vec<Vector<D>> = points.iter().filter(in_thick).map(|p| p.r).collect();
+        let middle = middle_points(self, &thick, limit, dp);
+        if !middle.is_empty() {
+            points.retain(|p| in_thick(&p));
+            points.extend(middle.into_iter().map(|r| BoundaryPoint { r, layer: 0 }));
+        }
+        points
     }
 }
 
@@ -93,16 +113,40 @@ fn box_skin<const D: usize>(size: &Vector<D>, dp: f64, layers: usize) -> Vec<Bou
     skin
 }
 
-fn tank_skin<const D: usize>(size: &Vector<D>, dp: f64, layers: usize) -> Vec<BoundaryPoint<D>> {
+/// Largest distance between the outer face of a tank and the lattice of the water, dp, at which its walls continue that
+/// lattice.
+const OFF_LATTICE: f64 = 0.1;
+
+/// Generates the boundary particles of a tank. A wall has round(thickness/dp) cells across: the cells of the hollow's
+/// lattice if those end at the outer face, else cells that divide the thickness evenly.
+fn tank_skin<const D: usize>(size: &Vector<D>, thickness: f64, dp: f64, layers: usize) -> Vec<BoundaryPoint<D>> {
     let n: [i64; D] = std::array::from_fn(|i| parts(size[i], dp));
-    let layers = layers as i64;
-    let high = std::array::from_fn(|i| if i == D - 1 { n[i] - 1 } else { n[i] - 1 + layers });
+    let (wall, layers) = (parts(thickness, dp), layers as i64);
+    let place = |i: usize, at: i64| {
+        let (cell, outside) = (size[i] / n[i] as f64, at < 0 || at >= n[i]);
+        if !outside || (wall as f64 * cell - thickness).abs() <= OFF_LATTICE * dp {
+            return (at as f64 + 0.5) * size[i] / n[i] as f64;
+        }
+        let start = if at < 0 { 0.0 } else { size[i] };
+        start + ((at - if at < 0 { 0 } else { n[i] }) as f64 + 0.5) * thickness / wall as f64
+    };
+    // The number of cells from the hollow, one for a cell beside it, and the number of cells from the outer face.
+    let from_hollow = |i: usize, at: i64| (-at).max(at - (n[i] - 1));
+    let from_outside = |i: usize, at: i64| (at + wall).min(n[i] - 1 - at + if i == D - 1 { 0 } else { wall });
+    let mut rows: [i64; D] = std::array::from_fn(|i| if i == D - 1 { n[i] - 1 } else { n[i] - 1 + wall });
+    rows[0] = -wall;
     let mut skin = Vec::new();
-    each_outer(&[-layers; D], &high, layers, |at| {
-        let depth = (0..D).map(|i| (-at[i]).max(at[i] - (n[i] - 1))).max().unwrap_or(0);
-        if depth > 0 {
-            let r = Vector::from_fn(|i, _| (at[i] as f64 + 0.5) * size[i] / n[i] as f64);
-            skin.push(BoundaryPoint { r, layer: (depth - 1) as u8 });
+    for_each_index(&[-wall; D], &rows, |row| {
+        let inner = (1..D).map(|i| from_hollow(i, row[i])).max().unwrap_or(0);
+        let outer = (1..D).map(|i| from_outside(i, row[i])).min().unwrap_or(0);
+        let crosses_floor = inner > 0 && inner.min(outer + 1) <= layers;
+        let beside_hollow = if crosses_floor { 0..n[0] } else { 0..0 };
+        for at in (-wall..0).chain(beside_hollow).chain(n[0]..n[0] + wall) {
+            let depth = (inner.max(from_hollow(0, at)) - 1).min(outer).min(from_outside(0, at));
+            if depth < layers {
+                let r = Vector::from_fn(|i, _| place(i, if i == 0 { at } else { row[i] }));
+                skin.push(BoundaryPoint { r, layer: depth as u8 });
+            }
         }
     });
     skin

@@ -10,7 +10,7 @@ use crate::{
 };
 
 /// Points sorted into cubic cells.
-pub(super) struct PointCells<const D: usize> {
+pub(crate) struct PointCells<const D: usize> {
     min: Vector<D>,
     size: f64,
     count: [usize; D],

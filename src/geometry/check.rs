@@ -1,6 +1,9 @@
 //! Validity checks of a shape: finite, positive sizes, a valid axis, and outlines that do not cross themselves.
 
-use super::Shape;
+use super::{
+    Shape,
+    wall::{far_side, is_closed},
+};
 use crate::{
     error::{Error, Result},
     math::Vector,
@@ -30,7 +33,10 @@ impl<const D: usize> Shape<D> {
             Shape::Polygon { points } => polygon(points),
             Shape::Polyline { points, thickness } => {
                 positive("the thickness of a polyline wall", *thickness)?;
-                outline("polyline", points, 2, false)
+                match is_closed(points) {
+                    true => ring(points, *thickness),
+                    false => outline("polyline", points, 2, false),
+                }
             }
             Shape::Tank { size, thickness } => {
                 sizes("the size of a tank", size)?;
@@ -66,12 +72,29 @@ fn rod(name: &str, dimension: usize, length: f64, radius: f64, axis: usize) -> R
 
 fn polygon<const D: usize>(points: &[Vector<D>]) -> Result<()> {
     outline("polygon", points, 3, true)?;
-    let n = points.len();
-    let area: f64 = (0..n).map(|i| wedge(&points[i], &points[(i + 1) % n])).sum();
-    if area > 0.0 {
+    if doubled_area(points) > 0.0 {
         return Ok(());
     }
     Err(Error::scene("the points of a polygon run clockwise").help("reverse the points: counter-clockwise"))
+}
+
+/// Checks a closed polyline. The far side of a wall inside the line encloses less space; it must enclose some.
+fn ring<const D: usize>(points: &[Vector<D>], thickness: f64) -> Result<()> {
+    outline("polyline", &points[..points.len() - 1], 3, true)?;
+    let far = far_side(points, thickness);
+    let along = |(near, far): (&[Vector<D>], &[Vector<D>])| (near[1] - near[0]).normalize().dot(&(far[1] - far[0]));
+    let length: f64 = points.windows(2).zip(far.windows(2)).map(along).sum();
+    if length > 0.0 && doubled_area(points) * doubled_area(&far) > 0.0 {
+        return Ok(());
+    }
+    Err(Error::scene(format!("a closed polyline whose wall, {thickness} m thick, leaves no space inside"))
+        .help("make the wall thinner, or write a polygon, which is solid"))
+}
+
+/// Returns twice the area inside a closed outline: positive if it runs counter-clockwise.
+fn doubled_area<const D: usize>(points: &[Vector<D>]) -> f64 {
+    let (n, origin) = (points.len(), points[0]);
+    (0..n).map(|i| wedge(&(points[i] - origin), &(points[(i + 1) % n] - origin))).sum()
 }
 
 fn compound<const D: usize>(parts: &[(crate::math::Pose<D>, Shape<D>)]) -> Result<()> {
@@ -89,7 +112,7 @@ fn compound<const D: usize>(parts: &[(crate::math::Pose<D>, Shape<D>)]) -> Resul
     Ok(())
 }
 
-/// Checks the properties that polygons (closed) and polylines (open) have in common.
+/// Checks the properties that polygons and polylines have in common.
 fn outline<const D: usize>(name: &str, points: &[Vector<D>], least: usize, closed: bool) -> Result<()> {
     if D != 2 {
         return Err(Error::scene(format!("a {name} is a 2-D shape"))

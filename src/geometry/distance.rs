@@ -1,6 +1,6 @@
 //! Distance of a point from the surface of a shape: exact for every single shape.
 
-use super::Shape;
+use super::{Shape, wall::distance_to_wall};
 use crate::math::Vector;
 
 impl<const D: usize> Shape<D> {
@@ -22,7 +22,7 @@ impl<const D: usize> Shape<D> {
                 to_box(&Vector::from([radial, x[*axis]]), &Vector::from([*radius, 0.5 * length]))
             }
             Shape::Polygon { points } => to_polygon(x, points),
-            Shape::Polyline { points, thickness } => to_wall(x, points, *thickness),
+            Shape::Polyline { points, thickness } => distance_to_wall(x, points, *thickness),
             Shape::Tank { size, thickness } => to_tank(x, size, *thickness),
             Shape::Mesh { mesh, .. } => mesh.distance_and_normal(&in_space(x)).0,
             Shape::Compound(parts) => {
@@ -117,66 +117,6 @@ fn to_polygon<const D: usize>(x: &Vector<D>, points: &[Vector<D>]) -> f64 {
         }
     }
     if inside { -d2.sqrt() } else { d2.sqrt() }
-}
-
-/// Returns the unit normal to the right of the direction from `a` to `b`: into the solid of a polyline.
-pub(super) fn right_normal<const D: usize>(a: &Vector<D>, b: &Vector<D>) -> Vector<D> {
-    let mut n = Vector::<D>::zeros();
-    (n[0], n[1]) = (b[1] - a[1], a[0] - b[0]);
-    n / n.norm()
-}
-
-/// Position of a point relative to an open line.
-pub(super) enum LineSide {
-    /// The point is on the water's side of the line, or on the line.
-    Left(f64),
-    /// The point is on the solid's side of the line, at this depth (m).
-    Right(f64),
-    /// The point is before the first point of the line.
-    BeforeStart,
-    /// The point is beyond the last point of the line.
-    AfterEnd,
-}
-
-pub(super) fn side_of_line<const D: usize>(x: &Vector<D>, points: &[Vector<D>]) -> LineSide {
-    let segments = points.len() - 1;
-    let (mut d2, mut right, mut before, mut after) = (f64::INFINITY, 0.0, false, false);
-    for (i, ab) in points.windows(2).enumerate() {
-        let (nearest, u) = nearest_on_segment(x, &ab[0], &ab[1]);
-        let r = x - nearest;
-        let r2 = r.norm_squared();
-        if r2 > d2 {
-            continue;
-        }
-        if r2 < d2 {
-            (d2, right) = (r2, 0.0);
-            before = i == 0 && u < 0.0;
-            after = i + 1 == segments && u > 1.0;
-        }
-        right += r.dot(&right_normal(&ab[0], &ab[1])); // both sides of a corner vote
-    }
-    match (before, after) {
-        (true, _) => LineSide::BeforeStart,
-        (_, true) => LineSide::AfterEnd,
-        _ if right > 0.0 => LineSide::Right(d2.sqrt()),
-        _ => LineSide::Left(d2.sqrt()),
-    }
-}
-
-fn to_wall<const D: usize>(x: &Vector<D>, points: &[Vector<D>], thickness: f64) -> f64 {
-    let n = points.len();
-    let to_cap = |end: &Vector<D>, a: &Vector<D>, b: &Vector<D>| {
-        (x - nearest_on_segment(x, end, &(end + right_normal(a, b) * thickness)).0).norm()
-    };
-    let to_start = || to_cap(&points[0], &points[0], &points[1]);
-    let to_end = || to_cap(&points[n - 1], &points[n - 2], &points[n - 1]);
-    match side_of_line(x, points) {
-        LineSide::BeforeStart => to_start(),
-        LineSide::AfterEnd => to_end(),
-        LineSide::Left(d) => d,
-        LineSide::Right(d) if d > thickness => d - thickness,
-        LineSide::Right(d) => -d.min(thickness - d).min(to_start()).min(to_end()),
-    }
 }
 
 #[cfg(test)]

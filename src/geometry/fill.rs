@@ -55,7 +55,8 @@ pub(crate) struct Filling<'a, const D: usize> {
     pub(crate) regions: &'a [WaterRegion<D>],
     /// The solid whose hollows each region fills, if it fills nothing else; an empty list: none does.
     pub(crate) inside: Vec<Option<usize>>,
-    pub(crate) solids: &'a [(&'a Shape<D>, &'a Pose<D>)],
+    /// Shapes, poses, and whether open polylines are beds, with ground below.
+    pub(crate) solids: &'a [(&'a Shape<D>, &'a Pose<D>, bool)],
     pub(crate) spaces: &'a [EnclosedSpace<'a, D>],
 }
 
@@ -107,6 +108,16 @@ pub fn fill<const D: usize>(
     solids: &[(&Shape<D>, &Pose<D>)],
     dp: f64,
 ) -> Result<FilledWater<D>> {
+    let ground: Vec<_> = solids.iter().map(|(shape, pose)| (*shape, *pose, true)).collect();
+    fill_around(regions, &ground, dp)
+}
+
+/// Fills as [`fill()`] does. Of each solid the third value is whether its open polylines are beds, with ground below.
+pub(crate) fn fill_around<const D: usize>(
+    regions: &[WaterRegion<D>],
+    solids: &[(&Shape<D>, &Pose<D>, bool)],
+    dp: f64,
+) -> Result<FilledWater<D>> {
     Ok(Filling { regions, inside: Vec::new(), solids, spaces: &[] }.fill(dp)?.water)
 }
 
@@ -125,7 +136,8 @@ impl<const D: usize> Filling<'_, D> {
         for region in self.regions {
             lattices.push(Lattice::new(region, lattices.first().map(|l| l.origin), dp)?);
         }
-        let mut obstacles: Vec<_> = self.solids.iter().map(|(shape, pose)| Obstacle::new(shape, pose, dp)).collect();
+        let mut obstacles: Vec<_> =
+            self.solids.iter().map(|(shape, pose, ground)| Obstacle::new(shape, pose, *ground, dp)).collect();
         let mut filled = FilledWater { r: Vec::new(), removed_in_solids: 0, removed_in_regions: 0 };
         let mut home = Vec::new();
         let entries: Vec<Vec<Entry>> = lattices.iter().enumerate().map(|(k, l)| self.entries(k, l)).collect();

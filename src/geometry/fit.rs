@@ -3,7 +3,7 @@
 
 use rayon::prelude::*;
 
-use super::{Shape, fill::Lattice, packing};
+use super::{Shape, fill::Lattice, packing, wall::is_closed};
 use crate::{
     math::{Bounds, Pose, Vector},
     particles::PARTICLES_PER_TASK,
@@ -27,8 +27,10 @@ pub(super) struct Obstacle<'a, const D: usize> {
     close: Bounds<D>,
     /// Bounds of all points that the packing around this solid involves.
     around: Bounds<D>,
-    /// The lines of the solid's polyline walls, in world coordinates.
+    /// The lines of the solid's open polyline walls, in world coordinates, if they may be beds.
     lines: Vec<Vec<Vector<D>>>,
+    /// Whether the solid has polyline walls.
+    has_walls: bool,
     /// Volume of the solid less the volume of the cells taken so far, on each side, in cells.
     owed: Vec<f64>,
     /// Whether water on the lattice would be too near to the solid's face, or too far from it.
@@ -36,12 +38,23 @@ pub(super) struct Obstacle<'a, const D: usize> {
 }
 
 impl<'a, const D: usize> Obstacle<'a, D> {
-    pub(crate) fn new(shape: &'a Shape<D>, pose: &'a Pose<D>, dp: f64) -> Self {
+    pub(crate) fn new(shape: &'a Shape<D>, pose: &'a Pose<D>, has_ground: bool, dp: f64) -> Self {
         let bounds = shape.bounds_at(pose);
         let mut lines = Vec::new();
-        collect_lines(shape, pose, &mut lines);
+        let has_walls = collect_lines(shape, pose, &mut lines);
+        lines.truncate(if has_ground { lines.len() } else { 0 });
         let around = bounds.grown((ZONE + packing::SUPPORT_RADIUS_DP + 1.0) * dp);
-        Self { shape, pose, dp, close: bounds.grown(dp), around, lines, owed: vec![0.0; 2 * D], needs_packing: false }
+        Self {
+            shape,
+            pose,
+            dp,
+            close: bounds.grown(dp),
+            around,
+            lines,
+            has_walls,
+            owed: vec![0.0; 2 * D],
+            needs_packing: false,
+        }
     }
 
     fn distance(&self, x: &Vector<D>) -> f64 {
@@ -123,15 +136,24 @@ impl<'a, const D: usize> Obstacle<'a, D> {
             *x += self.outward(x) * lack;
         }
         // Behind a thin wall the distance may be discontinuous.
-        if self.lines.is_empty() { -lack } else { 0.0 }
+        if self.has_walls { 0.0 } else { -lack }
     }
 }
 
-fn collect_lines<const D: usize>(shape: &Shape<D>, pose: &Pose<D>, lines: &mut Vec<Vec<Vector<D>>>) {
+/// Adds the open polyline walls of a shape to `lines`, in world coordinates. Returns whether the shape has any polyline
+/// walls.
+fn collect_lines<const D: usize>(shape: &Shape<D>, pose: &Pose<D>, lines: &mut Vec<Vec<Vector<D>>>) -> bool {
     match shape {
-        Shape::Polyline { points, .. } => lines.push(points.iter().map(|x| pose.point(x)).collect()),
-        Shape::Compound(parts) => parts.iter().for_each(|(inner, part)| collect_lines(part, &pose.then(inner), lines)),
-        _ => (),
+        Shape::Polyline { points, .. } => {
+            if !is_closed(points) {
+                lines.push(points.iter().map(|x| pose.point(x)).collect());
+            }
+            true
+        }
+        Shape::Compound(parts) => {
+            parts.iter().fold(false, |found, (inner, part)| collect_lines(part, &pose.then(inner), lines) || found)
+        }
+        _ => false,
     }
 }
 

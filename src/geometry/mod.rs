@@ -5,7 +5,7 @@
 //! particles. [`fill()`] places water on a lattice and fits the water to the solids.
 
 mod boundary_points;
-mod cells;
+pub(crate) mod cells;
 mod check;
 mod distance;
 pub mod fill;
@@ -18,12 +18,15 @@ pub(crate) mod overlap;
 mod packing;
 mod shell;
 mod submerged_volume;
+pub(crate) mod thin;
 pub(crate) mod triangulation;
+pub(crate) mod wall;
 
 use std::sync::Arc;
 
 use crate::math::{Matrix, Pose, Vector};
 
+pub(crate) use fill::fill_around;
 pub use fill::{FilledWater, WaterRegion, fill};
 pub use mesh::{ContactGeometry, Mesh};
 
@@ -42,9 +45,10 @@ pub enum Shape<const D: usize> {
     Cylinder { length: f64, radius: f64, axis: usize },
     /// A simple polygon, counter-clockwise; 2-D only.
     Polygon { points: Vec<Vector<D>> },
-    /// A wall along an open line, 2-D only. Seen from the first point towards the last, the water is on the left, and
-    /// the solid, `thickness` thick, is on the right. A line that runs towards +x is a bed: the filling places no water
-    /// below a bed, even if the bed is thin.
+    /// A wall along a line, 2-D only. Seen from the first point towards the last, the line is the left face of the
+    /// solid, which is `thickness` thick on the right. If the last point equals the first, the wall is a closed ring:
+    /// outside a line that runs counter-clockwise, inside a line that runs clockwise. An open line that runs towards +x
+    /// is a bed: the filling places no water below a bed of a solid that is not free, even if the bed is thin.
     Polyline { points: Vec<Vector<D>>, thickness: f64 },
     /// An open-topped tank: bottom and side walls `thickness` thick around the inner box from the
     /// origin to `size`.
@@ -73,6 +77,6 @@ pub struct VolumeProperties<const D: usize> {
 pub struct BoundaryPoint<const D: usize> {
     /// Position, m.
     pub r: Vector<D>,
-    /// Layer number. Layer 0 is nearest to the water, half a dp inside the true face.
+    /// Layer number, counted from the nearest face. Layer 0 lies half a dp inside the true face.
     pub layer: u8,
 }

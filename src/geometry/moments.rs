@@ -2,7 +2,10 @@
 
 use std::f64::consts::PI;
 
-use super::{Shape, VolumeProperties, distance::right_normal};
+use super::{
+    Shape, VolumeProperties,
+    wall::{wall_outline, wall_perimeter},
+};
 use crate::math::{Bounds, Matrix, Pose, Vector};
 
 impl<const D: usize> Shape<D> {
@@ -23,7 +26,7 @@ impl<const D: usize> Shape<D> {
                 around(half)
             }
             Shape::Polygon { points } => Bounds::around(points),
-            Shape::Polyline { points, thickness } => Bounds::around(&polyline_outline(points, *thickness)),
+            Shape::Polyline { points, thickness } => Bounds::around(&wall_outline(points, *thickness)),
             Shape::Tank { size, thickness } => tank_outer_bounds(size, *thickness),
             Shape::Mesh { mesh, .. } => {
                 let Bounds { min, max } = mesh.bounds();
@@ -62,7 +65,7 @@ impl<const D: usize> Shape<D> {
                 centred(volume, moment)
             }
             Shape::Polygon { points } => polygon(points),
-            Shape::Polyline { points, thickness } => polygon(&polyline_outline(points, *thickness)),
+            Shape::Polyline { points, thickness } => polygon(&wall_outline(points, *thickness)),
             Shape::Tank { size, thickness } => {
                 let outside = tank_outer_bounds(size, *thickness);
                 let solid = |size: Vector<D>| Shape::Box { size }.volume_properties();
@@ -88,7 +91,7 @@ impl<const D: usize> Shape<D> {
             Shape::Capsule { length, radius, .. } => ball_surface(D - 1, *radius) * length + ball_surface(D, *radius),
             Shape::Cylinder { length, radius, .. } => 2.0 * PI * radius * (length + radius),
             Shape::Polygon { points } => perimeter(points),
-            Shape::Polyline { points, thickness } => perimeter(&polyline_outline(points, *thickness)),
+            Shape::Polyline { points, thickness } => wall_perimeter(points, *thickness),
             Shape::Tank { size, thickness } => {
                 // The floor of the hollow has the same area as the opening at the top.
                 let sides: f64 = (0..D - 1).map(|i| 2.0 * size.product() / size[i]).sum();
@@ -173,18 +176,6 @@ pub(super) fn tank_outer_bounds<const D: usize>(size: &Vector<D>, thickness: f64
     let mut max = size.add_scalar(thickness);
     max[D - 1] = size[D - 1];
     Bounds { min: Vector::repeat(-thickness), max }
-}
-
-/// Returns the outline of a polyline wall, counter-clockwise: the line in reverse, then its mitred parallel at a
-/// distance of `thickness` to the right.
-pub(super) fn polyline_outline<const D: usize>(points: &[Vector<D>], thickness: f64) -> Vec<Vector<D>> {
-    let normals: Vec<_> = points.windows(2).map(|ab| right_normal(&ab[0], &ab[1])).collect();
-    let back = points.iter().enumerate().map(|(i, p)| {
-        let (a, b) = (normals[i.max(1) - 1], normals[i.min(normals.len() - 1)]);
-        // The code truncates the mitre of a corner sharper than 143°, which would otherwise be too long.
-        p + (a + b) * (thickness / (1.0 + a.dot(&b)).max(0.2))
-    });
-    points.iter().rev().copied().chain(back).collect()
 }
 
 #[cfg(test)]

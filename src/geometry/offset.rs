@@ -3,7 +3,7 @@
 
 use super::{
     BoundaryPoint, Shape,
-    distance::{LineSide, right_normal, side_of_line},
+    wall::{LineSide, distance_to_wall, is_closed, right_normal, side_of_line},
 };
 use crate::math::Vector;
 
@@ -26,12 +26,66 @@ pub(super) fn polygon_points<const D: usize>(points: &[Vector<D>], dp: f64, laye
     layered(&line, true, dp, layers, |x| -shape.signed_distance(x))
 }
 
-/// Returns `layers` layers on the right of an open line, for any thickness of the wall.
-pub(super) fn polyline_points<const D: usize>(points: &[Vector<D>], dp: f64, layers: usize) -> Vec<BoundaryPoint<D>> {
-    layered(points, false, dp, layers, |x| match side_of_line(x, points) {
+/// Returns the layers of a wall on the right of a line. The wall has round(thickness/dp) curves across; of those, the
+/// points no deeper than `layers` dp below a face or an end are boundary particles.
+pub(super) fn polyline_points<const D: usize>(
+    points: &[Vector<D>],
+    thickness: f64,
+    dp: f64,
+    layers: usize,
+) -> Vec<BoundaryPoint<D>> {
+    let across = (thickness / dp).round().max(1.0);
+    let even = thickness / across;
+    let step = if (even - dp).abs() < 1e-9 * dp { dp } else { even };
+    let across = across as usize;
+    let depth_at = |x: &Vector<D>| match side_of_line(x, points) {
         LineSide::Right(depth) => depth,
         _ => 0.0,
-    })
+    };
+    let mut skin = Vec::new();
+    for k in 0..across {
+        let depth = (k as f64 + 0.5) * step;
+        let inner = k >= layers && across - k > layers;
+        let lines = if inner { near_ends(points, 2.0 * thickness + layers as f64 * dp) } else { vec![points.to_vec()] };
+        for line in lines {
+            let curves = curves_at(&line, is_closed(&line), depth, dp, &depth_at);
+            let found = curves.iter().flat_map(|curve| divided(curve, dp));
+            skin.extend(found.filter_map(|r| {
+                let layer = (-distance_to_wall(&r, points, thickness) / step).floor().clamp(0.0, k as f64) as usize;
+                (layer < layers).then_some(BoundaryPoint { r, layer: layer as u8 })
+            }));
+        }
+    }
+    skin
+}
+
+/// Returns the parts of an open line within about `distance` (m) of its ends, or the whole line if it is short; nothing
+/// for a closed line.
+fn near_ends<const D: usize>(points: &[Vector<D>], distance: f64) -> Vec<Vec<Vector<D>>> {
+    let length: f64 = points.windows(2).map(|ab| (ab[1] - ab[0]).norm()).sum();
+    let start = |points: &mut dyn Iterator<Item = &Vector<D>>| {
+        let mut part: Vec<Vector<D>> = Vec::new();
+        let mut first = None;
+        for x in points {
+            let first = *first.get_or_insert(*x);
+            if let Some(last) = part.last().filter(|_| (x - first).norm() > distance) {
+                let along = x - last;
+                part.push(last + along * (distance / along.norm()).min(1.0));
+                break;
+            }
+            part.push(*x);
+        }
+        part
+    };
+    if is_closed(points) {
+        return Vec::new();
+    }
+    if length < 4.0 * distance {
+        return vec![points.to_vec()];
+    }
+    let mut end = start(&mut points.iter().rev());
+    end.reverse();
+    vec![start(&mut points.iter()), end]
 }
 
 fn layered<const D: usize>(
@@ -43,15 +97,24 @@ fn layered<const D: usize>(
 ) -> Vec<BoundaryPoint<D>> {
     let mut skin = Vec::new();
     for k in 0..layers {
-        let depth = (k as f64 + 0.5) * dp;
-        // The tolerance admits points that lie on the parallel itself.
-        let valid = |x: &Vector<D>| depth_at(x) >= depth * (1.0 - 1e-7);
-        let pieces = parallels(line, closed, depth, dp, &valid);
-        for curve in joined(pieces, closed, dp) {
+        for curve in curves_at(line, closed, (k as f64 + 0.5) * dp, dp, &depth_at) {
             skin.extend(divided(&curve, dp).into_iter().map(|r| BoundaryPoint { r, layer: k as u8 }));
         }
     }
     skin
+}
+
+/// Returns the curves parallel to the line at `depth`, without the parts where another part of the line is nearer.
+fn curves_at<const D: usize>(
+    line: &[Vector<D>],
+    closed: bool,
+    depth: f64,
+    dp: f64,
+    depth_at: &impl Fn(&Vector<D>) -> f64,
+) -> Vec<Curve<D>> {
+    // The tolerance admits points that lie on the parallel itself.
+    let valid = |x: &Vector<D>| depth_at(x) >= depth * (1.0 - 1e-7);
+    joined(parallels(line, closed, depth, dp, &valid), closed, dp)
 }
 
 /// Returns the valid pieces of the parallel at `depth`, in the order of the line.

@@ -148,7 +148,7 @@ fn at_depth<const D: usize>(shape: &Shape<D>, mut x: Vector<D>, depth: f64, shor
 /// Selects `wanted` of the `candidates` with an approximately even spacing, or fewer if there are fewer candidates. The
 /// function first selects at the largest spacing that gives at most `wanted` points. It then adds the missing points as
 /// far as possible from the selected points and from one another.
-fn chosen<const D: usize>(candidates: &[Vector<D>], wanted: usize, dp: f64) -> Vec<Vector<D>> {
+pub(super) fn chosen<const D: usize>(candidates: &[Vector<D>], wanted: usize, dp: f64) -> Vec<Vector<D>> {
     let (mut kept, _) = farthest(&[], candidates, wanted, dp);
     let lack = wanted - kept.len();
     let (_, more) = farthest(&kept, candidates, lack, dp);

@@ -6,10 +6,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::{
-    Shape,
-    moments::{polyline_outline, tank_outer_bounds},
-};
+use super::{Shape, moments::tank_outer_bounds, wall::wall_outline};
 use crate::math::{Bounds, Pose, Vector};
 
 /// A facet of the surface: in 2-D an edge with the solid on its left; in 3-D a triangle, counter-clockwise seen from
@@ -68,7 +65,7 @@ impl<const D: usize> Shape<D> {
                 self.turned_facets(&[(*radius, -0.5 * length), (*radius, 0.5 * length)], *axis)
             }
             Shape::Polygon { points } => edges(points),
-            Shape::Polyline { points, thickness } => edges(&polyline_outline(points, *thickness)),
+            Shape::Polyline { points, thickness } => edges(&wall_outline(points, *thickness)),
             Shape::Tank { size, thickness } => {
                 let mut all = box_facets(&tank_outer_bounds(size, *thickness));
                 let hollow = box_facets(&Bounds { min: Vector::zeros(), max: *size });

@@ -3,7 +3,10 @@
 
 use serde::Serialize;
 
-use super::{Finding, PreflightContext, thickness::has_full_layers, wavemaker_site::WavemakerSite};
+use super::{
+    Finding, PreflightContext,
+    wavemaker_site::{WavemakerSite, is_wall},
+};
 use crate::{
     math::format::{three_digits, two_digits_down},
     scene::world_bounds,
@@ -137,11 +140,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         let level = self.still_water.level;
         let bounds = world_bounds(&solid.spec.shape, &solid.kinematics.pose);
         // A moving tank contains the water and is not a paddle.
-        if has_full_layers(&solid.spec.shape)
-            || self.g == 0.0
-            || bounds.min[D - 1] >= level
-            || bounds.max[D - 1] <= level
-        {
+        if is_wall(&solid.spec.shape) || self.g == 0.0 || bounds.min[D - 1] >= level || bounds.max[D - 1] <= level {
             return None;
         }
         let swing = self.driven_stroke(solid, motion, &bounds)?;

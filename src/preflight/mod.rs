@@ -17,6 +17,7 @@ mod sound_speed;
 mod wavemaker_site;
 mod driven_motion;
 mod thickness;
+mod thin_parts;
 mod generated_waves;
 
 use std::collections::BTreeMap;
@@ -180,8 +181,9 @@ pub fn preflight<const D: usize>(
     let system = sim.system();
     let down = -system.gravity()[D - 1];
     let g = if down > 0.9 * system.gravity().norm() { down } else { 0.0 };
-    let samples = system.solids().iter().map(|s| surface_samples::of_solid(s, system.model().dp)).collect();
-    let (water, dp) = (system.fluid().r, system.model().dp);
+    let (dp, reach) = (system.model().dp, system.model().support_radius());
+    let samples = system.solids().iter().map(|s| surface_samples::of_solid(s, dp, reach)).collect();
+    let water = system.fluid().r;
     let around = Bounds::around(water);
     let hollows = system.solids().iter().map(|solid| SolidHollows::of(solid, water, &around, dp)).collect();
     let look = PreflightContext { system, plan, still_water: still, g, surface_samples: samples, hollows };
@@ -194,6 +196,7 @@ pub fn preflight<const D: usize>(
     let bodies = look.bodies(&gaps.touching, &mut findings);
     look.misplaced_bodies(&gaps.touching, &mut findings);
     look.check_thickness(&mut findings);
+    thin_parts::check_parts(&look, &mut findings);
     look.check_probes(&sound, &mut findings);
     let (waves, absorbers) = (look.generated_waves(&mut findings), look.absorbers());
     findings.sort_by_key(|f| f.severity);

@@ -15,10 +15,15 @@ pub(crate) struct SurfaceSample<const D: usize> {
     pub n: Vector<D>,
 }
 
-/// The faces of `solid`, dp (m) apart; none of a fixed tank or polyline, whose skin is as thick as is needed.
-pub(crate) fn of_solid<const D: usize>(solid: &Solid<D>, dp: f64) -> Vec<SurfaceSample<D>> {
+/// The faces of `solid`, dp (m) apart; none of a fixed tank or polyline at least `reach` (m) thick, which is often large
+/// and needs no check.
+pub(crate) fn of_solid<const D: usize>(solid: &Solid<D>, dp: f64, reach: f64) -> Vec<SurfaceSample<D>> {
     match (&solid.spec.role, &solid.spec.shape) {
-        (Role::Fixed, Shape::Tank { .. } | Shape::Polyline { .. }) => Vec::new(),
+        (Role::Fixed, Shape::Tank { thickness, .. } | Shape::Polyline { thickness, .. })
+            if *thickness >= reach * (1.0 - 1e-6) =>
+        {
+            Vec::new()
+        }
         (_, shape) => of_shape(shape, dp),
     }
 }

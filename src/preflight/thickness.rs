@@ -51,24 +51,14 @@ fn shortest_chord<const D: usize>(mut ways: Vec<(f64, Vector<D>)>) -> Option<(f6
     ways.get((TIPS * ways.len() as f64) as usize).copied()
 }
 
-/// Whether all of the shape has as many layers as are asked for.
-pub(crate) fn has_full_layers<const D: usize>(shape: &Shape<D>) -> bool {
-    match shape {
-        Shape::Tank { .. } | Shape::Polyline { .. } => true,
-        Shape::Compound(parts) => parts.iter().all(|(_, part)| has_full_layers(part)),
-        _ => false,
-    }
-}
-
 impl<const D: usize> PreflightContext<'_, D> {
-    /// Fixed and driven solids against the kernel's support. Fixed ones that lie against one another are one wall; tanks
-    /// and polylines have as many layers as are needed, whatever they say.
+    /// Fixed and driven solids against the kernel's support. Fixed ones that lie against one another are one wall.
     pub(super) fn check_thickness(&self, findings: &mut Vec<Finding>) {
         let (dp, reach) = (self.dp(), self.system.model().support_radius());
         for (solid, faces) in self.solids().iter().zip(&self.surface_samples) {
             let pose = &solid.kinematics.pose;
             let fixed = matches!(solid.spec.role, Role::Fixed);
-            if matches!(solid.spec.role, Role::Free(_)) || has_full_layers(&solid.spec.shape) {
+            if matches!(solid.spec.role, Role::Free(_)) {
                 continue;
             }
             let alone = |x: &Vector<D>| solid.spec.shape.signed_distance(&pose.local(x));

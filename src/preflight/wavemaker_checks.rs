@@ -1,8 +1,10 @@
 //! Paddles that make waves by name: what their waves may not become, and where a paddle is no paddle of theory.
 
 use super::{
-    Finding, GeneratedWave, PreflightContext, driven_motion::wave_direction, generated_waves::LEAST,
-    thickness::has_full_layers, wavemaker_site::WavemakerSite,
+    Finding, GeneratedWave, PreflightContext,
+    driven_motion::wave_direction,
+    generated_waves::LEAST,
+    wavemaker_site::{WavemakerSite, is_wall},
 };
 use crate::{
     math::format::{three_digits, two_digits_down, two_digits_up},
@@ -35,7 +37,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         findings: &mut Vec<Finding>,
     ) {
         let (name, level) = (&solid.spec.name, self.still_water.level);
-        if has_full_layers(&solid.spec.shape) {
+        if is_wall(&solid.spec.shape) {
             return;
         }
         let bounds = world_bounds(&solid.spec.shape, &solid.kinematics.pose);

@@ -1,7 +1,8 @@
 //! Where a paddle stands: what lies in the way of its waves, and which zones take them.
 
-use super::{Finding, GeneratedWave, PreflightContext, thickness::has_full_layers};
+use super::{Finding, GeneratedWave, PreflightContext};
 use crate::{
+    geometry::Shape,
     math::{
         Bounds, Vector,
         format::{coordinates, three_digits, two_digits_up},
@@ -23,6 +24,15 @@ pub(super) struct WavemakerSite<const D: usize> {
     pub(super) direction: Vector<D>,
     /// The middle of its face in the still level, m.
     pub(super) face: Vector<D>,
+}
+
+/// Whether the shape is a tank or a wall, which holds water and is no paddle.
+pub(super) fn is_wall<const D: usize>(shape: &Shape<D>) -> bool {
+    match shape {
+        Shape::Tank { .. } | Shape::Polyline { .. } => true,
+        Shape::Compound(parts) => parts.iter().all(|(_, part)| is_wall(part)),
+        _ => false,
+    }
 }
 
 impl<const D: usize> WavemakerSite<D> {
@@ -73,7 +83,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         let others = self.solids().iter().enumerate().filter(|(_, other)| {
             let bounds = world_bounds(&other.spec.shape, &other.kinematics.pose);
             let through = bounds.min[D - 1] < self.still_water.level && bounds.max[D - 1] > self.still_water.level;
-            through && !std::ptr::eq(*other, paddle) && !has_full_layers(&other.spec.shape)
+            through && !std::ptr::eq(*other, paddle) && !is_wall(&other.spec.shape)
         });
         let near = others.filter_map(|(i, other)| Some((self.reflector_distance(i, stand)?, other.spec.name.clone())));
         let nearest = near.filter(|(ahead, _)| *ahead < end).min_by(|a, b| a.0.total_cmp(&b.0));

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::mesh_edges::mesh_lines;
 use crate::{
-    geometry::Shape,
+    geometry::{Shape, wall::wall_outline},
     math::{Pose, Vector},
 };
 
@@ -31,7 +31,7 @@ pub(crate) fn outlines<const D: usize>(shape: &Shape<D>) -> Vec<Outline> {
         Shape::Capsule { length, radius, axis } => capsule::<D>(*length, *radius, *axis),
         Shape::Cylinder { length, radius, axis } if D == 3 => cylinder(*length, *radius, *axis),
         Shape::Polygon { points } => vec![closed(points.iter().map(to_3d))],
-        Shape::Polyline { points, thickness } => vec![closed(wall(points, *thickness).iter().map(to_3d))],
+        Shape::Polyline { points, thickness } => vec![closed(wall_outline(points, *thickness).iter().map(to_3d))],
         Shape::Tank { size, thickness } if D == 2 => vec![tank(size[0], size[1], *thickness)],
         Shape::Tank { size, .. } => box_lines(&Vector::zeros(), size),
         Shape::Mesh { mesh, .. } => mesh_lines(mesh),
@@ -143,23 +143,6 @@ fn tank(width: f64, height: f64, wall: f64) -> Outline {
     let outer = [[-wall, height], [-wall, -wall], [width + wall, -wall], [width + wall, height]];
     let inner = [[width, height], [width, 0.0], [0.0, 0.0], [0.0, height]];
     closed(outer.iter().chain(&inner).map(|x| [x[0], x[1], 0.0]))
-}
-
-/// Returns the corners of a wall of `thickness` on the right of the line through `points`.
-fn wall<const D: usize>(points: &[Vector<D>], thickness: f64) -> Vec<Vector<D>> {
-    let right = |a: &Vector<D>, b: &Vector<D>| {
-        let mut n = Vector::<D>::zeros();
-        (n[0], n[1]) = (b[1] - a[1], a[0] - b[0]);
-        n / n.norm()
-    };
-    let normals: Vec<Vector<D>> = points.windows(2).map(|ab| right(&ab[0], &ab[1])).collect();
-    let offset = |i: usize| {
-        let (before, after) = (normals[i.saturating_sub(1)], normals[i.min(normals.len() - 1)]);
-        let middle = before + after;
-        // The limit on the mitre prevents arbitrarily long mitres at sharp corners.
-        points[i] + middle * (2.0 * thickness / middle.norm_squared().max(1.0))
-    };
-    points.iter().copied().chain((0..points.len()).rev().map(offset)).collect()
 }
 
 #[cfg(test)]

@@ -116,8 +116,9 @@ impl Scene {
             water.iter().map(|b| WaterRegion { shape: b.region.shape.clone(), pose: b.region.pose }).collect();
         // The initial position of a driven solid follows from its motion.
         let starts: Vec<Pose<D>> = solids.iter().map(|s| s.initial_kinematics().pose).collect();
-        let solid_shapes: Vec<(&Shape<D>, &Pose<D>)> =
-            solids.iter().zip(&starts).map(|(s, start)| (&s.shape, start)).collect();
+        let rests = |s: &SolidSpec<D>| !matches!(s.role, Role::Free(_));
+        let solid_shapes: Vec<(&Shape<D>, &Pose<D>, bool)> =
+            solids.iter().zip(&starts).map(|(s, start)| (&s.shape, start, rests(s))).collect();
         let spaces = placed.spaces(&starts);
         let inside = water.iter().map(|body| body.inside).collect();
         let filling = Filling { regions: &regions, inside, solids: &solid_shapes, spaces: &spaces };

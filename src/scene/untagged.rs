@@ -149,6 +149,8 @@ pub struct PolylineConfig {
     pub unit: Option<LengthUnit>,
     /// Thickness of a wall, m; by default as many dp as the kernel reaches.
     pub thickness: Option<f64>,
+    /// Whether a wall returns from its last point to its first; by default only if those are the same.
+    pub closed: Option<bool>,
 }
 
 impl PolylineConfig {
@@ -179,6 +181,8 @@ struct PolylineTable {
     unit: Option<LengthUnit>,
     /// Thickness of a wall, m; by default as many dp as the kernel reaches.
     thickness: Option<f64>,
+    /// Whether a wall returns from its last point to its first; by default only if those are the same.
+    closed: Option<bool>,
 }
 
 /// How a line may be written, for the schema.
@@ -205,9 +209,9 @@ impl<'de> Deserialize<'de> for PolylineConfig {
                 Ok(PolylineConfig { points: Some(points), ..PolylineConfig::default() })
             }
             fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<PolylineConfig, A::Error> {
-                let PolylineTable { points, file, id, scale, unit, thickness } =
+                let PolylineTable { points, file, id, scale, unit, thickness, closed } =
                     PolylineTable::deserialize(MapAccessDeserializer::new(map))?;
-                Ok(PolylineConfig { points, file, id, scale, unit, thickness })
+                Ok(PolylineConfig { points, file, id, scale, unit, thickness, closed })
             }
         }
         deserializer.deserialize_any(Form)

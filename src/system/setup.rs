@@ -7,10 +7,10 @@ use super::{
 };
 use crate::{
     error::{Error, ErrorCode, Result},
-    geometry::{Shape, WaterRegion, fill},
+    geometry::{Shape, WaterRegion, fill_around},
     math::{Bounds, Pose, Vector},
     model::Model,
-    solid::{Constraints, ContactSpec, ForceSpec, InitialHold, JointSpec, RopeSpec, SolidSpec, SpringSpec},
+    solid::{Constraints, ContactSpec, ForceSpec, InitialHold, JointSpec, Role, RopeSpec, SolidSpec, SpringSpec},
 };
 
 /// What a simulation starts from.
@@ -83,7 +83,7 @@ impl<const D: usize> Setup<D> {
     /// so far. The still surface is the top of the box.
     ///
     /// # Errors
-    /// As [`fill()`].
+    /// As [`crate::geometry::fill()`].
     pub fn fill_box(self, min: impl Into<Vector<D>>, max: impl Into<Vector<D>>) -> Result<Self> {
         let (min, max) = (min.into(), max.into());
         let shape = Shape::Box { size: max - min };
@@ -94,11 +94,12 @@ impl<const D: usize> Setup<D> {
     /// (m).
     ///
     /// # Errors
-    /// As [`fill()`].
+    /// As [`crate::geometry::fill()`].
     pub fn fill(self, regions: &[WaterRegion<D>], level: f64) -> Result<Self> {
         let poses: Vec<Pose<D>> = self.solids.iter().map(|solid| solid.initial_kinematics().pose).collect();
-        let solids: Vec<_> = self.solids.iter().zip(&poses).map(|(solid, pose)| (&solid.shape, pose)).collect();
-        let places = fill(regions, &solids, self.model.dp)?.r;
+        let rests = |solid: &SolidSpec<D>| !matches!(solid.role, Role::Free(_));
+        let solids = self.solids.iter().zip(&poses).map(|(solid, pose)| (&solid.shape, pose, rests(solid)));
+        let places = fill_around(regions, &solids.collect::<Vec<_>>(), self.model.dp)?.r;
         Ok(self.water(places, level))
     }
 

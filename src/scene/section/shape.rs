@@ -212,9 +212,16 @@ impl ShapeConfig {
                 only(2, "polygon", "in 3-D, boxes, balls, cylinders and capsules can be put together as a compound")?;
                 verify_line(ctx, &format!("{key}.polygon"), config)?;
                 verify_drawing(ctx, &format!("{key}.polygon"), config)?;
-                match config.thickness {
-                    Some(_) => Err(ctx.error_at(&format!("{key}.polygon"), "a polygon is solid: it has no thickness")),
-                    None => Ok(()),
+                match (config.thickness, config.closed) {
+                    (Some(_), _) => {
+                        Err(ctx.error_at(&format!("{key}.polygon"), "a polygon is solid: it has no thickness"))
+                    }
+                    (_, Some(_)) => Err(ctx.error_with_help(
+                        &format!("{key}.polygon.closed"),
+                        "a polygon is closed without a word",
+                        "leave it out; a wall around a space is a closed polyline",
+                    )),
+                    _ => Ok(()),
                 }
             }
             ShapeConfig::Polyline(config) => {
@@ -306,7 +313,7 @@ impl ShapeConfig {
             }
             ShapeConfig::Polygon(config) => Shape::Polygon { points: points(ctx, config)? },
             ShapeConfig::Polyline(config) => {
-                Shape::Polyline { points: points(ctx, config)?, thickness: thickness(config.thickness) }
+                Shape::Polyline { points: wall_points(ctx, config)?, thickness: thickness(config.thickness) }
             }
             ShapeConfig::Tank { size, thickness: given } => {
                 Shape::Tank { size: vector(size), thickness: thickness(*given) }
@@ -391,6 +398,34 @@ fn points<const D: usize>(ctx: &Context, config: &PolylineConfig) -> Result<Vec<
     }
     record::note_layout(ctx, "shape", file, &table);
     Ok(x.into_iter().zip(y).map(|(x, y)| vector(&[x, y])).collect())
+}
+
+/// Points nearer than this share of the line's size are the same point: tables are rounded.
+const SAME_POINT: f64 = 1e-6;
+
+/// The points of a wall; the last one equals the first exactly if the wall is closed.
+fn wall_points<const D: usize>(ctx: &Context, config: &PolylineConfig) -> Result<Vec<Vector<D>>> {
+    let mut line = points(ctx, config)?;
+    let (Some(first), Some(last)) = (line.first().copied(), line.last().copied()) else { return Ok(line) };
+    let meets = line.len() > 3 && (last - first).norm() <= SAME_POINT * Bounds::around(&line).size().norm();
+    match config.closed.unwrap_or(meets) {
+        true if line.len() < 3 => {
+            let key = format!("a closed polyline of {} points", line.len());
+            return Err(Error::scene(key).help("give at least 3 points"));
+        }
+        true => {
+            if meets {
+                line.pop();
+            }
+            line.push(first);
+        }
+        false if meets => {
+            return Err(Error::scene("closed = false, and the last point of the polyline is its first")
+                .help("move the last point away from the first, or leave out `closed`"));
+        }
+        false => {}
+    }
+    Ok(line)
 }
 
 impl PlacementConfig {

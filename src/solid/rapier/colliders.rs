@@ -12,7 +12,7 @@ use super::super::{
 use super::{D, from_point, to_frame, to_point};
 use crate::{
     error::{Error, Result},
-    geometry::Shape,
+    geometry::{Shape, wall::is_closed},
     math::{Bounds, Pose, Vector},
     solid::{
         Constraints, Kinematics, Role, SolidSpec,
@@ -74,11 +74,11 @@ pub(super) fn thickness(parts: &ConvexParts) -> f64 {
     around(parts, &Frame::IDENTITY).map_or(f64::INFINITY, |(min, max)| (max - min).min())
 }
 
-/// Returns the lowest and highest corner (m) of the interior of a tank, or of a polyline with two rising ends.
+/// Returns the lowest and highest corner (m) of the interior of a tank, or of an open polyline with two rising ends.
 fn room(shape: &Shape<D>, pose: &Pose<D>) -> Option<(Vector<D>, Vector<D>)> {
     let corners: Vec<Vector<D>> = match shape {
         Shape::Tank { size, .. } => Bounds { min: Vector::zeros(), max: *size }.corners().collect(),
-        Shape::Polyline { points, .. } => points.clone(),
+        Shape::Polyline { points, .. } if !is_closed(points) => points.clone(),
         Shape::Compound(parts) => return parts.iter().find_map(|(inner, part)| room(part, &pose.then(inner))),
         _ => return None,
     };

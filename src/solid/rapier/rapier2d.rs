@@ -41,7 +41,7 @@ use rapier::{
 
 use crate::{
     error::{Error, Result},
-    geometry::Shape,
+    geometry::{Shape, wall::far_side},
     math::{Bivector, Matrix, Vector},
     solid::FreeBody,
 };
@@ -165,19 +165,9 @@ fn convex_parts(points: &[Vector<D>]) -> Option<Vec<SharedShape>> {
 
 /// Returns one convex quadrilateral for each side of a wall, to the right of the line and mitred at the corners.
 fn strip(points: &[Vector<D>], thickness: f64) -> Option<Vec<SharedShape>> {
-    let right = |a: &Vector<D>, b: &Vector<D>| Vector::from([b[1] - a[1], a[0] - b[0]]).normalize();
-    let last = points.len().checked_sub(1).filter(|&n| n > 0)?;
-    let back = |i: usize| {
-        let before = right(&points[i.max(1) - 1], &points[i.max(1)]);
-        let after = right(&points[i.min(last - 1)], &points[i.min(last - 1) + 1]);
-        // A mitre has the length thickness/cos(half the turning angle), limited to three thicknesses at a hairpin.
-        let middle = before + after;
-        points[i] + middle * (2.0 * thickness / middle.norm_squared().max(4.0 / 9.0))
+    let far = far_side(points, thickness);
+    let side = |(near, far): (&[Vector<D>], &[Vector<D>])| {
+        SharedShape::convex_hull(&[near[0], far[0], far[1], near[1]].each_ref().map(world::to_point))
     };
-    (0..last)
-        .map(|i| {
-            let corners = [points[i], back(i), back(i + 1), points[i + 1]];
-            SharedShape::convex_hull(&corners.each_ref().map(world::to_point))
-        })
-        .collect()
+    points.windows(2).zip(far.windows(2)).map(side).collect()
 }

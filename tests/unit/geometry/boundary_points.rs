@@ -72,7 +72,9 @@ fn boundary_points_are_evenly_spaced() {
 fn the_boundary_points_of_a_tank_continue_the_lattice_of_the_water() {
     let points = Shape::Tank { size: Vector::from([1.0, 0.5]), thickness: 0.3 }.boundary_points(0.1, 3);
     assert_eq!(points.len(), 16 * 3 + 2 * 3 * 5);
-    assert_eq!(points.iter().filter(|p| p.layer == 0).count(), 12 + 2 * 5);
+    // Layers count from the nearest face: the middle one of three has 14 cells in the bottom and 5 in each side.
+    assert_eq!(points.iter().filter(|p| p.layer == 1).count(), 14 + 2 * 5);
+    assert_eq!(points.iter().filter(|p| p.layer == 2).count(), 0);
 }
 
 #[test]
@@ -85,7 +87,7 @@ fn skipping_interior_cells_misses_no_cell_near_a_face() {
         assert_eq!(all, outer, "in the same order");
     }
     // 1e10 cells of air, none of which is visited.
-    let tank = Shape::Tank { size: Vector::from([1e5, 1e5]), thickness: 2.0 };
+    let tank = Shape::Tank { size: Vector::from([1e5, 1e5]), thickness: 1.0 };
     assert_eq!(tank.boundary_points(1.0, 1).len(), 300_002);
 }
 
@@ -95,4 +97,61 @@ fn the_joint_of_a_compound_has_no_double_points_and_no_gap() {
     let at = |x: f64| Pose::at(Vector::from([x, 0.0]));
     let joined = Shape::Compound(vec![(at(0.0), half.clone()), (at(0.5), half)]);
     assert_eq!(joined.boundary_points(0.1, 9).len(), 40);
+}
+
+/// Checks that each cell of dp that `shape` fills less than `layers` dp below a face has a particle, and that there are
+/// no particles but for those and the diagonals of corners.
+fn fills_its_walls<const D: usize>(shape: &Shape<D>, dp: f64, layers: usize) {
+    let points = shape.boundary_points(dp, layers);
+    let depth = |x: &Vector<D>| -shape.signed_distance(x) / dp;
+    let deepest = (layers as f64 - 0.5) * (D as f64).sqrt();
+    assert!(points.iter().all(|p| depth(&p.r) > 0.5 - 1e-6 && depth(&p.r) < deepest + 1e-6));
+    assert!(spacing(&points).0 > 0.99 * dp);
+    let bounds = shape.bounds();
+    let cells: [i64; D] = std::array::from_fn(|i| (bounds.size()[i] / dp).round() as i64);
+    for_each_index(&[0; D], &cells.map(|n| n - 1), |at| {
+        let x = bounds.min + Vector::from_fn(|i, _| (at[i] as f64 + 0.5) * dp);
+        let has_particle = || points.iter().any(|p| (p.r - x).norm() < 1e-6 * dp);
+        assert!(depth(&x) < 0.0 || depth(&x) > layers as f64 || has_particle(), "no particle at {x}");
+    });
+}
+
+#[test]
+fn thick_walls_have_layers_from_every_face() {
+    for thickness in [0.1, 0.3, 0.6, 1.0, 1.3] {
+        fills_its_walls(&Shape::Tank { size: Vector::from([1.2, 0.8]), thickness }, 0.1, 3);
+        let hook = [[0.0, 0.8], [0.0, 0.0], [1.2, 0.0], [1.2, 0.8]].map(Vector::from).to_vec();
+        fills_its_walls(&Shape::Polyline { points: hook, thickness }, 0.1, 3);
+    }
+    fills_its_walls(&Shape::Tank { size: Vector::from([0.5, 0.4, 0.3]), thickness: 0.9 }, 0.1, 2);
+    fills_its_walls(&Shape::Tank { size: Vector::from([0.5, 0.4, 0.3]), thickness: 0.2 }, 0.1, 4);
+}
+
+#[test]
+fn walls_of_any_thickness_have_the_particles_of_their_volume() {
+    // Wall cells across are round(thickness/dp), as in a box; the outermost lie half a cell inside the outer face.
+    for thickness in [0.04, 0.13, 0.26, 0.44, 0.75, 1.07] {
+        let cells = (thickness / 0.1_f64).round().max(1.0);
+        let hook = [[0.0, 0.8], [0.0, 0.0], [1.2, 0.0], [1.2, 0.8]].map(Vector::from).to_vec();
+        let walls =
+            [Shape::Tank { size: Vector::from([1.2, 0.8]), thickness }, Shape::Polyline { points: hook, thickness }];
+        for wall in walls {
+            let points = wall.boundary_points(0.1, 9);
+            let lowest = points.iter().map(|p| p.r[1]).fold(f64::INFINITY, f64::min);
+            assert!((lowest + thickness * (1.0 - 0.5 / cells)).abs() < 1e-9, "{wall:?}: {lowest}");
+            let expected = cells * (12.0 + 2.0 * cells + 2.0 * 8.0);
+            // The curves of a polyline are divided by their own length.
+            assert!((points.len() as f64 - expected).abs() <= 3.0 * cells, "{wall:?}: {} for {expected}", points.len());
+        }
+    }
+}
+
+#[test]
+fn a_thick_wall_costs_no_time_for_its_core() {
+    let bed = [[0.0, 0.0], [4e3, 0.0]].map(Vector::from).to_vec();
+    let points = Shape::Polyline { points: bed, thickness: 50.0 }.boundary_points(1.0, 3);
+    assert_eq!(points.len(), 2 * 3 * 4000 + 2 * 3 * (50 - 6));
+    let tank = Shape::Tank { size: Vector::from([4e3, 1e3]), thickness: 1e3 };
+    // All cells of the walls less those three or more cells below every face: 8·10⁶ − (5994·1994 − 4006·1000).
+    assert_eq!(tank.boundary_points(1.0, 3).len(), 53_964);
 }

@@ -1,6 +1,7 @@
 //! Unit tests of `src/geometry/fill.rs`.
 
 use super::*;
+use crate::geometry::wall::{LineSide, side_of_line};
 
 fn pool<const D: usize>(size: [f64; D]) -> WaterRegion<D> {
     let size = Vector::from(size);
@@ -14,6 +15,15 @@ fn clearance<const D: usize>(water: &[Vector<D>], shape: &Shape<D>, pose: &Pose<
     // Points on the face: fine boundary points of the shape, projected to the face.
     let fine = shape.boundary_points(0.3 * dp, 1);
     let face = fine.iter().map(|p| p.r - shape.outward_normal(&p.r, 1e-3 * dp) * shape.signed_distance(&p.r));
+    // Water is inside the tanks and on the left of the lines of these tests: no other face of a wall is wet.
+    let faces_water = |x: &Vector<D>| match shape {
+        Shape::Tank { size, .. } => (0..D).all(|i| x[i] > -1e-9 && x[i] < size[i] + 1e-9),
+        Shape::Polyline { points, .. } => {
+            matches!(side_of_line(x, points), LineSide::Left(_) | LineSide::Right(0.0..1e-9))
+        }
+        _ => true,
+    };
+    let face = face.filter(faces_water);
     let top = water.iter().map(|w| w[D - 1]).fold(f64::NEG_INFINITY, f64::max);
     let bare = face.map(|x| pose.point(&x)).filter(|x| x[D - 1] < top - 1.5 * dp).map(reach).fold(0.0, f64::max);
     (nearest / dp, bare / dp)
