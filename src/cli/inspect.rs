@@ -6,7 +6,7 @@ use clap::Args;
 use pontoon::{
     error::{Error, ErrorKind, Result},
     math::format::{bytes, duration, metric_prefix, three_digits},
-    preflight::{AbsorberSummary, BodySummary, DiskUse, Finding, GeneratedWave, Severity},
+    preflight::{AbsorberSummary, BodyFlow, BodySummary, DiskUse, Finding, GeneratedWave, Severity},
     run::{self, InspectOptions, InspectReport},
 };
 
@@ -53,6 +53,7 @@ fn report_text(report: &InspectReport) -> String {
     if !report.preflight.bodies.is_empty() {
         let _ = write!(text, "\n{}", bodies(&report.preflight.bodies, report.preflight.size.dimension));
     }
+    text += &flows(&report.preflight.flows);
     if !report.solids.is_empty() {
         let mut rows = vec![["solid", "role", "particles"].map(String::from).to_vec()];
         rows.extend(report.solids.iter().map(|s| vec![s.name.clone(), s.role.into(), s.particles.to_string()]));
@@ -252,6 +253,26 @@ fn bodies(bodies: &[BodySummary], dimension: usize) -> String {
     }
     let said = "  heave: without and with an estimate of the water that heaves along; roll: without any\n";
     format!("{}{said}\n{}", table(&rows), table(&grain))
+}
+
+/// The flow about the moving bodies.
+fn flows(flows: &[BodyFlow]) -> String {
+    if flows.is_empty() {
+        return String::new();
+    }
+    let mut rows =
+        vec![["moves", "speed (m/s)", "of", "size (m)", "viscosity (m²/s)", "Reynolds"].map(String::from).to_vec()];
+    rows.extend(flows.iter().map(|flow| {
+        vec![
+            flow.name.clone(),
+            three_digits(flow.speed_mps),
+            flow.speed_from.into(),
+            three_digits(flow.size_m),
+            three_digits(flow.viscosity_m2ps),
+            flow.reynolds.map_or("–".into(), three_digits),
+        ]
+    }));
+    format!("\n{}", table(&rows))
 }
 
 #[cfg(test)]
