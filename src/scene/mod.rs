@@ -34,6 +34,7 @@ mod section {
     pub(crate) mod output;
     pub(crate) mod shape;
     pub(crate) mod solid;
+    pub(crate) mod meshed_shape;
     pub(crate) mod sponge_layer;
     pub(crate) mod water;
     pub(crate) mod wave;

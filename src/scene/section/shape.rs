@@ -5,6 +5,9 @@ use std::sync::Arc;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::meshed_shape::{
+    ConeConfig, EllipsoidConfig, FrustumConfig, MeshedShape, PrismConfig, TorusConfig, WedgeConfig, fill_axis,
+};
 use crate::{
     error::Result,
     geometry::{ContactGeometry, Shape},
@@ -54,6 +57,18 @@ pub enum ShapeConfig {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         axis: Option<AxisName>,
     },
+    /// An ellipsoid around its centre; in 2-D an ellipse.
+    Ellipsoid(EllipsoidConfig),
+    /// A circular cone; 3-D only.
+    Cone(ConeConfig),
+    /// The frustum of a circular cone; 3-D only.
+    Frustum(FrustumConfig),
+    /// A ramp: half of a box; in 2-D a triangle.
+    Wedge(WedgeConfig),
+    /// A prism over an outline; 3-D only.
+    Prism(PrismConfig),
+    /// A torus around its centre; 3-D only.
+    Torus(TorusConfig),
     /// A polygon, counter-clockwise; 2-D only.
     Polygon(PolylineConfig),
     /// A wall along an open line, the water on its left; 2-D only.
@@ -236,6 +251,12 @@ impl ShapeConfig {
                     part.at.as_ref().map_or(Ok(()), |at| at.verify(ctx, &format!("{key}.{i}.at"), false))
                 })
             }
+            ShapeConfig::Ellipsoid(own) => MeshedShape::Ellipsoid(own).verify(ctx, key),
+            ShapeConfig::Cone(own) => MeshedShape::Cone(own).verify(ctx, key),
+            ShapeConfig::Frustum(own) => MeshedShape::Frustum(own).verify(ctx, key),
+            ShapeConfig::Wedge(own) => MeshedShape::Wedge(own).verify(ctx, key),
+            ShapeConfig::Prism(own) => MeshedShape::Prism(own).verify(ctx, key),
+            ShapeConfig::Torus(own) => MeshedShape::Torus(own).verify(ctx, key),
         }
     }
 
@@ -283,7 +304,11 @@ impl ShapeConfig {
                     part.shape.fill(ctx, defaults, &format!("{key}.compound.{i}.shape"));
                 }
             }
-            ShapeConfig::Box { .. } | ShapeConfig::Ball { .. } | ShapeConfig::Polygon(_) => {}
+            ShapeConfig::Cone(ConeConfig { axis, .. }) => fill_axis(defaults, &format!("{key}.cone"), axis),
+            ShapeConfig::Frustum(FrustumConfig { axis, .. }) => fill_axis(defaults, &format!("{key}.frustum"), axis),
+            ShapeConfig::Prism(PrismConfig { axis, .. }) => fill_axis(defaults, &format!("{key}.prism"), axis),
+            ShapeConfig::Torus(TorusConfig { axis, .. }) => fill_axis(defaults, &format!("{key}.torus"), axis),
+            _ => {}
         }
     }
 
@@ -300,9 +325,9 @@ impl ShapeConfig {
             ShapeConfig::Cylinder { length, radius, axis } => {
                 Shape::Cylinder { length: *length, radius: *radius, axis: number(*axis) }
             }
-            ShapeConfig::Polygon(config) => Shape::Polygon { points: points(ctx, config)? },
+            ShapeConfig::Polygon(config) => Shape::Polygon { points: outline_points(ctx, config)? },
             ShapeConfig::Polyline(config) => {
-                Shape::Polyline { points: points(ctx, config)?, thickness: thickness(config.thickness) }
+                Shape::Polyline { points: outline_points(ctx, config)?, thickness: thickness(config.thickness) }
             }
             ShapeConfig::Tank { size, thickness: given } => {
                 Shape::Tank { size: vector(size), thickness: thickness(*given) }
@@ -316,6 +341,12 @@ impl ShapeConfig {
                 };
                 Shape::Compound(parts.iter().map(part).collect::<Result<_>>()?)
             }
+            ShapeConfig::Ellipsoid(own) => MeshedShape::Ellipsoid(own).build(ctx)?,
+            ShapeConfig::Cone(own) => MeshedShape::Cone(own).build(ctx)?,
+            ShapeConfig::Frustum(own) => MeshedShape::Frustum(own).build(ctx)?,
+            ShapeConfig::Wedge(own) => MeshedShape::Wedge(own).build(ctx)?,
+            ShapeConfig::Prism(own) => MeshedShape::Prism(own).build(ctx)?,
+            ShapeConfig::Torus(own) => MeshedShape::Torus(own).build(ctx)?,
         };
         shape.check()?;
         Ok(shape)
@@ -329,6 +360,13 @@ fn verify_line(ctx: &Context, key: &str, config: &PolylineConfig) -> Result<()> 
         (None, Some(_)) => Ok(()),
         _ => Err(ctx.error_at(key, format!("a {} has either points or a file of points", last_part(key)))),
     }
+}
+
+/// Refuses an outline that gives neither points nor a file, or both, or points of another dimension than 2.
+pub(super) fn verify_outline(ctx: &Context, key: &str, config: &PolylineConfig) -> Result<()> {
+    let flat = Context { dimension: 2, ..*ctx };
+    verify_line(&flat, key, config)?;
+    verify_drawing(ctx, key, config)
 }
 
 /// Refuses keys of a drawing where there is none.
@@ -349,7 +387,8 @@ fn mesh_shape<const D: usize>(ctx: &Context, config: &MeshConfig) -> Result<Shap
     Ok(Shape::Mesh { mesh: Arc::new(mesh), contact: config.contact.unwrap_or_default() })
 }
 
-fn points<const D: usize>(ctx: &Context, config: &PolylineConfig) -> Result<Vec<Vector<D>>> {
+/// The points of a line or outline, m; opens the file that it names.
+pub(super) fn outline_points<const D: usize>(ctx: &Context, config: &PolylineConfig) -> Result<Vec<Vector<D>>> {
     if let Some(points) = &config.points {
         return Ok(points.iter().map(|p| vector(p)).collect());
     }
