@@ -6,7 +6,10 @@ use std::{f64::consts::TAU, sync::Arc};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::shape::{AxisName, outline_points, verify_outline};
+use super::{
+    outline::{outline_points, verify_outline},
+    shape::AxisName,
+};
 use crate::{
     error::Result,
     geometry::{ContactGeometry, Mesh, Shape, solids_of_revolution as solids},
