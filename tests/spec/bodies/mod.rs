@@ -9,6 +9,7 @@ mod contact_skin;
 mod contact_table;
 mod coupling;
 mod energy_budget;
+mod deep_water;
 mod equilibrium;
 mod external_bodies;
 mod friction;
