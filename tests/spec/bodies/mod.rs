@@ -17,4 +17,5 @@ mod load_breakdown;
 mod many_bodies;
 mod meshes;
 mod natural_periods;
+mod shapes;
 mod trim;
