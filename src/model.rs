@@ -188,6 +188,15 @@ pub struct Model {
 /// Default of c₀ over √(g·depth), –.
 pub(crate) const C0_FACTOR: f64 = 10.0;
 
+/// Depth of the water over dp beyond which scenes with free bodies get [`Model::deep_water`], –.
+pub(crate) const DEEP: f64 = 100.0;
+
+/// Default of h over dp in deep 2-D water, –.
+const DEEP_H_OVER_DP: f64 = 2.1;
+
+/// Depth over dp at which α = 0.02 gives the viscosity that deep water gets, –: a body of ten rows in water as deep as itself.
+const VISCOUS_ROWS: f64 = 10.0;
+
 impl Model {
     /// Water `depth` (m) deep at spacing `dp` (m) in `dimension` 2 or 3, with the choices of a scene that names
     /// none: Wendland, h = 1.7 dp (1.5 dp in 3-D), c₀ = 10 √(g·depth), α = 0.02, Fourtakas' δ = 0.1, no shifting, walls
@@ -217,6 +226,19 @@ impl Model {
             cfl: 0.4,
             dt_max: f64::INFINITY,
         }
+    }
+
+    /// The same model with the defaults for free bodies in water `depth` (m) deep: none changes up to 100 dp. Beyond, α becomes
+    /// 0.02 √(10 dp/depth), so that the numerical viscosity, which goes with α c₀ h, no longer grows with the depth. In 2-D h
+    /// becomes 2.1 dp: the arrangement of the particles resists slow bodies in proportion to the pressure, and less with a wider
+    /// kernel.
+    pub fn deep_water(self, depth: f64) -> Self {
+        if depth <= DEEP * self.dp {
+            return self;
+        }
+        let alpha = Artificial::default().alpha * (VISCOUS_ROWS * self.dp / depth).sqrt();
+        let h = if self.gravity.len() == 2 { DEEP_H_OVER_DP * self.dp } else { self.h };
+        Self { h, viscosity: Viscosity::Artificial(Artificial { alpha }), ..self }
     }
 
     /// The same model with this kernel.

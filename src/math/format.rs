@@ -134,7 +134,8 @@ pub fn bytes(count: f64) -> String {
         n if n >= 1e9 => format!("{:.1} GB", n / 1e9),
         n if n >= 1e6 => format!("{:.1} MB", n / 1e6),
         n if n >= 1e3 => format!("{:.0} kB", n / 1e3),
-        n => format!("{n:.0} B"),
+        // The sum of no numbers is -0.
+        n => format!("{:.0} B", n + 0.0),
     }
 }
 

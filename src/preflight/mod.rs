@@ -12,6 +12,7 @@ mod surface_samples;
 mod gaps;
 mod wavemaker_checks;
 mod probe_positions;
+mod reynolds;
 mod run_size;
 mod sound_speed;
 mod wavemaker_site;
@@ -27,6 +28,7 @@ use serde::Serialize;
 pub use absorption_limits::AbsorberSummary;
 pub use floating_bodies::BodySummary;
 pub use generated_waves::GeneratedWave;
+pub use reynolds::BodyFlow;
 pub use run_size::DiskUse;
 pub(crate) use run_size::RunSize;
 pub(crate) use sound_speed::{SoundSpeed, StepSizeLimits};
@@ -116,6 +118,8 @@ pub struct Preflight {
     pub absorbers: Vec<AbsorberSummary>,
     /// The free bodies.
     pub bodies: Vec<BodySummary>,
+    /// The flow about the free and driven bodies.
+    pub flows: Vec<BodyFlow>,
     /// The findings, warnings first.
     pub findings: Vec<Finding>,
 }
@@ -199,8 +203,9 @@ pub fn preflight<const D: usize>(
     thin_parts::check_parts(&look, &mut findings);
     look.check_probes(&sound, &mut findings);
     let (waves, absorbers) = (look.generated_waves(&mut findings), look.absorbers());
+    let flows = look.body_flows(&waves, &mut findings);
     findings.sort_by_key(|f| f.severity);
-    Preflight { size, sound, step, waves, absorbers, bodies, findings }
+    Preflight { size, sound, step, waves, absorbers, bodies, flows, findings }
 }
 
 impl<const D: usize> PreflightContext<'_, D> {

@@ -124,7 +124,8 @@ impl<const D: usize> PreflightContext<'_, D> {
         // An output comes at every step at most.
         let count = |every: f64| (self.end_time() / every.max(step.dt_s)).floor() + 1.0;
         let tables = self.plan.probes.iter().zip(columns);
-        let tables_bytes = tables.map(|(probe, n)| count(probe.every) * (n + 1) as f64 * NUMBER).sum();
+        let tables_bytes =
+            tables.map(|(probe, n)| count(probe.every) * (n + 1) as f64 * NUMBER).fold(0.0, |sum, x| sum + x);
         let frames = self.plan.frames.as_ref().map_or(0.0, |f| count(f.every));
         let (water, solids) = self.plan.frames.as_ref().map_or((0.0, 0.0), |frames| particle_bytes(&frames.fields));
         let d = D as f64;

@@ -108,7 +108,7 @@ impl<const D: usize> PreflightContext<'_, D> {
 
     /// The largest speed (m/s) with which a face of driven solid `i` pushes water below the still level. Along the
     /// face it counts only where water sticks to it; a face that recedes does not, gravity fills the space.
-    fn driven_speed(&self, i: usize) -> f64 {
+    pub(super) fn driven_speed(&self, i: usize) -> f64 {
         let Role::Driven(motion) = &self.solids()[i].spec.role else { return 0.0 };
         let slips = self.system.model().slip == Slip::Free;
         let mut fastest: f64 = 0.0;

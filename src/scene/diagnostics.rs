@@ -39,6 +39,12 @@ const EXAMPLES: &[(&str, &str)] = &[
     ("shape.ball", "shape = { ball = { radius = 0.1 } }"),
     ("shape.capsule", "shape = { capsule = { length = 0.2, radius = 0.05, axis = \"x\" } }"),
     ("shape.cylinder", "shape = { cylinder = { length = 0.2, radius = 0.05, axis = \"z\" } }"),
+    ("shape.ellipsoid", "shape = { ellipsoid = { radii = [0.3, 0.1, 0.1] } }"),
+    ("shape.cone", "shape = { cone = { radius = 0.1, length = 0.2 } }"),
+    ("shape.frustum", "shape = { frustum = { radius_bottom = 0.2, radius_top = 0.1, length = 0.2 } }"),
+    ("shape.wedge", "shape = { wedge = { size = [1.0, 0.5, 0.2] } }"),
+    ("shape.prism", "shape = { prism = { points = [[0.0, 0.0], [0.1, 0.0], [0.0, 0.1]], length = 0.5 } }"),
+    ("shape.torus", "shape = { torus = { radius = 0.2, tube_radius = 0.05 } }"),
     ("shape.polygon", "shape = { polygon = [[0.0, 0.0], [0.1, 0.0], [0.0, 0.1]] }"),
     ("shape.polyline", "shape = { polyline = [[0.0, 0.0], [4.0, 0.0], [10.0, 0.6]] }"),
     ("shape.tank", "shape = { tank = { size = [1.0, 0.5] } }"),
@@ -175,6 +181,12 @@ fn example_help(example: &str) -> String {
     format!("write  {}", example.replace('\n', "\n       "))
 }
 
+/// Returns the advice to write the line of `key` in `example`, without the lines that the scene has; `None` if no line is its own.
+fn line_of(key: &str, example: &str) -> Option<String> {
+    let mut lines = example.lines().map(|line| line.trim_start_matches("write").trim());
+    lines.find(|line| line.split('=').next().is_some_and(|k| k.trim() == key)).map(example_help)
+}
+
 /// Returns the names in backticks in the `message` of the parser.
 fn quoted(message: &str) -> Vec<&str> {
     message.split('`').skip(1).step_by(2).collect()
@@ -205,7 +217,9 @@ pub(super) fn explain(message: &str, key: &str) -> (Error, String) {
         let shown = if parent.is_empty() { word.to_string() } else { format!("{parent}.{word}") };
         // The example must have the same parent: the velocity of water differs from the velocity key of a probe.
         let near = nearest_name(word, known.iter().copied()).and_then(|near| example(&format!("{parent}.{near}")));
-        let guess = near.or_else(|| example(parent));
+        // The example of the section would repeat the lines that the scene has.
+        let remove = || format!("remove  {word}: a scene has no such key here");
+        let guess = Some(near.unwrap_or_else(remove));
         let known = format!("known here: {}", list(known));
         return (with(error, [known].into_iter().chain(guess).collect()), shown);
     }
@@ -214,13 +228,16 @@ pub(super) fn explain(message: &str, key: &str) -> (Error, String) {
         let error =
             Error::scene(format!("unknown {} \"{word}\"{}", key_noun(key), suggestion(word, known.iter().copied())))
                 .with_code(ErrorCode::UnknownName);
+        let known_names = known.iter().copied();
         let known = format!("known: {}", list(known));
-        return (with(error, [known].into_iter().chain(example(key)).collect()), key.to_string());
+        let near = nearest_name(word, known_names).and_then(|near| example(&format!("{key}.{near}")));
+        return (with(error, [known].into_iter().chain(near.or_else(|| example(key))).collect()), key.to_string());
     }
     if let (true, [word]) = (message.starts_with("missing field"), &words[..]) {
         let error = Error::scene(format!("\"{word}\" is missing")).with_code(ErrorCode::MissingKey);
         let full = if key.is_empty() { word.to_string() } else { format!("{key}.{word}") };
-        return (with(error, example(&full).or_else(|| example(key)).into_iter().collect()), full);
+        let own = example(&full).or_else(|| example(key).map(|example| line_of(word, &example).unwrap_or(example)));
+        return (with(error, own.into_iter().collect()), full);
     }
     if let Some((found, wanted)) = message
         .strip_prefix("invalid type: ")

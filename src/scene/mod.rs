@@ -33,8 +33,10 @@ mod section {
     pub(crate) mod domain;
     pub(crate) mod force_element;
     pub(crate) mod joint;
+    pub(crate) mod meshed_shape;
     pub(crate) mod model;
     pub(crate) mod motion;
+    pub(crate) mod outline;
     pub(crate) mod output;
     pub(crate) mod shape;
     pub(crate) mod solid;
@@ -88,6 +90,7 @@ pub use {
     section::domain::{GuardConfig, PeriodicConfig},
     section::force_element::ForceFrame,
     section::joint::LimitsConfig,
+    section::meshed_shape::{ConeConfig, EllipsoidConfig, FrustumConfig, PrismConfig, TorusConfig, WedgeConfig},
     section::model::TimeSteppingConfig,
     section::output::{CheckpointConfig, FramesConfig},
     section::shape::{AxisName, MeshConfig},

@@ -97,6 +97,20 @@ impl Scene {
         each(&self.statistic, "statistic", |statistic, key| statistic.verify(ctx, key, &series))
     }
 
+    /// Returns the values of water that the scene does not name.
+    fn usual_model(&self) -> Model {
+        let usual = Model::water(self.dimension, self.dp, 1.0);
+        let weightless = self.gravity.as_ref().is_some_and(|g| g.iter().all(|g| *g == 0.0));
+        if weightless || self.solid.iter().all(|solid| solid.free.is_none()) {
+            return usual;
+        }
+        // Water that cannot be built has no depth; its construction reports the error.
+        match self.still_water() {
+            Ok(still) => usual.deep_water(still.depth),
+            Err(_) => usual,
+        }
+    }
+
     /// Returns the scene with every default filled in, and the reasons of the defaults.
     ///
     /// # Errors
@@ -104,8 +118,9 @@ impl Scene {
     pub(super) fn with_defaults(&self) -> Result<(Self, Defaults)> {
         self.verify()?;
         let (mut scene, mut defaults) = (self.clone(), Defaults::default());
-        let (ctx, fills) = (&self.context(), &mut defaults);
-        let usual = Model::water(scene.dimension, scene.dp, 1.0);
+        let (usual, fills) = (self.usual_model(), &mut defaults);
+        scene.model.fill_smoothing(fills, &usual);
+        let ctx = &Context { h: scene.model.smoothing_length(self.dimension, self.dp), ..self.context() };
         fills.fill("title", &mut scene.title, "untitled".into(), "the scene has no title");
         fills.fill("gravity", &mut scene.gravity, usual.gravity.clone(), "the earth's, down the last axis");
         scene.model.fill(ctx, fills, &usual);

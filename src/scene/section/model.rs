@@ -111,26 +111,40 @@ impl ModelConfig {
         match (self.h_over_dp, self.c_h) {
             (Some(ratio), _) => ratio * dp,
             (None, Some(c_h)) => c_h * (dimension as f64).sqrt() * dp,
-            (None, None) => default_h_over_dp(dimension).0 * dp,
+            (None, None) => default_h_over_dp(dimension) * dp,
         }
     }
 
-    /// Fills in the defaults; `usual` are the values of water.
-    pub(crate) fn fill(&mut self, ctx: &Context, defaults: &mut Defaults, usual: &Model) {
-        let (ratio, why) = default_h_over_dp(ctx.dimension);
-        let wendland = "no pairing of particles and less noise than the cubic spline, at the same cost";
-        defaults.fill("model.kernel", &mut self.kernel, usual.kernel, wendland);
+    /// Fills in the smoothing length, from which other defaults follow.
+    pub(crate) fn fill_smoothing(&mut self, defaults: &mut Defaults, usual: &Model) {
         if self.c_h.is_none() {
+            let ratio = usual.h / usual.dp;
+            let dimension = usual.gravity.len();
+            let why = match dimension {
+                3 => "waves lose height below 1.5 dp and keep no more above; about 110 neighbours",
+                _ if ratio > default_h_over_dp(dimension) => {
+                    "free bodies in water deeper than 100 dp: below, the pressure's errors slow them; about 55 neighbours"
+                }
+                _ => "waves lose height below 1.7 dp; about 36 neighbours",
+            };
             defaults.fill("model.h_over_dp", &mut self.h_over_dp, ratio, why);
         }
+    }
+
+    /// Fills in the other defaults; `usual` are the values of water.
+    pub(crate) fn fill(&mut self, ctx: &Context, defaults: &mut Defaults, usual: &Model) {
+        let deep = *usual != Model::water(ctx.dimension, ctx.dp, 1.0);
+        let wendland = "no pairing of particles and less noise than the cubic spline, at the same cost";
+        defaults.fill("model.kernel", &mut self.kernel, usual.kernel, wendland);
         let why = "each pair by its own places alone; \"corrected\" where waves travel";
         defaults.fill("model.gradient", &mut self.gradient, usual.gradient, why);
-        defaults.fill(
-            "model.viscosity",
-            &mut self.viscosity,
-            usual.viscosity,
-            "robust in any flow; α = 0.02 as in the method",
-        );
+        let why = match deep {
+            true => {
+                "α = 0.02 √(10 dp/depth), a free body in water deeper than 100 dp: the viscosity does not grow with the depth"
+            }
+            false => "robust in any flow; α = 0.02 as in the method",
+        };
+        defaults.fill("model.viscosity", &mut self.viscosity, usual.viscosity, why);
         let why = "damps the density's noise and keeps still water still; δ = 0.1 as in the method";
         defaults.fill("model.diffusion", &mut self.diffusion, usual.diffusion, why);
         defaults.fill("model.shifting", &mut self.shifting, usual.shifting, "shifting slowly inflates the water");
@@ -233,13 +247,10 @@ impl TimeSteppingConfig {
     }
 }
 
-/// Smoothing length over particle spacing where the scene does not give it, and the reason.
-fn default_h_over_dp(dimension: usize) -> (f64, &'static str) {
+/// Smoothing length over particle spacing in water of moderate depth, where the scene does not give it.
+fn default_h_over_dp(dimension: usize) -> f64 {
     let usual = Model::water(dimension.clamp(2, 3), 1.0, 1.0);
-    match dimension {
-        3 => (usual.h / usual.dp, "waves lose height below 1.5 dp and keep no more above; about 110 neighbours"),
-        _ => (usual.h / usual.dp, "waves lose height below 1.7 dp; about 36 neighbours"),
-    }
+    usual.h / usual.dp
 }
 
 /// Refuses still water so shallow that no kernel is complete between its surface and its bed.

@@ -5,22 +5,23 @@ use std::sync::Arc;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::{
+    meshed_shape::{
+        ConeConfig, EllipsoidConfig, FrustumConfig, MeshedShape, PrismConfig, TorusConfig, WedgeConfig, fill_axis,
+    },
+    outline::{outline_points, verify_drawing, verify_line, wall_points},
+};
 use crate::{
-    error::{Error, Result},
+    error::Result,
     geometry::{ContactGeometry, Shape, mesh::Completion},
-    math::{Bounds, Pose, Vector, table},
+    math::{Bounds, Pose, Vector},
     scene::{
-        context::{Context, Defaults, last_part, quoted_list, set_keys},
+        context::{Context, Defaults, quoted_list, set_keys},
         files,
         mesh::{self, MeshOptions},
-        record,
-        svg::{self, DrawingOptions},
         untagged::{DraftChoice, LengthUnit, PolylineConfig},
     },
 };
-
-/// Largest distance of the straight segments from the curves of a drawing, dp.
-const CURVE_TOLERANCE: f64 = 0.01;
 
 /// A shape in its own frame; lengths in m.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -57,6 +58,18 @@ pub enum ShapeConfig {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         axis: Option<AxisName>,
     },
+    /// An ellipsoid around its centre; in 2-D an ellipse.
+    Ellipsoid(EllipsoidConfig),
+    /// A circular cone; 3-D only.
+    Cone(ConeConfig),
+    /// The frustum of a circular cone; 3-D only.
+    Frustum(FrustumConfig),
+    /// A ramp: half of a box; in 2-D a triangle.
+    Wedge(WedgeConfig),
+    /// A prism over an outline; 3-D only.
+    Prism(PrismConfig),
+    /// A torus around its centre; 3-D only.
+    Torus(TorusConfig),
     /// A polygon, counter-clockwise; 2-D only.
     Polygon(PolylineConfig),
     /// A wall along an open line, the water on its left; 2-D only.
@@ -253,6 +266,12 @@ impl ShapeConfig {
                     part.at.as_ref().map_or(Ok(()), |at| at.verify(ctx, &format!("{key}.{i}.at"), false))
                 })
             }
+            ShapeConfig::Ellipsoid(own) => MeshedShape::Ellipsoid(own).verify(ctx, key),
+            ShapeConfig::Cone(own) => MeshedShape::Cone(own).verify(ctx, key),
+            ShapeConfig::Frustum(own) => MeshedShape::Frustum(own).verify(ctx, key),
+            ShapeConfig::Wedge(own) => MeshedShape::Wedge(own).verify(ctx, key),
+            ShapeConfig::Prism(own) => MeshedShape::Prism(own).verify(ctx, key),
+            ShapeConfig::Torus(own) => MeshedShape::Torus(own).verify(ctx, key),
         }
     }
 
@@ -294,7 +313,11 @@ impl ShapeConfig {
                     part.shape.fill(ctx, defaults, &format!("{key}.compound.{i}.shape"));
                 }
             }
-            ShapeConfig::Box { .. } | ShapeConfig::Ball { .. } | ShapeConfig::Polygon(_) => {}
+            ShapeConfig::Cone(ConeConfig { axis, .. }) => fill_axis(defaults, &format!("{key}.cone"), axis),
+            ShapeConfig::Frustum(FrustumConfig { axis, .. }) => fill_axis(defaults, &format!("{key}.frustum"), axis),
+            ShapeConfig::Prism(PrismConfig { axis, .. }) => fill_axis(defaults, &format!("{key}.prism"), axis),
+            ShapeConfig::Torus(TorusConfig { axis, .. }) => fill_axis(defaults, &format!("{key}.torus"), axis),
+            _ => {}
         }
     }
 
@@ -311,7 +334,7 @@ impl ShapeConfig {
             ShapeConfig::Cylinder { length, radius, axis } => {
                 Shape::Cylinder { length: *length, radius: *radius, axis: number(*axis) }
             }
-            ShapeConfig::Polygon(config) => Shape::Polygon { points: points(ctx, config)? },
+            ShapeConfig::Polygon(config) => Shape::Polygon { points: outline_points(ctx, config)? },
             ShapeConfig::Polyline(config) => {
                 Shape::Polyline { points: wall_points(ctx, config)?, thickness: thickness(config.thickness) }
             }
@@ -327,29 +350,15 @@ impl ShapeConfig {
                 };
                 Shape::Compound(parts.iter().map(part).collect::<Result<_>>()?)
             }
+            ShapeConfig::Ellipsoid(own) => MeshedShape::Ellipsoid(own).build(ctx)?,
+            ShapeConfig::Cone(own) => MeshedShape::Cone(own).build(ctx)?,
+            ShapeConfig::Frustum(own) => MeshedShape::Frustum(own).build(ctx)?,
+            ShapeConfig::Wedge(own) => MeshedShape::Wedge(own).build(ctx)?,
+            ShapeConfig::Prism(own) => MeshedShape::Prism(own).build(ctx)?,
+            ShapeConfig::Torus(own) => MeshedShape::Torus(own).build(ctx)?,
         };
         shape.check()?;
         Ok(shape)
-    }
-}
-
-fn verify_line(ctx: &Context, key: &str, config: &PolylineConfig) -> Result<()> {
-    ctx.require_positive(&format!("{key}.thickness"), config.thickness)?;
-    match (&config.points, &config.file) {
-        (Some(points), None) => points.iter().try_for_each(|p| ctx.require_dimension(key, p)),
-        (None, Some(_)) => Ok(()),
-        _ => Err(ctx.error_at(key, format!("a {} has either points or a file of points", last_part(key)))),
-    }
-}
-
-/// Refuses keys of a drawing where there is none.
-fn verify_drawing(ctx: &Context, key: &str, config: &PolylineConfig) -> Result<()> {
-    ctx.require_positive(&format!("{key}.scale"), config.scale)?;
-    let words_of_one =
-        [("id", config.id.is_some()), ("scale", config.scale.is_some()), ("unit", config.unit.is_some())];
-    match words_of_one.iter().find(|(_, given)| *given && !config.is_drawing()) {
-        Some((word, _)) => Err(ctx.error_at(&format!("{key}.{word}"), format!("{word} belongs to a drawing (.svg)"))),
-        None => Ok(()),
     }
 }
 
@@ -367,65 +376,6 @@ fn mesh_shape<const D: usize>(ctx: &Context, config: &MeshConfig) -> Result<Shap
     let (mesh, notes) = mesh::read(&path, &options)?;
     ctx.add_file_notes(notes);
     Ok(Shape::Mesh { mesh: Arc::new(mesh), contact: config.contact.unwrap_or_default() })
-}
-
-fn points<const D: usize>(ctx: &Context, config: &PolylineConfig) -> Result<Vec<Vector<D>>> {
-    if let Some(points) = &config.points {
-        return Ok(points.iter().map(|p| vector(p)).collect());
-    }
-    let file = config.file.as_deref().unwrap_or("");
-    if config.is_drawing() {
-        let path = files::path_beside(ctx.folder(), file)?;
-        let options = DrawingOptions {
-            id: config.id.as_deref(),
-            scale: config.scale.unwrap_or(1.0),
-            unit: config.unit,
-            tolerance: CURVE_TOLERANCE * ctx.dp,
-        };
-        let (points, notes) = svg::outline(&path, &options)?;
-        ctx.add_file_notes(notes);
-        return Ok(points.iter().map(|p| vector(p)).collect());
-    }
-    let mut table = files::open_table(ctx.folder(), file)?;
-    let names = table.point_columns();
-    let [x, y] = table.columns(names.clone()).map_err(files::with_line_in_message)?;
-    for name in names {
-        let unit = table.unit(&name)?.filter(|unit| table::si_factor(unit).is_some());
-        if let Some(unit) = unit {
-            let what = format!("column \"{name}\" of {file} is in {unit}, and points are in m");
-            return Err(Error::scene(what).help("write a table with columns x_m and y_m, in metres"));
-        }
-    }
-    record::note_layout(ctx, "shape", file, &table);
-    Ok(x.into_iter().zip(y).map(|(x, y)| vector(&[x, y])).collect())
-}
-
-/// Points nearer than this share of the line's size are the same point: tables are rounded.
-const SAME_POINT: f64 = 1e-6;
-
-/// The points of a wall; the last one equals the first exactly if the wall is closed.
-fn wall_points<const D: usize>(ctx: &Context, config: &PolylineConfig) -> Result<Vec<Vector<D>>> {
-    let mut line = points(ctx, config)?;
-    let (Some(first), Some(last)) = (line.first().copied(), line.last().copied()) else { return Ok(line) };
-    let meets = line.len() > 3 && (last - first).norm() <= SAME_POINT * Bounds::around(&line).size().norm();
-    match config.closed.unwrap_or(meets) {
-        true if line.len() < 3 => {
-            let key = format!("a closed polyline of {} points", line.len());
-            return Err(Error::scene(key).help("give at least 3 points"));
-        }
-        true => {
-            if meets {
-                line.pop();
-            }
-            line.push(first);
-        }
-        false if meets => {
-            return Err(Error::scene("closed = false, and the last point of the polyline is its first")
-                .help("move the last point away from the first, or leave out `closed`"));
-        }
-        false => {}
-    }
-    Ok(line)
 }
 
 impl PlacementConfig {

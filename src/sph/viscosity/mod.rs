@@ -76,6 +76,18 @@ impl Viscosity {
         h * h / (8.0 * nu0)
     }
 
+    /// The effective kinematic viscosity ν (m²/s) of a shear flow in water with speed of sound `c0` (m/s) and smoothing length `h`
+    /// (m), in `dimension` D: ν₀, or α c₀ h/(4 (D + 2)) of the artificial viscosity, which acts on approaching pairs only
+    /// @monaghan2005. The eddy viscosity of SPS is not part of it.
+    pub fn effective(&self, c0: f64, h: f64, dimension: usize) -> f64 {
+        match self {
+            Self::None => 0.0,
+            Self::Artificial(law) => law.alpha * c0 * h / (4.0 * (dimension as f64 + 2.0)),
+            Self::Laminar(law) => law.nu0,
+            Self::Sps(law) => law.nu0,
+        }
+    }
+
     /// The stress law, if the viscosity keeps a stress tensor for each particle.
     pub(crate) fn stress(&self) -> Option<Sps> {
         if let Self::Sps(law) = self { Some(*law) } else { None }

@@ -146,6 +146,21 @@ fn a_valid_scene_has_no_findings() {
     assert_eq!(topics(&report(&[])), Vec::<&str>::new(), "{:#?}", report(&[]).findings);
 }
 
+#[test]
+fn a_body_in_too_viscous_water_is_found_with_the_alpha_that_helps() {
+    let found = report(&[("model.viscosity.artificial.alpha", "1.0")]);
+    let warning = found.findings.iter().find(|f| f.topic == "viscous_body").expect("a finding");
+    let alpha = warning.mend.split("alpha = ").nth(1).and_then(|rest| rest.split(' ').next()).expect("a value");
+    let mended = report(&[("model.viscosity.artificial.alpha", alpha)]);
+    // The box has the higher or the lower Reynolds number of the moving bodies; one warning at least disappears.
+    let count = |p: &pontoon::preflight::Preflight| p.findings.iter().filter(|f| f.topic == "viscous_body").count();
+    assert!(count(&mended) < count(&found), "{:#?}", mended.flows);
+    for flow in &found.flows {
+        let reynolds = flow.reynolds.expect("the water is viscous");
+        assert!((reynolds * flow.viscosity_m2ps / (flow.speed_mps * flow.size_m) - 1.0).abs() < 1e-12);
+    }
+}
+
 /// A finding, the settings that cause it, a part of its proposed correction, and the settings of that correction.
 type Fault =
     (&'static str, &'static [(&'static str, &'static str)], &'static str, &'static [(&'static str, &'static str)]);
