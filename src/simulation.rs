@@ -228,14 +228,15 @@ impl<const D: usize> Simulation<D> {
         self.clock.dt = dt;
         self.clock.steps += 1;
         self.clock.time = if left <= allowed { end } else { self.clock.time + dt };
-        self.guard()
+        self.guard()?;
+        self.remove_due()
     }
 
     /// The longest step (s) that the present rates, the springs and the model allow.
     pub fn step_limit(&self) -> f64 {
         let model = self.system.model();
         let water = step_size::fluid_step_limit(&self.system.step_limits(), self.system.properties(), model.cfl);
-        let ties = self.spring_step_limit().min(self.bodies.constraints().next_release(self.clock.time));
+        let ties = self.spring_step_limit().min(self.bodies.constraints().next_event(self.clock.time));
         water.min(model.viscosity.step_limit(model.h)).min(model.dt_max).min(ties)
             * self.rollback.step_factor(self.clock.time)
     }
@@ -390,6 +391,7 @@ impl<const D: usize> Simulation<D> {
     /// `Restart` if the bytes are damaged or belong to another setup.
     pub fn restore(&mut self, bytes: &[u8]) -> Result<()> {
         let kept = Self::read(bytes)?;
+        self.remove_planned(&kept.removed_solids);
         if kept.removed_solids != self.removed_solids() {
             return Err(Error::new(
                 ErrorKind::Restart,
@@ -407,7 +409,7 @@ impl<const D: usize> Simulation<D> {
             }
         }
         if !self.bodies.restore(&kept.added_masses, kept.clock.steps)
-            || !self.bodies.constraints_mut().restore(kept.constraints)
+            || !self.bodies.restore_constraints(kept.constraints)
         {
             return Err(
                 Error::new(ErrorKind::Restart, "the checkpoint holds other bodies").with_code(ErrorCode::OtherSetup)

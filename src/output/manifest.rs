@@ -67,6 +67,9 @@ pub struct Manifest {
     pub fault: Option<serde_json::Value>,
     /// Warnings at the start of the run.
     pub warnings: Vec<String>,
+    /// Joints, springs, ropes and solids that began, ended or broke during the run, with the times.
+    #[serde(skip_serializing_if = "Vec::is_empty", default)]
+    pub events: Vec<String>,
     /// The computer that executed the run.
     pub machine: Machine,
     /// Scene keys that were changed for this run, and their values.

@@ -22,7 +22,7 @@ use crate::{
     plan::Plan,
     simulation::Setup,
     solid::{
-        Constraints, InitialHold, Role, SolidSpec,
+        Constraints, InitialHold, Role, SolidSpec, TimedRemoval,
         constraint::links::{check_force, check_rope, check_spring},
     },
     system::periodic,
@@ -241,7 +241,7 @@ impl Scene {
                 [one] => [None, number(one)],
                 two => [0, 1].map(|k| two.get(k).and_then(number)),
             };
-            constraints.joints.push(joint.build(ctx, &key, between)?);
+            constraints.joints.push(joint.build(ctx, &key, between, &self.solid)?);
             constraints.check_joint(i, solids).map_err(|e| ctx.with_location(e, &key))?;
         }
         for (i, spring) in self.spring.iter().enumerate() {
@@ -256,7 +256,7 @@ impl Scene {
         }
         for (i, force) in self.force.iter().enumerate() {
             let key = format!("force.{i}");
-            let force = force.build(ctx, &key, number(&force.on).unwrap_or_default())?;
+            let force = force.build(ctx, &key, &self.solid)?;
             check_force(&force, solids).map_err(|e| ctx.with_location(e, &key))?;
             constraints.forces.push(force);
         }
@@ -264,6 +264,8 @@ impl Scene {
         let hold =
             |(solid, body): (usize, &SolidConfig)| Some(InitialHold { solid, until: body.free.as_ref()?.release? });
         constraints.holds = self.solid.iter().enumerate().filter_map(hold).collect();
+        let removal = |(solid, body): (usize, &SolidConfig)| Some(TimedRemoval { solid, at: body.until? });
+        constraints.removals = self.solid.iter().enumerate().filter_map(removal).collect();
         Ok(constraints)
     }
 

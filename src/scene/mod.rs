@@ -29,6 +29,7 @@ mod section {
     pub(crate) mod domain;
     pub(crate) mod force_element;
     pub(crate) mod joint;
+    pub(crate) mod lifetime;
     pub(crate) mod model;
     pub(crate) mod motion;
     pub(crate) mod output;
@@ -83,6 +84,7 @@ pub use {
     section::domain::{GuardConfig, PeriodicConfig},
     section::force_element::ForceFrame,
     section::joint::LimitsConfig,
+    section::lifetime::StrengthConfig,
     section::model::TimeSteppingConfig,
     section::output::{CheckpointConfig, FramesConfig},
     section::shape::{AxisName, MeshConfig},

@@ -14,8 +14,9 @@ pub(crate) mod rapier;
 mod tests;
 
 pub use constraint::{
-    Constraints, ContactPairs, ContactSpec, FreeMode, InitialHold, JointKind, JointReading, JointSpec, LineEnd,
-    LineReading, Mobility, Motor, MotorCommand, RopeSpec, SpringParameters, SpringSpec,
+    ConstraintChange, ConstraintEvent, Constraints, ContactPairs, ContactSpec, FreeMode, InitialHold, JointKind,
+    JointReading, JointSpec, Lifetime, LineEnd, LineReading, Mobility, Motor, MotorCommand, RopeSpec, SpringParameters,
+    SpringSpec, TimedRemoval,
 };
 pub use force::ForceSpec;
 pub use load::Load;

@@ -58,6 +58,8 @@ pub struct SolidConfig {
     pub restitution: Option<f64>,
     /// Distance from its faces at which contact begins, m.
     pub contact_skin: Option<f64>,
+    /// Time at which it is removed, with the constraints on it, s.
+    pub until: Option<f64>,
 }
 
 /// A body that water, weight and contacts move.
@@ -133,6 +135,7 @@ impl SolidConfig {
             friction: None,
             restitution: None,
             contact_skin: None,
+            until: None,
         }
     }
 
@@ -192,6 +195,7 @@ impl SolidConfig {
             at.verify(ctx, &format!("{key}.at"), true)?;
         }
         self.verify_role(ctx, key)?;
+        ctx.require_positive(&format!("{key}.until"), self.until)?;
         ctx.require_range(&format!("{key}.friction"), self.friction, 10.0)?;
         ctx.require_range(&format!("{key}.restitution"), self.restitution, 1.0)
     }
