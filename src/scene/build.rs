@@ -5,6 +5,7 @@ use super::{
     context::Context,
     section::{
         analysis::ProbeSeries,
+        gravity,
         model::require_depth,
         shape::{vector, world_bounds},
         solid::SolidConfig,
@@ -133,8 +134,11 @@ impl Scene {
         }
         let limits = scene.guard.clone().unwrap_or_default().build();
         let sponge_layers = scene.damping.iter().map(|layer| layer.build(ctx, &still)).collect();
+        let gravity_law =
+            scene.gravity.as_ref().map(|config| gravity::build(ctx, config)).transpose()?.unwrap_or_default();
         let setup = Setup {
             model,
+            gravity_law,
             water: filled.r,
             surface_levels: levels,
             velocity,

@@ -28,6 +28,7 @@ mod section {
     pub(crate) mod contact;
     pub(crate) mod domain;
     pub(crate) mod force_element;
+    pub(crate) mod gravity;
     pub(crate) mod joint;
     pub(crate) mod lifetime;
     pub(crate) mod model;
@@ -114,8 +115,8 @@ pub struct Scene {
     pub dp: f64,
     /// Simulated time at which the run ends, s.
     pub until: f64,
-    /// Acceleration of gravity, m/s².
-    pub gravity: Option<Vec<f64>>,
+    /// Acceleration of gravity, m/s²: a vector, or a number downwards; of numbers, formulas in t (s) or tables.
+    pub gravity: Option<TimeVectorConfig>,
     /// Largest random offset of a water particle from its lattice point at the start, in each direction, over dp.
     pub jitter: Option<f64>,
     /// Box that water and moving solids must not leave.

@@ -8,6 +8,7 @@ use super::{
     section::{
         analysis::{self, ProbeSeries},
         contact,
+        gravity::{self, GravityValues},
         joint::verify_names,
         solid,
     },
@@ -42,15 +43,17 @@ macro_rules! names {
 impl Scene {
     /// Returns the properties of the scene that the validation and construction of its sections use.
     pub(super) fn context(&self) -> Context<'_> {
-        Context {
+        let mut ctx = Context {
             origin: &self.origin,
             dimension: self.dimension,
             dp: self.dp,
             h: self.model.smoothing_length(self.dimension, self.dp),
             until: self.until,
-            gravity: self.gravity.as_deref(),
+            gravity: None,
             rho0: self.model.rho0,
-        }
+        };
+        ctx.gravity = self.gravity.as_ref().map(|config| GravityValues::of(&ctx, config));
+        ctx
     }
 
     /// Refuses an invalid scene without opening files.
@@ -62,7 +65,7 @@ impl Scene {
         ctx.require_positive("dp", Some(self.dp))?;
         ctx.require_positive("until", Some(self.until))?;
         if let Some(gravity) = &self.gravity {
-            ctx.require_dimension("gravity", gravity)?;
+            gravity::verify(ctx, gravity)?;
         }
         if let Some(jitter) = self.jitter.filter(|s| !(0.0..=0.1).contains(s)) {
             return Err(ctx.error_at("jitter", format!("particles start 0 to 0.1 dp off their places, not {jitter}")));
@@ -106,7 +109,10 @@ impl Scene {
         let (ctx, fills) = (&self.context(), &mut defaults);
         let usual = Model::water(scene.dimension, scene.dp, 1.0);
         fills.fill("title", &mut scene.title, "untitled".into(), "the scene has no title");
-        fills.fill("gravity", &mut scene.gravity, usual.gravity.clone(), "the earth's, down the last axis");
+        fills.fill("gravity", &mut scene.gravity, usual.gravity.clone().into(), "the earth's, down the last axis");
+        for value in scene.gravity.iter_mut().flat_map(|gravity| gravity.components_mut()) {
+            value.0.fill(fills, "gravity");
+        }
         scene.model.fill(ctx, fills, &usual);
         scene.time.fill(fills, &usual);
         scene.guard.get_or_insert_default().fill(fills);

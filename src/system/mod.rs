@@ -8,6 +8,7 @@ mod change;
 mod checkpoint;
 mod fluid;
 mod free_surface;
+mod gravity;
 pub(crate) mod periodic;
 mod setup;
 mod sponge_layer;
@@ -37,7 +38,7 @@ use crate::{
     model::Model,
     neighbours::{CHUNK, NeighbourLists},
     particles::PARTICLES_PER_TASK,
-    solid::{Constraints, Load, Solid},
+    solid::{Constraints, Load, Solid, TimeFunction},
     sph::{AuxiliarySums, FluidProperties, equation_of_state::EquationOfState, gradient_correction},
 };
 
@@ -52,6 +53,8 @@ pub struct System<const D: usize> {
     pub(crate) boundary: Boundary<D>,
     pub(crate) solids: Vec<Solid<D>>,
     constraints: Constraints<D>,
+    /// Components of gravity as functions of time, m/s²; empty if it is constant.
+    gravity_law: Vec<TimeFunction>,
     fluid_domain: FluidDomain<D>,
     pub(crate) rates: Rates<D>,
     pub(crate) status: Status,
@@ -117,7 +120,8 @@ impl<const D: usize> System<D> {
     /// Places the water of `setup` in hydrostatic balance below its levels, and the solids with their boundary particles.
     pub(crate) fn new(setup: Setup<D>, pair_loop: Box<dyn PairLoop<D>>) -> Result<Self> {
         let Setup {
-            model,
+            mut model,
+            gravity_law,
             water,
             surface_levels,
             velocity,
@@ -129,6 +133,9 @@ impl<const D: usize> System<D> {
             limits,
             sponge_layers,
         } = setup;
+        if !gravity_law.is_empty() {
+            model.gravity = gravity::gravity_at::<D>(&gravity_law, 0.0).iter().copied().collect();
+        }
         if let Some(what) = model.conflict() {
             return Err(Error::scene(what));
         }
@@ -164,6 +171,7 @@ impl<const D: usize> System<D> {
             fluid,
             solids: Vec::new(),
             constraints,
+            gravity_law,
             fluid_domain: region,
             status: Status {
                 step_limits: StepLimits { acceleration: 0.0, approach_rate: 0.0 },

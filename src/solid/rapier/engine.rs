@@ -54,6 +54,9 @@ pub trait Engine<const D: usize>: Send + Sync {
     /// Holds a free solid at rest if `held` is true, or else releases it with its original locks.
     fn set_held(&mut self, solid: usize, held: bool);
 
+    /// Sets the acceleration of gravity (m/s²) from the next step on.
+    fn set_gravity(&mut self, gravity: &Vector<D>);
+
     /// Connects joint number `joint` with these frames in its two solids, or disconnects it.
     fn set_joint(&mut self, joint: usize, frames: Option<&[Pose<D>; 2]>);
 

@@ -328,6 +328,10 @@ impl Engine<D> for RapierWorld {
         body.set_locked_axes(if held { LockedAxes::all() } else { self.locks[solid] }, true);
     }
 
+    fn set_gravity(&mut self, gravity: &Vector<D>) {
+        self.world.gravity = to_point(gravity);
+    }
+
     fn set_joint(&mut self, joint: usize, frames: Option<&[Pose<D>; 2]>) {
         self.ties.set_joint(&mut self.world, joint, frames);
     }
