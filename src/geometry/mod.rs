@@ -15,6 +15,7 @@ mod moments;
 mod offset;
 pub(crate) mod overlap;
 mod packing;
+mod projected_area;
 mod shell;
 mod submerged_volume;
 
@@ -24,6 +25,7 @@ use crate::math::{Matrix, Pose, Vector};
 
 pub use fill::{FilledWater, WaterRegion, fill};
 pub use mesh::{ContactGeometry, Mesh};
+pub(crate) use projected_area::projected_area;
 
 /// A shape in its own frame, m. The last axis is vertical if the shape is not rotated.
 #[derive(Clone, Debug, PartialEq)]

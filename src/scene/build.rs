@@ -100,7 +100,7 @@ impl Scene {
         scene.model.require_stable_lattice::<D>(ctx, &model)?;
         require_depth(ctx, &still, &model)?;
         let solids = scene.solids::<D>(&StillWater::of(&water))?;
-        let constraints = scene.constraints(&solids)?;
+        let constraints = scene.constraints(&solids, still.level)?;
         let domain = scene.domain.as_ref().map(|d| Bounds { min: vector(&d.min), max: vector(&d.max) });
         if let Some(domain) = &domain {
             require_inside_domain(ctx, domain, &water, &solids)?;
@@ -233,8 +233,9 @@ impl Scene {
         self.solid.iter().enumerate().map(|(i, solid)| solid.build(ctx, &format!("solid.{i}"), pool)).collect()
     }
 
-    /// Returns the joints, force elements and contact rules of `solids`, which must be in the order of the scene.
-    fn constraints<const D: usize>(&self, solids: &[SolidSpec<D>]) -> Result<Constraints<D>> {
+    /// Returns the joints, force elements and contact rules of `solids`, which must be in the order of the scene, over still water at
+    /// the height `level` (m).
+    fn constraints<const D: usize>(&self, solids: &[SolidSpec<D>], level: f64) -> Result<Constraints<D>> {
         let ctx = &self.context();
         let number = |name: &String| self.solid.iter().position(|solid| solid.name == *name);
         let mut constraints = Constraints::default();
@@ -263,6 +264,9 @@ impl Scene {
             let force = force.build(ctx, &key, &self.solid)?;
             check_force(&force, solids).map_err(|e| ctx.with_location(e, &key))?;
             constraints.forces.push(force);
+        }
+        for (i, wind) in self.wind.iter().enumerate() {
+            constraints.winds.push(wind.build(ctx, &format!("wind.{i}"), &self.solid, solids, level)?);
         }
         constraints.contacts = self.contact.iter().flat_map(|contact| contact.build(&self.solid)).collect();
         let hold =

@@ -40,6 +40,7 @@ mod section {
     pub(crate) mod water;
     pub(crate) mod wave;
     pub(crate) mod wavemaker;
+    pub(crate) mod wind;
 }
 
 use std::{
@@ -70,6 +71,7 @@ pub use {
     section::sponge_layer::SpongeLayerConfig,
     section::water::WaterConfig,
     section::wave::WaveConfig,
+    section::wind::WindConfig,
     untagged::TimeValueConfig,
 };
 // Parts of the configuration that the constructors of the types above fill in.
@@ -146,6 +148,9 @@ pub struct Scene {
     /// Prescribed forces.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub force: Vec<ForceConfig>,
+    /// Winds on the dry part of solids.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub wind: Vec<WindConfig>,
     /// Rules for pairs of solids that touch.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub contact: Vec<ContactConfig>,

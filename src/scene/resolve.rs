@@ -87,6 +87,7 @@ impl Scene {
         each(&self.joint, "joint", |joint, key| joint.verify(ctx, key, solids))?;
         each(&self.spring, "spring", |spring, key| spring.verify(ctx, key, solids))?;
         each(&self.rope, "rope", |rope, key| rope.verify(ctx, key, solids))?;
+        each(&self.wind, "wind", |wind, key| wind.verify(ctx, key, solids))?;
         each(&self.force, "force", |force, key| force.verify(ctx, key, solids))?;
         contact::verify(ctx, &self.contact, solids)?;
         self.model.verify(ctx)?;
@@ -135,6 +136,9 @@ impl Scene {
         }
         for (i, rope) in scene.rope.iter_mut().enumerate() {
             rope.fill(fills, &format!("rope.{i}"));
+        }
+        for (i, wind) in scene.wind.iter_mut().enumerate() {
+            wind.fill(fills, &format!("wind.{i}"));
         }
         for (i, force) in scene.force.iter_mut().enumerate() {
             force.fill(fills, &format!("force.{i}"));
@@ -251,7 +255,7 @@ impl Scene {
 }
 
 /// The order in which values are listed.
-const ORDER: [&str; 24] = [
+const ORDER: [&str; 25] = [
     "title",
     "dimension",
     "dp",
@@ -268,6 +272,7 @@ const ORDER: [&str; 24] = [
     "spring",
     "rope",
     "force",
+    "wind",
     "contact",
     "model",
     "time",

@@ -9,6 +9,7 @@ pub mod hydrostatics;
 mod load;
 pub(crate) mod prescribed_motion;
 pub(crate) mod rapier;
+pub(crate) mod wind;
 #[cfg(all(test, feature = "dim2", feature = "dim3"))]
 #[path = "../../tests/unit/solid/engine.rs"]
 mod tests;
@@ -29,6 +30,8 @@ pub use rapier::rapier2d;
 pub use rapier::rapier3d;
 #[doc(hidden)]
 pub use rapier::{Dim, Engine, EngineFault, HasEngine};
+pub(crate) use wind::AIR_DENSITY;
+pub use wind::WindSpec;
 
 use std::ops::Range;
 

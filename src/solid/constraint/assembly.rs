@@ -13,7 +13,7 @@ use super::{
 };
 use crate::{
     math::{Bivector, Vector},
-    solid::{Engine, ForceSpec, Kinematics, Load, LoadContext},
+    solid::{Engine, ForceSpec, Kinematics, Load, LoadContext, WindSpec},
 };
 
 /// Δt times the highest frequency of the springs, at most: their period is right within 0.2 %.
@@ -104,6 +104,7 @@ pub(crate) struct Assembly<const D: usize> {
     pub(super) springs: Vec<Spring<D>>,
     pub(super) ropes: Vec<Rope<D>>,
     pub(super) forces: Vec<ForceSpec<D>>,
+    winds: Vec<WindSpec<D>>,
     pub(super) holds: Vec<InitialHold>,
     pub(super) removals: Vec<TimedRemoval>,
     /// Rows of each joint's locks and of its coordinate in the present step.
@@ -152,6 +153,7 @@ impl<const D: usize> Assembly<D> {
             springs: links.springs.iter().map(attached_spring).collect(),
             ropes: links.ropes.iter().map(attached_rope).collect(),
             forces: links.forces.clone(),
+            winds: links.winds.clone(),
             holds: links.holds.clone(),
             removals: links.removals.clone(),
             rows: Vec::new(),
@@ -178,6 +180,7 @@ impl<const D: usize> Assembly<D> {
             && self.springs.is_empty()
             && self.ropes.is_empty()
             && self.forces.is_empty()
+            && self.winds.is_empty()
             && self.holds.is_empty()
     }
 
@@ -221,6 +224,10 @@ impl<const D: usize> Assembly<D> {
             let load = force.load_at(&self.start[force.solid], &solids[force.solid], t + 0.5 * dt);
             engine.add_load(force.solid, &load);
             self.tied[force.solid].forces += load;
+        }
+        for (solid, load) in self.winds.iter().flat_map(|wind| wind.loads_at(solids, t + 0.5 * dt)) {
+            engine.add_load(solid, &load);
+            self.tied[solid].forces += load;
         }
         // Last, so that they include the loads of the others.
         self.rows.clear();

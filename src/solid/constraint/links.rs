@@ -8,7 +8,7 @@ use super::{
 };
 use crate::{
     error::{Error, Result},
-    solid::{ForceSpec, Role, SolidSpec},
+    solid::{ForceSpec, Role, SolidSpec, WindSpec},
 };
 
 /// All constraints of a simulation. Solids are numbered as in its list of solids.
@@ -23,6 +23,8 @@ pub struct Constraints<const D: usize> {
     pub ropes: Vec<RopeSpec<D>>,
     /// Prescribed forces and torques.
     pub forces: Vec<ForceSpec<D>>,
+    /// Winds.
+    pub winds: Vec<WindSpec<D>>,
     /// Free solids that are held at rest at first.
     pub holds: Vec<InitialHold>,
     /// Solids that are removed during the run.
@@ -146,6 +148,7 @@ impl<const D: usize> Constraints<D> {
             && self.springs.is_empty()
             && self.ropes.is_empty()
             && self.forces.is_empty()
+            && self.winds.is_empty()
             && self.holds.is_empty()
             && self.removals.is_empty()
             && self.contacts.is_empty()
@@ -164,10 +167,14 @@ impl<const D: usize> Constraints<D> {
         let springs = self.springs.iter().map(|spring| (&spring.name, ends(&spring.ends), &spring.lifetime));
         let ropes = self.ropes.iter().map(|rope| (&rope.name, ends(&rope.ends), &rope.lifetime));
         let forces = self.forces.iter().map(|force| (&force.name, [Some(force.solid), None], &force.lifetime));
+        let in_wind =
+            |wind: &WindSpec<D>| wind.targets.iter().any(|target| target.solid == solid && !target.lifetime.is_over(t));
         let mut named = joints.chain(springs).chain(ropes).chain(forces);
         let held = self.holds.iter().any(|hold| hold.solid == solid && hold.is_active(t));
         let first = named.find(|(_, ends, lifetime)| ends.contains(&Some(solid)) && !lifetime.is_over(t));
-        first.map(|(name, ..)| format!("{name:?}")).or_else(|| held.then(|| "its release".to_string()))
+        let blown = self.winds.iter().any(in_wind);
+        let first = first.map(|(name, ..)| format!("{name:?}"));
+        first.or_else(|| held.then(|| "its release".into())).or_else(|| blown.then(|| "a wind".into()))
     }
 
     /// Checks all constraints between these solids.
@@ -179,6 +186,7 @@ impl<const D: usize> Constraints<D> {
         self.springs.iter().try_for_each(|spring| check_spring(spring, solids))?;
         self.ropes.iter().try_for_each(|rope| check_rope(rope, solids))?;
         self.forces.iter().try_for_each(|force| check_force(force, solids))?;
+        self.winds.iter().try_for_each(|wind| check_wind(wind, solids))?;
         self.holds.iter().try_for_each(|hold| check_hold(hold, solids))?;
         self.removals.iter().try_for_each(|removal| self.check_removal(removal, solids))?;
         self.contacts.0.values().try_for_each(|pair| check_contact(pair, solids))
@@ -312,6 +320,19 @@ pub(crate) fn check_force<const D: usize>(force: &ForceSpec<D>, solids: &[SolidS
     let finite = |laws: &[crate::solid::TimeFunction]| laws.iter().all(|law| law.value_and_rate(0.0).0.is_finite());
     if !finite(&force.force) || !finite(&force.torque) {
         return Err(Error::scene(format!("{who} is not finite at t = 0")).help("check its formula or table"));
+    }
+    Ok(())
+}
+
+/// Checks a wind.
+fn check_wind<const D: usize>(wind: &WindSpec<D>, solids: &[SolidSpec<D>]) -> Result<()> {
+    let free = |i: usize| matches!(solids.get(i), Some(SolidSpec { role: Role::Free(_), .. }));
+    if !wind.targets.iter().all(|target| free(target.solid)) {
+        return Err(Error::scene("a wind acts on a solid that is not free").help("name free solids"));
+    }
+    let finite = wind.velocity.iter().all(|law| law.value_and_rate(0.0).0.is_finite()) && wind.level.is_finite();
+    if !(finite && wind.drag >= 0.0 && wind.density >= 0.0 && (wind.drag * wind.density).is_finite()) {
+        return Err(Error::scene("a wind is not finite at t = 0").help("check its velocity, drag and density"));
     }
     Ok(())
 }

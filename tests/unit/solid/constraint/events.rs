@@ -136,8 +136,10 @@ where
         Constraints { ropes, ..Constraints::default() }
     };
     let joint = |lifetime: Lifetime, _| joined(fixed([None, Some(0)], point(0.0, 0.0)).lifetime(lifetime));
+    // The spring bears the weight from the start.
+    let stretch = body(&bar::<D>("box", 0.2, point(0.0, 0.0), true)).mass * G / 1e5;
     let stiff = |lifetime, ends| {
-        let spring = SpringSpec::new("line", ends, 1e5).damping(1e3).lifetime(lifetime);
+        let spring = SpringSpec::new("line", ends, 1e5).damping(1e3).rest_length(1.0 - stretch).lifetime(lifetime);
         Constraints { springs: vec![spring], ..Constraints::default() }
     };
     for (name, mut air) in [("rope", loaded(rope)), ("joint", loaded(joint)), ("spring", loaded(stiff))] {
