@@ -5,6 +5,7 @@
 //! findings of severity [`Severity::Warning`] at its start.
 
 mod absorption_limits;
+mod lifetimes;
 mod misplaced_bodies;
 mod floating_bodies;
 mod surface_samples;
@@ -173,6 +174,7 @@ pub fn preflight<const D: usize>(
     look.misplaced_bodies(&gaps.touching, &mut findings);
     look.check_thickness(&mut findings);
     look.check_probes(&sound, &mut findings);
+    look.check_lifetimes(&mut findings);
     let (waves, absorbers) = (look.generated_waves(&mut findings), look.absorbers());
     findings.sort_by_key(|f| f.severity);
     Preflight { size, sound, step, waves, absorbers, bodies, findings }

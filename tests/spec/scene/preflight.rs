@@ -150,7 +150,7 @@ fn a_valid_scene_has_no_findings() {
 type Fault =
     (&'static str, &'static [(&'static str, &'static str)], &'static str, &'static [(&'static str, &'static str)]);
 
-const FAULTS: [Fault; 27] = [
+const FAULTS: [Fault; 28] = [
     ("slow_sound", &[("model.c0_factor", "5")], "c0 = 20 ", &[("model.c0", "20")]),
     // A plate with a single row of boundary particles moves water like a thick one: 0.4 m × 2π/s.
     (
@@ -250,6 +250,7 @@ const FAULTS: [Fault; 27] = [
         "dp = 0.0",
         &[("solid.paddle.driven.distance.formula", "0.02*(1-cos(2*pi*t))")],
     ),
+    ("event_after_end", &[("solid.sill.until", "3.0")], "run longer", &[("solid.sill.until", "1.0")]),
     ("large_frames", &[("until", "20.0"), ("frames.every", "0.0001")], "frames.every = 0.00", &[("until", "20.0")]),
 ];
 
