@@ -9,28 +9,26 @@ use crate::math::{Pose, Vector};
 /// Offset of a point before a facet, relative to the size of the shape, at which another part hides it.
 const OFFSET: f64 = 1e-6;
 
-impl<const D: usize> Shape<D> {
-    /// The facets of its surface in its own frame. Those of a part whose middle lies on or in another part are left out.
-    pub(crate) fn surface_facets(&self) -> Vec<Facet<D>> {
-        match self {
-            Shape::Ball { radius } => Shape::Capsule { length: 0.0, radius: *radius, axis: D - 1 }.facets(),
-            Shape::Compound(parts) => {
-                let offset = OFFSET * self.bounds().size().max();
-                let mut all = Vec::new();
-                for (i, (pose, part)) in parts.iter().enumerate() {
-                    let others = || parts.iter().enumerate().filter(|(j, _)| *j != i);
-                    let is_hidden = |facet: &Facet<D>| {
-                        let normal = area_vector(facet);
-                        let before = middle(facet) + normal * (offset / normal.norm().max(f64::MIN_POSITIVE));
-                        others().any(|(_, (other, shape))| shape.signed_distance(&other.local(&before)) < 0.0)
-                    };
-                    let facets = part.surface_facets().into_iter().map(|facet| facet.map(|x| pose.point(&x)));
-                    all.extend(facets.filter(|facet| !is_hidden(facet)));
-                }
-                all
+/// The facets of the surface of `shape` in its own frame. Those of a part whose middle lies on or in another part are left out.
+pub(crate) fn surface_facets<const D: usize>(shape: &Shape<D>) -> Vec<Facet<D>> {
+    match shape {
+        Shape::Ball { radius } => Shape::Capsule { length: 0.0, radius: *radius, axis: D - 1 }.facets(),
+        Shape::Compound(parts) => {
+            let offset = OFFSET * shape.bounds().size().max();
+            let mut all = Vec::new();
+            for (i, (pose, part)) in parts.iter().enumerate() {
+                let others = || parts.iter().enumerate().filter(|(j, _)| *j != i);
+                let is_hidden = |facet: &Facet<D>| {
+                    let normal = area_vector(facet);
+                    let before = middle(facet) + normal * (offset / normal.norm().max(f64::MIN_POSITIVE));
+                    others().any(|(_, (other, shape))| shape.signed_distance(&other.local(&before)) < 0.0)
+                };
+                let facets = surface_facets(part).into_iter().map(|facet| facet.map(|x| pose.point(&x)));
+                all.extend(facets.filter(|facet| !is_hidden(facet)));
             }
-            _ => self.facets(),
+            all
         }
+        _ => shape.facets(),
     }
 }
 

@@ -174,7 +174,7 @@ pub fn preflight<const D: usize>(
     look.misplaced_bodies(&gaps.touching, &mut findings);
     look.check_thickness(&mut findings);
     look.check_probes(&sound, &mut findings);
-    look.check_lifetimes(&mut findings);
+    lifetimes::check(&look, &mut findings);
     let (waves, absorbers) = (look.generated_waves(&mut findings), look.absorbers());
     findings.sort_by_key(|f| f.severity);
     Preflight { size, sound, step, waves, absorbers, bodies, findings }

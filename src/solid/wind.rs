@@ -2,7 +2,7 @@
 //! water and projected along U − V, with V the velocity of the centre of mass @faltinsen1990.
 
 use crate::{
-    geometry::{Shape, projected_area},
+    geometry::{Shape, projected_area, surface_facets},
     math::{Bivector, Vector},
     solid::{Kinematics, Lifetime, Load, TimeFunction},
 };
@@ -62,7 +62,7 @@ impl<const D: usize> WindSpec<D> {
 
     /// The same wind, on a solid during a lifetime.
     pub(crate) fn during(mut self, solid: usize, shape: &Shape<D>, lifetime: Lifetime) -> Self {
-        self.targets.push(WindTarget { solid, facets: shape.surface_facets(), lifetime });
+        self.targets.push(WindTarget { solid, facets: surface_facets(shape), lifetime });
         self
     }
 

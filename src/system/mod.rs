@@ -8,7 +8,6 @@ mod change;
 mod checkpoint;
 mod fluid;
 mod free_surface;
-mod gravity;
 pub(crate) mod periodic;
 mod setup;
 mod sponge_layer;
@@ -134,7 +133,7 @@ impl<const D: usize> System<D> {
             sponge_layers,
         } = setup;
         if !gravity_law.is_empty() {
-            model.gravity = gravity::gravity_at::<D>(&gravity_law, 0.0).iter().copied().collect();
+            model.gravity = setup::gravity_at::<D>(&gravity_law, 0.0).iter().copied().collect();
         }
         if let Some(what) = model.conflict() {
             return Err(Error::scene(what));
@@ -347,6 +346,18 @@ impl<const D: usize> System<D> {
             parts.into_iter().sum()
         };
         self.solids.iter().map(of).collect()
+    }
+
+    /// Sets gravity to that of time `t` (s). Returns its change (m/s²); `None` if gravity is constant.
+    pub(crate) fn set_gravity_at(&mut self, t: f64) -> Option<Vector<D>> {
+        if self.gravity_law.is_empty() {
+            return None;
+        }
+        let gravity = setup::gravity_at(&self.gravity_law, t);
+        let change = gravity - self.properties.gravity;
+        self.properties.gravity = gravity;
+        self.pair_loop.set_gravity(&self.properties);
+        Some(change)
     }
 
     /// The largest values that limit the next step.

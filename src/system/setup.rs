@@ -202,7 +202,7 @@ impl<const D: usize> Setup<D> {
     pub(crate) fn initial_gravity(&self) -> Vector<D> {
         match self.gravity_law.is_empty() {
             true => self.model.fluid_properties::<D>().gravity,
-            false => super::gravity::gravity_at(&self.gravity_law, 0.0),
+            false => gravity_at(&self.gravity_law, 0.0),
         }
     }
 
@@ -249,4 +249,9 @@ impl<const D: usize> Setup<D> {
         self.constraints.check(&self.solids)?;
         periodic::check(&self.periodic, m, &self.solids)
     }
+}
+
+/// The acceleration of gravity (m/s²) by the components of `law` at time `t` (s).
+pub(super) fn gravity_at<const D: usize>(law: &[TimeFunction], t: f64) -> Vector<D> {
+    Vector::from_fn(|i, _| law.get(i).map_or(0.0, |component| component.value_and_rate(t).0))
 }

@@ -431,7 +431,8 @@ impl<const D: usize> Assembly<D> {
     pub(crate) fn restore(&mut self, kept: AssemblyState<D>) -> bool {
         let same = kept.joints.len() == self.joints.len()
             && kept.springs.len() == self.springs.len()
-            && kept.ropes.len() == self.ropes.len();
+            && kept.ropes.len() == self.ropes.len()
+            && kept.phases.matches(&self.state.phases);
         if same {
             self.state = kept;
             self.restore_frames();

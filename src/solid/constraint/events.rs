@@ -20,6 +20,15 @@ impl<const D: usize> Phases<D> {
         }
     }
 
+    /// Whether both belong to the same numbers of constraints.
+    pub(super) fn matches(&self, other: &Self) -> bool {
+        let counts = |all: &Self| {
+            let phases = [all.joints.len(), all.springs.len(), all.ropes.len()];
+            (phases, all.joint_frames.len(), all.rope_lengths.len())
+        };
+        counts(self) == counts(other)
+    }
+
     /// Ends spring number `i`, called `name`, at time `t` (s) under `tension` (N).
     pub(super) fn break_spring(&mut self, i: usize, name: &str, t: f64, tension: f64) {
         self.springs[i] = Phase::Ended;

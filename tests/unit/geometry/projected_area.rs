@@ -3,7 +3,7 @@
 use super::*;
 
 fn area<const D: usize>(shape: &Shape<D>, pose: Pose<D>, level: f64, way: [f64; D]) -> (f64, Vector<D>) {
-    projected_area(&shape.surface_facets(), &pose, level, &Vector::from(way).normalize())
+    projected_area(&surface_facets(shape), &pose, level, &Vector::from(way).normalize())
 }
 
 #[test]
