@@ -41,7 +41,8 @@ fn a_surface_inclines_by_the_ratio_of_accelerations() -> Result<()> {
     run_to(&mut sim, 2.0);
     let (mut sum, mut count) = (0.0, 0.0);
     while sim.time() < 3.5 {
-        run_to(&mut sim, sim.time() + 0.025);
+        let next = sim.time() + 0.025;
+        run_to(&mut sim, next);
         let [low, high] = [0, 1].map(|i| gauges[i].sample(&sim)[0]);
         (sum, count) = (sum + (high - low) / 0.3, count + 1.0);
     }
