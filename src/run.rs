@@ -40,6 +40,7 @@ use crate::{
     output::{Checkpoint, Manifest, manifest::RunStatus},
     scene::{RenamedName, Scene},
     simulation::Rollback,
+    solid::ConstraintEvent,
     solid::Dim,
 };
 
@@ -96,6 +97,11 @@ pub trait RunObserver: Send {
     /// Receives a rollback, when the run returns to an earlier valid state after an alarm.
     fn rolled_back(&mut self, how: &Rollback) {
         let _ = how;
+    }
+
+    /// Receives the beginning or the end of a joint, spring, rope or solid during the run.
+    fn event(&mut self, event: &ConstraintEvent) {
+        let _ = event;
     }
 
     /// Receives the progress before the first step and after each step. If it returns `false`, the run writes a

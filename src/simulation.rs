@@ -111,14 +111,15 @@ impl<const D: usize> Simulation<D> {
         Dim<D>: Dimension<D>,
     {
         setup.check()?;
-        let (medium, solids, dp) = (setup.model.fluid_properties::<D>(), &setup.solids, setup.model.dp);
+        let (solids, dp) = (&setup.solids, setup.model.dp);
         for solid in solids {
             solid.check()?;
         }
         let free = |s: &&SolidSpec<D>| matches!(s.role, Role::Free(_));
         let start: Vec<_> = solids.iter().map(SolidSpec::initial_kinematics).collect();
+        let gravity = setup.initial_gravity();
         let engine = if !external && solids.iter().any(|s| free(&s)) {
-            Some(Dim::<D>::engine(solids, &start, &setup.constraints, &medium.gravity, dp)?)
+            Some(Dim::<D>::engine(solids, &start, &setup.constraints, &gravity, dp)?)
         } else {
             None
         };
@@ -222,20 +223,34 @@ impl<const D: usize> Simulation<D> {
         }
         let over = Interval { t: self.clock.time, dt };
         self.system.update_absorption(over.t);
+        self.change_gravity(over.t + 0.5 * dt);
         let weight = self.stepper.step(&mut self.system, over, self.bodies.accounting.as_mut());
         let transfers = self.bodies.advance(&mut self.system, over, weight, hook)?;
         self.stepper.add_transfers(&transfers);
         self.clock.dt = dt;
         self.clock.steps += 1;
         self.clock.time = if left <= allowed { end } else { self.clock.time + dt };
-        self.guard()
+        self.change_gravity(self.clock.time);
+        self.guard()?;
+        self.remove_due()
+    }
+
+    /// Sets gravity to that of time `t` (s), if it changes.
+    fn change_gravity(&mut self, t: f64) {
+        let Some(change) = self.system.set_gravity_at(t) else { return };
+        if let Some(engine) = self.bodies.engine_mut() {
+            engine.set_gravity(&self.system.gravity());
+        }
+        if let Some(accounting) = &mut self.bodies.accounting {
+            accounting.add_gravity_change(&self.system, &change);
+        }
     }
 
     /// The longest step (s) that the present rates, the springs and the model allow.
     pub fn step_limit(&self) -> f64 {
         let model = self.system.model();
         let water = step_size::fluid_step_limit(&self.system.step_limits(), self.system.properties(), model.cfl);
-        let ties = self.spring_step_limit().min(self.bodies.constraints().next_release(self.clock.time));
+        let ties = self.spring_step_limit().min(self.bodies.constraints().next_event(self.clock.time));
         water.min(model.viscosity.step_limit(model.h)).min(model.dt_max).min(ties)
             * self.rollback.step_factor(self.clock.time)
     }
@@ -390,6 +405,7 @@ impl<const D: usize> Simulation<D> {
     /// `Restart` if the bytes are damaged or belong to another setup.
     pub fn restore(&mut self, bytes: &[u8]) -> Result<()> {
         let kept = Self::read(bytes)?;
+        self.remove_planned(&kept.removed_solids);
         if kept.removed_solids != self.removed_solids() {
             return Err(Error::new(
                 ErrorKind::Restart,
@@ -407,7 +423,7 @@ impl<const D: usize> Simulation<D> {
             }
         }
         if !self.bodies.restore(&kept.added_masses, kept.clock.steps)
-            || !self.bodies.constraints_mut().restore(kept.constraints)
+            || !self.bodies.restore_constraints(kept.constraints)
         {
             return Err(
                 Error::new(ErrorKind::Restart, "the checkpoint holds other bodies").with_code(ErrorCode::OtherSetup)
@@ -429,6 +445,7 @@ impl<const D: usize> Simulation<D> {
             accounting.restore(state);
         }
         (self.stepper, self.clock, self.removed) = (kept.stepper, kept.clock, kept.removed);
+        self.system.set_gravity_at(self.clock.time);
         self.rollback.restart(kept.rollbacks);
         Ok(())
     }

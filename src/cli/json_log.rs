@@ -14,6 +14,7 @@ use pontoon::{
     output::manifest::RunStatus,
     run::{EnergyDrift, Progress, RunObserver, RunOutcome, RunStart},
     simulation::Rollback,
+    solid::ConstraintEvent,
 };
 use serde_json::{Value, json};
 
@@ -74,6 +75,12 @@ impl RunObserver for JsonLog {
         self.warnings += 1;
         if !self.quiet {
             warn(&how.to_string());
+        }
+    }
+
+    fn event(&mut self, event: &ConstraintEvent) {
+        if !self.quiet {
+            write_event(&json!({ "event": "note", "t_s": event.time, "text": event.to_string() }));
         }
     }
 

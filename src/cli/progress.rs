@@ -15,6 +15,7 @@ use pontoon::{
     math::format::{duration, metric_prefix, three_digits},
     run::{Progress, RunObserver, RunStart},
     simulation::Rollback,
+    solid::ConstraintEvent,
 };
 
 use super::{console_text, print_error};
@@ -126,6 +127,12 @@ impl RunObserver for ProgressDisplay {
         self.warnings += 1;
         if !self.quiet {
             self.bar.suspend(|| print_error(&format!("warning: {how}\n")));
+        }
+    }
+
+    fn event(&mut self, event: &ConstraintEvent) {
+        if !self.quiet {
+            self.bar.suspend(|| print_error(&format!("note: {event}\n")));
         }
     }
 

@@ -13,7 +13,7 @@ use crate::{
     math::{Bivector, Pose, Vector},
     solid::{
         ContactForce, Engine, EngineFault, Kinematics, Load, Role, Solid,
-        constraint::assembly::{Assembly, ConstraintLoads},
+        constraint::assembly::{Assembly, AssemblyState, ConstraintLoads},
     },
     system::{MomentumTransfer, System},
 };
@@ -79,6 +79,15 @@ impl<const D: usize> Bodies<D> {
     /// Returns the states of the added masses for a checkpoint.
     pub(crate) fn added_mass_state(&self) -> Vec<AddedMassState> {
         self.added_masses.iter().map(AcousticAddedMass::state).collect()
+    }
+
+    /// Restores the saved state of the constraints, after that of the engine. Returns whether it belongs to these constraints.
+    pub(crate) fn restore_constraints(&mut self, state: AssemblyState<D>) -> bool {
+        let same = self.constraints.restore(state);
+        if let Some(engine) = self.engine.as_deref_mut().filter(|_| same) {
+            self.constraints.restore_ropes(engine);
+        }
+        same
     }
 
     /// Restores the saved `states` of a run after `steps` steps. Returns whether the states belong to these bodies.
@@ -303,6 +312,9 @@ impl<const D: usize> BodyStep<'_, D> {
             for (i, breakdown) in breakdowns.into_iter().enumerate() {
                 accounting.add_body_step(self.system, i, breakdown, &body_loads(i, constraints.loads_on(i)));
             }
+        }
+        if constrained {
+            constraints.break_overloaded(&mut **engine, t + dt);
         }
         Ok(())
     }

@@ -21,7 +21,7 @@ use crate::{
 /// Energies since the start, J (J/m in 2-D). An entry is positive if water and bodies have gained energy.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct EnergyBudget {
-    /// Work of driven solids on the water, and of gravity along periodic sides.
+    /// Work of driven solids on the water, of gravity along periodic sides, and of gravity that changes.
     pub driven: f64,
     /// Work of motors.
     pub motors: f64,
@@ -192,6 +192,15 @@ impl<const D: usize> Accounting<D> {
             if let Role::Driven(_) = solid.spec.role {
                 self.budget.driven -= *work;
             }
+        }
+    }
+
+    /// Adds the change of potential energy by a `change` of gravity (m/s²) where water and bodies are.
+    pub(crate) fn add_gravity_change(&mut self, system: &System<D>, change: &Vector<D>) {
+        if self.energy {
+            let water: f64 = system.fluid().r.iter().map(|r| system.non_periodic(change).dot(r)).sum();
+            let bodies: f64 = system.solids().iter().map(|solid| -solid.potential_energy(change)).sum();
+            self.budget.driven -= system.particle_mass() * water + bodies;
         }
     }
 

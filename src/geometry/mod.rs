@@ -16,6 +16,7 @@ mod moments;
 mod offset;
 pub(crate) mod overlap;
 mod packing;
+mod projected_area;
 mod shell;
 #[cfg_attr(not(feature = "dim3"), expect(dead_code, reason = "the solids are 3-D"))]
 pub(crate) mod solids_of_revolution;
@@ -31,6 +32,7 @@ use crate::math::{Matrix, Pose, Vector};
 pub(crate) use fill::fill_around;
 pub use fill::{FilledWater, WaterRegion, fill};
 pub use mesh::{ContactGeometry, Mesh};
+pub(crate) use projected_area::{projected_area, surface_facets};
 
 /// A shape in its own frame, m. The last axis is vertical if the shape is not rotated.
 #[derive(Clone, Debug, PartialEq)]

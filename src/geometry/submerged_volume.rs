@@ -49,7 +49,8 @@ impl<const D: usize> Shape<D> {
         }
     }
 
-    fn facets(&self) -> Vec<Facet<D>> {
+    /// Returns the facets of the surface; none of a ball or a compound.
+    pub(super) fn facets(&self) -> Vec<Facet<D>> {
         match self {
             Shape::Box { .. } => box_facets(&self.bounds()),
             Shape::Capsule { length, radius, axis } => {

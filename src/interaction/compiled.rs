@@ -18,6 +18,9 @@ pub(super) trait PairTerms<const D: usize>: Send + Sync {
     /// The inputs and sums that they need.
     fn required_sums(&self) -> RequiredSums;
 
+    /// Takes the acceleration of gravity of the next pass, in the units of the terms.
+    fn set_gravity(&mut self, gravity: &[f64; D]);
+
     /// By the oracle, the sums of the water particles of a chunk, the first of them `first`; gives the largest
     /// |v_ab·r_ab|/(r² + η²).
     fn sum_fluid(
@@ -65,6 +68,11 @@ impl<K: Kernel, T, W> CompiledTerms<K, T, W> {
 impl<K: Kernel, T: Term<D>, W: Term<D>, const D: usize> PairTerms<D> for CompiledTerms<K, T, W> {
     fn required_sums(&self) -> RequiredSums {
         RequiredSums::of_terms::<(T, W), D>()
+    }
+
+    fn set_gravity(&mut self, gravity: &[f64; D]) {
+        self.fluid.set_gravity(gravity);
+        self.wall.set_gravity(gravity);
     }
 
     fn sum_fluid(

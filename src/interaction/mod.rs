@@ -98,6 +98,11 @@ pub trait PairLoop<const D: usize>: Send + Sync {
         fits: &mut [WallExtrapolation<f64, D>],
     );
 
+    /// Takes the acceleration of gravity of the next pass from `properties`.
+    fn set_gravity(&mut self, properties: &FluidProperties<D>) {
+        let _ = properties;
+    }
+
     /// Sums over all pairs; the neighbour lists must hold.
     fn rates(&mut self, input: &PairLoopInput<'_, D>, output: &mut PairLoopOutput<'_, D>) -> StepLimits;
 }

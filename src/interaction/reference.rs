@@ -15,7 +15,10 @@ use crate::{
     math::{Matrix, Vector},
     neighbours::{CHUNK, PairLists, ParticleListChunk},
     particles::{PARTICLES_PER_TASK, Particles},
-    sph::{AuxiliarySums, Pair, PairSide, Term, boundary::WallExtrapolation, kernel::Kernel, pressure::repulsion},
+    sph::{
+        AuxiliarySums, FluidProperties, Pair, PairSide, Term, boundary::WallExtrapolation, kernel::Kernel,
+        pressure::repulsion,
+    },
 };
 
 /// The reference with its terms.
@@ -203,6 +206,10 @@ impl<const D: usize> PairLoop<D> for ReferencePairLoop<D> {
             sums.sum_reference(nodes, wet, chunk, flow, extrapolate_to_boundary)
         });
         self.spent += start.elapsed();
+    }
+
+    fn set_gravity(&mut self, properties: &FluidProperties<D>) {
+        self.laws.set_gravity(&properties.gravity.into());
     }
 
     fn rates(&mut self, input: &PairLoopInput<'_, D>, output: &mut PairLoopOutput<'_, D>) -> StepLimits {

@@ -23,7 +23,7 @@ use crate::{
     math::simd::{self, LANES, LaneRow, Level, Simd, SimdTask, f32x8, i32x8},
     neighbours::{Clusters, PairLists, Slab},
     particles::PARTICLES_PER_TASK,
-    sph::{AuxiliarySums, Pair, PairSide, Term, Units, boundary::WallExtrapolation, kernel::Kernel},
+    sph::{AuxiliarySums, FluidProperties, Pair, PairSide, Term, Units, boundary::WallExtrapolation, kernel::Kernel},
 };
 
 /// The SIMD pair loop with its terms.
@@ -175,6 +175,10 @@ impl<const D: usize> PairLoop<D> for SimdPairLoop<D> {
                 fit.velocity_sum = fit.velocity_sum.map(|x| x * (length / time));
             },
         );
+    }
+
+    fn set_gravity(&mut self, properties: &FluidProperties<D>) {
+        self.laws.set_gravity(&properties.in_units(&self.units).gravity.into());
     }
 
     fn rates(&mut self, input: &PairLoopInput<'_, D>, output: &mut PairLoopOutput<'_, D>) -> StepLimits {

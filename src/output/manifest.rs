@@ -70,6 +70,9 @@ pub struct Manifest {
     /// Notes on the layout and the span of the tables that the scene names.
     #[serde(default)]
     pub notes: Vec<String>,
+    /// Joints, springs, ropes and solids that began, ended or broke during the run, with the times.
+    #[serde(skip_serializing_if = "Vec::is_empty", default)]
+    pub events: Vec<String>,
     /// The computer that executed the run.
     pub machine: Machine,
     /// Scene keys that were changed for this run, and their values.

@@ -107,7 +107,8 @@ impl<const D: usize> PreflightContext<'_, D> {
     pub(super) fn bodies(&self, touching: &[bool], findings: &mut Vec<Finding>) -> Vec<BodySummary> {
         let statics = self.statics(touching);
         let specs: Vec<&SolidSpec<D>> = self.solids().iter().map(|solid| &solid.spec).collect();
-        let groups = JointGroups::of(&specs, self.system.constraints());
+        let constraints = &self.system.constraints().at_start();
+        let groups = JointGroups::of(&specs, constraints);
         let mut bodies = Vec::new();
         for (i, solid) in self.solids().iter().enumerate() {
             let Role::Free(body) = &solid.spec.role else { continue };
@@ -140,7 +141,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         let bodies = self.solids().iter().enumerate().filter_map(body).collect();
         let specs: Vec<&SolidSpec<D>> = self.solids().iter().map(|solid| &solid.spec).collect();
         let water = WaterAtRest { rho0: self.system.model().rho0, g: self.g, level };
-        Some(StaticSystem::new(bodies, &specs, self.system.constraints(), water))
+        Some(StaticSystem::new(bodies, &specs, &self.system.constraints().at_start(), water))
     }
 
     /// Adds findings about bodies that are thick enough to separate the water of both sides, but whose middle still
@@ -239,7 +240,7 @@ impl<const D: usize> PreflightContext<'_, D> {
             Tilt { axis, gm_m, period_s }
         };
         let (x, y) = (vec![1.0, 0.0, 0.0], vec![0.0, 1.0, 0.0]);
-        let locked = |axis: &[f64]| statics.is_tilt_locked(number, axis, self.system.constraints());
+        let locked = |axis: &[f64]| statics.is_tilt_locked(number, axis, &self.system.constraints().at_start());
         if D == 2 {
             return if locked(&[1.0]) { Vec::new() } else { vec![tilt(vec![1.0], gm(&[1.0]))] };
         }

@@ -5,6 +5,7 @@
 //! findings of severity [`Severity::Warning`] at its start.
 
 mod absorption_limits;
+mod lifetimes;
 mod misplaced_bodies;
 mod floating_bodies;
 mod hollows;
@@ -202,6 +203,7 @@ pub fn preflight<const D: usize>(
     look.check_thickness(&mut findings);
     thin_parts::check_parts(&look, &mut findings);
     look.check_probes(&sound, &mut findings);
+    lifetimes::check(&look, &mut findings);
     let (waves, absorbers) = (look.generated_waves(&mut findings), look.absorbers());
     let flows = look.body_flows(&waves, &mut findings);
     findings.sort_by_key(|f| f.severity);

@@ -83,7 +83,7 @@ impl LoadBalanceProbe {
             ("motors", links.joints.is_empty()),
             ("ropes", links.ropes.is_empty()),
             ("springs", links.springs.is_empty()),
-            ("forces", links.forces.is_empty()),
+            ("forces", links.forces.is_empty() && links.winds.is_empty()),
             ("locks", !(held || locked)),
         ];
         let all = LoadBreakdown::<D>::zero().kinds().map(|(kind, _)| kind);

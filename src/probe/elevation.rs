@@ -3,13 +3,11 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{PointRowConfig, Probe, ProbeDefinition, ProbeLocation, ProbeRow, ProbeScope, column_at_place, point};
-use crate::{
-    error::Result,
-    math::{NumberOrArray, Vector},
-    simulation::Simulation,
-    system::System,
+use super::{
+    PointRowConfig, Probe, ProbeDefinition, ProbeLocation, ProbeRow, ProbeScope, column_at_place,
+    mounting::MountedPoint,
 };
+use crate::{error::Result, math::NumberOrArray, simulation::Simulation, system::System};
 
 /// The surface that an elevation gauge measures if several surfaces lie above one another.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -52,6 +50,9 @@ pub struct GaugeConfig {
     /// The surface to measure if several surfaces lie above one another.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub surface: Option<GaugeSurface>,
+    /// The solid that the gauge goes with; places are in the frame of the solid then.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub on: Option<String>,
 }
 
 impl GaugeConfig {
@@ -80,6 +81,8 @@ pub struct ElevationPlan {
     pub places: Vec<Vec<f64>>,
     /// The surface that the gauges measure.
     pub surface: GaugeSurface,
+    /// The solid that they go with, in whose frame they are.
+    pub on: Option<String>,
 }
 
 impl ProbeDefinition for ElevationPlan {
@@ -88,7 +91,16 @@ impl ProbeDefinition for ElevationPlan {
     const EXAMPLE: &'static str =
         "elevation = { x = 1.16 }, or a row:  elevation = { from = 1.0, to = 3.0, count = 5 }";
 
+    const MOUNTABLE: bool = true;
+
+    fn mount(&mut self, on: &str) {
+        self.on = Some(on.into());
+    }
+
     fn verify(config: &GaugeConfig, key: &str, scene: &dyn ProbeScope) -> Result<()> {
+        if let Some(on) = &config.on {
+            scene.require_solid(&format!("{key}.on"), on)?;
+        }
         let single = config.x.is_some() || config.y.is_some();
         match config.row() {
             Some(_) if single => {
@@ -109,22 +121,23 @@ impl ProbeDefinition for ElevationPlan {
             Some(row) => row.places(),
             None => vec![[config.x, config.y].into_iter().flatten().collect()],
         };
-        Self { places, surface: config.surface.unwrap_or_default() }
+        Self { places, surface: config.surface.unwrap_or_default(), on: config.on.clone() }
     }
 
     fn location(&self) -> Option<ProbeLocation<'_>> {
-        Some(ProbeLocation::Columns(&self.places))
+        self.on.is_none().then_some(ProbeLocation::Columns(&self.places))
     }
 
     fn series(&self, _: usize) -> Vec<(String, Option<Vec<f64>>)> {
+        let fixed = |at: &Vec<f64>| self.on.is_none().then(|| at.clone());
         match &self.places[..] {
-            [at] => vec![("eta_m".into(), Some(at.clone()))],
-            places => places.iter().map(|at| (column_at_place("eta_m", at), Some(at.clone()))).collect(),
+            [at] => vec![("eta_m".into(), fixed(at))],
+            places => places.iter().map(|at| (column_at_place("eta_m", at), fixed(at))).collect(),
         }
     }
 
     fn build<const D: usize>(&self, system: &System<D>) -> Result<Box<dyn Probe<D>>> {
-        let gauge = |at: &[f64]| ElevationProbe::with_surface(system, at, self.surface);
+        let gauge = |at: &[f64]| ElevationProbe::mounted(system, at, self.surface, self.on.as_deref());
         ProbeRow::at_places(&self.places, |at| Ok(Box::new(gauge(at)?)))
     }
 }
@@ -133,9 +146,10 @@ impl ProbeDefinition for ElevationPlan {
 const LOWER_SURFACES: usize = 3;
 
 /// Measures the level of the water (m) at a horizontal place, and its change η (m) since the creation of the probe.
+/// A gauge on a solid goes with the point of the solid; η is relative to that point then.
 /// Both are NaN at a dry place. Spray that fills less than half the kernel's weight does not count.
 pub struct ElevationProbe<const D: usize> {
-    at: Vector<D>,
+    at: MountedPoint<D>,
     surface: GaugeSurface,
     start: f64,
 }
@@ -155,14 +169,34 @@ impl<const D: usize> ElevationProbe<D> {
     /// # Errors
     /// The same errors as [`ElevationProbe::new`].
     pub fn with_surface(system: &System<D>, at: &[f64], surface: GaugeSurface) -> Result<Self> {
-        let mut gauge = Self { at: point(at, D - 1)?, surface, start: f64::NAN };
-        gauge.start = gauge.surface_heights(system)[0];
+        Self::mounted(system, at, surface, None)
+    }
+
+    /// Creates the gauge of the highest surface at `at` (m; D − 1 coordinates) in the frame of the solid called `solid`, with which
+    /// it goes: the level is that of the world, η is relative to the point of the solid.
+    ///
+    /// # Errors
+    /// The errors of [`ElevationProbe::new`]; `Scene` if there is no such solid.
+    pub fn on_solid(system: &System<D>, solid: &str, at: &[f64]) -> Result<Self> {
+        Self::mounted(system, at, GaugeSurface::Highest, Some(solid))
+    }
+
+    fn mounted(system: &System<D>, at: &[f64], surface: GaugeSurface, on: Option<&str>) -> Result<Self> {
+        let at = MountedPoint::in_world(at, D - 1)?.on(system, on)?;
+        let mut gauge = Self { at, surface, start: f64::NAN };
+        gauge.start = gauge.surface_heights(system)[0] - gauge.height(system);
         Ok(gauge)
+    }
+
+    /// The height (m) of the point of the solid that the gauge goes with; 0 for a gauge of the world.
+    fn height(&self, system: &System<D>) -> f64 {
+        if self.at.is_mounted() { self.at.position(system)[D - 1] } else { 0.0 }
     }
 
     /// Returns the heights (m) of the measured surfaces. The level comes first.
     fn surface_heights(&self, system: &System<D>) -> Vec<f64> {
-        let mut found = system.surface_heights(&self.at);
+        let at = self.at.position(system);
+        let mut found = system.surface_heights(&at);
         let all: Vec<f64> = match self.surface {
             GaugeSurface::Highest => found.next().into_iter().collect(),
             GaugeSurface::Lowest => found.last().into_iter().collect(),
@@ -182,7 +216,7 @@ impl<const D: usize> Probe<D> for ElevationProbe<D> {
 
     fn sample(&self, sim: &Simulation<D>) -> Vec<f64> {
         let mut row = self.surface_heights(sim.system());
-        row.insert(1, row[0] - self.start);
+        row.insert(1, row[0] - self.height(sim.system()) - self.start);
         row
     }
 }

@@ -18,6 +18,7 @@ mod front;
 mod joint;
 mod line;
 mod motion;
+mod mounting;
 mod patch;
 mod points;
 mod pressure;
@@ -117,6 +118,14 @@ pub(crate) trait ProbeDefinition: Sized {
     /// Returns the file stem of a probe without a name. If it returns `None`, the stem is the key with a number.
     fn default_name(_config: &Self::Config) -> Option<String> {
         None
+    }
+
+    /// Whether the probe can go with a solid.
+    const MOUNTABLE: bool = false;
+
+    /// Lets the probe go with the solid called `on`, in whose frame its places are.
+    fn mount(&mut self, on: &str) {
+        let _ = on;
     }
 
     /// Returns the place of measurement, or `None` if the place is not fixed.
@@ -252,6 +261,9 @@ macro_rules! probe_kinds {
             /// Whether a reading is the time mean since the previous reading.
             #[serde(skip_serializing_if = "Option::is_none")]
             pub average: Option<bool>,
+            /// The solid that a gauge or a point goes with; places are in the frame of the solid then.
+            #[serde(skip_serializing_if = "Option::is_none")]
+            pub on: Option<String>,
             $(
                 $(#[$meta])*
                 #[serde(skip_serializing_if = "Option::is_none")]
@@ -300,6 +312,16 @@ macro_rules! probe_kinds {
                 None
             }
 
+            /// Whether a probe of the kind that is set can go with a solid.
+            fn is_mountable(&self) -> bool {
+                $($(
+                    if self.$key.is_some() {
+                        return $plan::MOUNTABLE;
+                    }
+                )?)*
+                false
+            }
+
             /// Returns the default file stem, from the object that the probe measures, if its kind has a default stem.
             fn default_name(&self) -> Option<String> {
                 $($(
@@ -330,6 +352,11 @@ macro_rules! probe_kinds {
             /// Name of the table of this kind in a report.
             pub fn label(&self) -> &'static str {
                 match self { $($(Self::$variant(_) => $plan::LABEL,)?)* }
+            }
+
+            /// Lets the probe go with a solid: see [`ProbeDefinition::mount`].
+            fn mount(&mut self, on: &str) {
+                match self { $($(Self::$variant(plan) => plan.mount(on),)?)* }
             }
 
             /// Returns the place of measurement: see [`ProbeDefinition::location`].
@@ -431,7 +458,11 @@ impl ProbeConfig {
     /// Returns the plan of the probe in a run that ends at `until` (s), or `None` if the probe writes a list.
     pub(crate) fn to_plan(&self, until: f64) -> Option<ProbePlan> {
         let (name, every) = (self.name.clone().unwrap_or_default(), self.every.unwrap_or(until));
-        self.kind().map(|kind| ProbePlan { name, kind, every, average: self.average.unwrap_or_default() })
+        let mut kind = self.kind()?;
+        if let Some(on) = &self.on {
+            kind.mount(on);
+        }
+        Some(ProbePlan { name, kind, every, average: self.average.unwrap_or_default() })
     }
 
     /// Returns the plan of the list of contacts, or `None` if the probe writes a series.
@@ -452,6 +483,15 @@ impl ProbeConfig {
             let what = format!("a probe looks at one thing; this one at {named}");
             let help = format!("one of {}; a [[probe]] section for each", KEYS.join(", "));
             return Err(scene.error_with_help(key, &what, &help));
+        }
+        if let Some(on) = &self.on {
+            let key = format!("{key}.on");
+            if !self.is_mountable() {
+                let what = format!("a probe of {} does not go with a solid", named[0]);
+                let help = "on  belongs to  elevation, velocity and pressure";
+                return Err(scene.error_with_help(&key, &what, help));
+            }
+            scene.require_solid(&key, on)?;
         }
         self.verify_kind(key, scene)?;
         contact_force::verify_list(self, key, scene)

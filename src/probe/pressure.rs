@@ -3,7 +3,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{PointsConfig, Probe, ProbeDefinition, ProbeLocation, ProbeRow, ProbeScope, interpolate, point};
+use super::{
+    PointsConfig, Probe, ProbeDefinition, ProbeLocation, ProbeRow, ProbeScope, interpolate, mounting::MountedPoint,
+};
 use crate::{error::Result, math::Vector, simulation::Simulation, system::System};
 
 /// Pressure at points.
@@ -12,33 +14,40 @@ use crate::{error::Result, math::Vector, simulation::Simulation, system::System}
 pub struct PressurePlan {
     /// The points, m.
     pub places: Vec<Vec<f64>>,
+    /// The solid that they go with, in whose frame they are.
+    pub on: Option<String>,
 }
 
 impl ProbeDefinition for PressurePlan {
     type Config = PointsConfig;
     const LABEL: &'static str = "pressure";
     const EXAMPLE: &'static str = "pressure = [0.75, 0.03]";
+    const MOUNTABLE: bool = true;
+
+    fn mount(&mut self, on: &str) {
+        self.on = Some(on.into());
+    }
 
     fn verify(config: &PointsConfig, key: &str, scene: &dyn ProbeScope) -> Result<()> {
         config.verify(key, scene)
     }
 
     fn from_config(config: &PointsConfig) -> Self {
-        Self { places: config.places() }
+        Self { places: config.places(), on: None }
     }
 
     fn location(&self) -> Option<ProbeLocation<'_>> {
-        Some(ProbeLocation::Points(&self.places))
+        self.on.is_none().then_some(ProbeLocation::Points(&self.places))
     }
 
-    fn build<const D: usize>(&self, _: &System<D>) -> Result<Box<dyn Probe<D>>> {
-        ProbeRow::at_places(&self.places, |at| Ok(Box::new(PressureProbe::new(at)?)))
+    fn build<const D: usize>(&self, system: &System<D>) -> Result<Box<dyn Probe<D>>> {
+        ProbeRow::at_places(&self.places, |at| Ok(Box::new(PressureProbe::mounted(system, at, self.on.as_deref())?)))
     }
 }
 
-/// Measures the pressure (Pa, relative to the air) at a fixed point. The pressure is 0 while the point is dry.
+/// Measures the pressure (Pa, relative to the air) at a point, which may go with a solid. The pressure is 0 while the point is dry.
 pub struct PressureProbe<const D: usize> {
-    at: Vector<D>,
+    at: MountedPoint<D>,
 }
 
 impl<const D: usize> PressureProbe<D> {
@@ -47,7 +56,19 @@ impl<const D: usize> PressureProbe<D> {
     /// # Errors
     /// `Usage` if the number of coordinates differs from `D` or a coordinate is not finite.
     pub fn new(at: &[f64]) -> Result<Self> {
-        Ok(Self { at: point(at, D)? })
+        Ok(Self { at: MountedPoint::in_world(at, D)? })
+    }
+
+    /// Creates the probe at the point `at` (m; `D` coordinates) in the frame of the solid called `solid`, with which it goes.
+    ///
+    /// # Errors
+    /// The errors of [`PressureProbe::new`]; `Scene` if there is no such solid.
+    pub fn on_solid(system: &System<D>, solid: &str, at: &[f64]) -> Result<Self> {
+        Self::mounted(system, at, Some(solid))
+    }
+
+    fn mounted(system: &System<D>, at: &[f64], on: Option<&str>) -> Result<Self> {
+        Ok(Self { at: MountedPoint::in_world(at, D)?.on(system, on)? })
     }
 }
 
@@ -57,7 +78,7 @@ impl<const D: usize> Probe<D> for PressureProbe<D> {
     }
 
     fn sample(&self, sim: &Simulation<D>) -> Vec<f64> {
-        vec![pressure(sim.system(), &self.at)]
+        vec![pressure(sim.system(), &self.at.position(sim.system()))]
     }
 }
 

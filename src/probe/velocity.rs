@@ -2,7 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{PointsConfig, Probe, ProbeDefinition, ProbeLocation, ProbeRow, ProbeScope, axes, interpolate, point};
+use super::{
+    PointsConfig, Probe, ProbeDefinition, ProbeLocation, ProbeRow, ProbeScope, axes, interpolate,
+    mounting::MountedPoint,
+};
 use crate::{error::Result, math::Vector, simulation::Simulation, system::System};
 
 /// Velocity of the water at points.
@@ -11,33 +14,41 @@ use crate::{error::Result, math::Vector, simulation::Simulation, system::System}
 pub struct VelocityPlan {
     /// The points, m.
     pub places: Vec<Vec<f64>>,
+    /// The solid that they go with, in whose frame they are.
+    pub on: Option<String>,
 }
 
 impl ProbeDefinition for VelocityPlan {
     type Config = PointsConfig;
     const LABEL: &'static str = "velocity of the water";
     const EXAMPLE: &'static str = "velocity = [0.75, 0.03]";
+    const MOUNTABLE: bool = true;
+
+    fn mount(&mut self, on: &str) {
+        self.on = Some(on.into());
+    }
 
     fn verify(config: &PointsConfig, key: &str, scene: &dyn ProbeScope) -> Result<()> {
         config.verify(key, scene)
     }
 
     fn from_config(config: &PointsConfig) -> Self {
-        Self { places: config.places() }
+        Self { places: config.places(), on: None }
     }
 
     fn location(&self) -> Option<ProbeLocation<'_>> {
-        Some(ProbeLocation::Points(&self.places))
+        self.on.is_none().then_some(ProbeLocation::Points(&self.places))
     }
 
-    fn build<const D: usize>(&self, _: &System<D>) -> Result<Box<dyn Probe<D>>> {
-        ProbeRow::at_places(&self.places, |at| Ok(Box::new(VelocityProbe::new(at)?)))
+    fn build<const D: usize>(&self, system: &System<D>) -> Result<Box<dyn Probe<D>>> {
+        ProbeRow::at_places(&self.places, |at| Ok(Box::new(VelocityProbe::mounted(system, at, self.on.as_deref())?)))
     }
 }
 
-/// Measures the velocity (m/s) of the water at a fixed point. The velocity is NaN while the point is dry.
+/// Measures the velocity (m/s) of the water at a point. The velocity is NaN while the point is dry. At a point of a solid it is
+/// relative to the point, along the axes of the solid.
 pub struct VelocityProbe<const D: usize> {
-    at: Vector<D>,
+    at: MountedPoint<D>,
 }
 
 impl<const D: usize> VelocityProbe<D> {
@@ -46,7 +57,19 @@ impl<const D: usize> VelocityProbe<D> {
     /// # Errors
     /// `Usage` if the number of coordinates differs from `D` or a coordinate is not finite.
     pub fn new(at: &[f64]) -> Result<Self> {
-        Ok(Self { at: point(at, D)? })
+        Ok(Self { at: MountedPoint::in_world(at, D)? })
+    }
+
+    /// Creates the probe at the point `at` (m; `D` coordinates) in the frame of the solid called `solid`, with which it goes.
+    ///
+    /// # Errors
+    /// The errors of [`VelocityProbe::new`]; `Scene` if there is no such solid.
+    pub fn on_solid(system: &System<D>, solid: &str, at: &[f64]) -> Result<Self> {
+        Self::mounted(system, at, Some(solid))
+    }
+
+    fn mounted(system: &System<D>, at: &[f64], on: Option<&str>) -> Result<Self> {
+        Ok(Self { at: MountedPoint::in_world(at, D)?.on(system, on)? })
     }
 }
 
@@ -56,8 +79,13 @@ impl<const D: usize> Probe<D> for VelocityProbe<D> {
     }
 
     fn sample(&self, sim: &Simulation<D>) -> Vec<f64> {
-        let v = sim.system().fluid().v;
-        let mean = interpolate(sim.system(), &self.at, |b, _| -> [f64; D] { v[b].into() });
-        mean.unwrap_or([f64::NAN; D]).to_vec()
+        let (system, v) = (sim.system(), sim.system().fluid().v);
+        let mean = interpolate(system, &self.at.position(system), |b, _| -> [f64; D] { v[b].into() });
+        if !self.at.is_mounted() {
+            return mean.unwrap_or([f64::NAN; D]).to_vec();
+        }
+        let (velocity, axes) = self.at.velocity_and_axes(system);
+        let relative = axes.transpose() * (Vector::from(mean.unwrap_or([f64::NAN; D])) - velocity);
+        relative.iter().copied().collect()
     }
 }

@@ -163,6 +163,7 @@ impl<const D: usize> Runner<D> {
                 self.rollback_positions.push((self.sim.time(), self.outputs.positions()));
             }
             let (clock, passes, rescued) = (Instant::now(), self.sim.force_passes(), self.sim.rollbacks().len());
+            let known_events = self.sim.events().len();
             let stepped = self.sim.step_to(until);
             self.checkpoint.stepping_seconds += clock.elapsed().as_secs_f64();
             // Dry boundary particles are not updated and are not counted.
@@ -171,6 +172,7 @@ impl<const D: usize> Runner<D> {
             self.checkpoint.particle_steps += moved as u64 * self.sim.force_passes().saturating_sub(passes);
             stepped?;
             self.follow_rollback(rescued, watch)?;
+            self.sim.events().iter().skip(known_events).for_each(|event| watch.event(event));
             let mut written = self.outputs.write_due(&self.sim)?;
             // The clock on the wall decides when the state is kept, never what it is.
             written.checkpoint |= self.last_checkpoint.0.elapsed().as_secs_f64() >= self.last_checkpoint.1;
@@ -283,6 +285,7 @@ impl<const D: usize> Runner<D> {
     fn update_manifest(&mut self) {
         let now = self.progress();
         self.manifest.removed = self.sim.removed_particles().len();
+        self.manifest.events = self.sim.events().iter().map(ToString::to_string).collect();
         self.manifest.steps = now.steps;
         self.manifest.simulated_s = now.time;
         self.manifest.wall_s = now.wall;
@@ -361,6 +364,7 @@ fn initial_manifest<const D: usize>(sim: &Simulation<D>, plan: &Plan, checkpoint
         fault: None,
         warnings: vec![],
         notes: vec![],
+        events: vec![],
         machine: Machine::current(),
         set: checkpoint.overrides.iter().cloned().collect(),
         values: vec![],

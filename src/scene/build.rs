@@ -6,6 +6,7 @@ use super::{
     context::{Context, FileNote},
     section::{
         analysis::ProbeSeries,
+        gravity,
         model::require_depth,
         shape::{vector, world_bounds},
         solid::{SolidConfig, require_solid},
@@ -23,7 +24,7 @@ use crate::{
     plan::Plan,
     simulation::Setup,
     solid::{
-        Constraints, InitialHold, Role, SolidSpec,
+        Constraints, InitialHold, Role, SolidSpec, TimedRemoval,
         constraint::links::{check_force, check_rope, check_spring},
     },
     system::periodic,
@@ -104,7 +105,7 @@ impl Scene {
         let mut placed = placed_solids::<D>(&scene, ctx, &water, true)?;
         let solids = &placed.specs;
         self.require_plausible_units(ctx, &water, solids)?;
-        let constraints = scene.constraints(ctx, solids)?;
+        let constraints = scene.constraints(ctx, solids, still.level)?;
         let domain = scene.domain.as_ref().map(|d| Bounds { min: vector(&d.min), max: vector(&d.max) });
         if let Some(domain) = &domain {
             require_inside_domain(ctx, domain, &water, solids)?;
@@ -159,8 +160,11 @@ impl Scene {
             placed.specs[i].dry.get_or_insert(false);
         });
         let solids = placed.specs;
+        let gravity_law =
+            scene.gravity.as_ref().map(|config| gravity::build(ctx, config)).transpose()?.unwrap_or_default();
         let setup = Setup {
             model,
+            gravity_law,
             water: filled.r,
             surface_levels: levels,
             velocity,
@@ -260,8 +264,14 @@ impl Scene {
         self.water.iter().enumerate().map(body).collect()
     }
 
-    /// Returns the joints, force elements and contact rules of `solids`, which must be in the order of the scene.
-    pub(super) fn constraints<const D: usize>(&self, ctx: &Context, solids: &[SolidSpec<D>]) -> Result<Constraints<D>> {
+    /// Returns the joints, force elements and contact rules of `solids`, which must be in the order of the scene, over still water at
+    /// the height `level` (m).
+    pub(super) fn constraints<const D: usize>(
+        &self,
+        ctx: &Context,
+        solids: &[SolidSpec<D>],
+        level: f64,
+    ) -> Result<Constraints<D>> {
         let number = |name: &String| self.solid.iter().position(|solid| solid.name == *name);
         let mut constraints = Constraints::default();
         for (i, joint) in self.joint.iter().enumerate() {
@@ -271,7 +281,7 @@ impl Scene {
                 [one] => [None, number(one)],
                 two => [0, 1].map(|k| two.get(k).and_then(number)),
             };
-            constraints.joints.push(joint.build(ctx, &key, between)?);
+            constraints.joints.push(joint.build(ctx, &key, between, &self.solid)?);
             constraints.check_joint(i, solids).map_err(|e| ctx.with_location(e, &key))?;
         }
         for (i, spring) in self.spring.iter().enumerate() {
@@ -286,14 +296,19 @@ impl Scene {
         }
         for (i, force) in self.force.iter().enumerate() {
             let key = format!("force.{i}");
-            let force = force.build(ctx, &key, number(&force.on).unwrap_or_default())?;
+            let force = force.build(ctx, &key, &self.solid)?;
             check_force(&force, solids).map_err(|e| ctx.with_location(e, &key))?;
             constraints.forces.push(force);
+        }
+        for (i, wind) in self.wind.iter().enumerate() {
+            constraints.winds.push(wind.build(ctx, &format!("wind.{i}"), &self.solid, solids, level)?);
         }
         constraints.contacts = self.contact.iter().flat_map(|contact| contact.build(&self.solid)).collect();
         let hold =
             |(solid, body): (usize, &SolidConfig)| Some(InitialHold { solid, until: body.free.as_ref()?.release? });
         constraints.holds = self.solid.iter().enumerate().filter_map(hold).collect();
+        let removal = |(solid, body): (usize, &SolidConfig)| Some(TimedRemoval { solid, at: body.until? });
+        constraints.removals = self.solid.iter().enumerate().filter_map(removal).collect();
         Ok(constraints)
     }
 

@@ -5,11 +5,13 @@ use std::{cell::RefCell, collections::BTreeMap, path::Path};
 
 use super::{
     diagnostics,
+    section::gravity::GravityValues,
     toml_source::{SceneSource, ValueSource},
 };
 use crate::error::{Error, ErrorCode, Result};
 
 /// The properties of a scene that its sections use.
+#[derive(Clone)]
 pub(crate) struct Context<'a> {
     pub(super) origin: &'a SceneSource,
     /// 2 or 3.
@@ -21,7 +23,7 @@ pub(crate) struct Context<'a> {
     /// Simulated time at the end, s.
     pub(crate) until: f64,
     /// Acceleration of gravity, m/s²; `None` if the scene does not give it.
-    pub(crate) gravity: Option<&'a [f64]>,
+    pub(crate) gravity: Option<GravityValues>,
     /// Reference density, kg/m³; `None` if the scene does not give it.
     pub(crate) rho0: Option<f64>,
     /// Notes about the files that were read with this context.
@@ -84,12 +86,12 @@ impl Context<'_> {
 
     /// Returns whether gravity acts.
     pub(crate) fn has_gravity(&self) -> bool {
-        self.gravity.into_iter().flatten().any(|g| *g != 0.0)
+        self.gravity_norm() != 0.0
     }
 
-    /// Returns `|g|`, m/s².
+    /// Returns `|g|`, m/s², or its largest value during the run if gravity changes.
     pub(crate) fn gravity_norm(&self) -> f64 {
-        self.gravity.into_iter().flatten().map(|g| g * g).sum::<f64>().sqrt()
+        self.gravity.as_ref().map_or(0.0, |gravity| gravity.strongest)
     }
 
     /// Returns `error` with the location of `key` in the scene.

@@ -32,8 +32,10 @@ mod section {
     pub(crate) mod contact;
     pub(crate) mod domain;
     pub(crate) mod force_element;
+    pub(crate) mod gravity;
     pub(crate) mod joint;
     pub(crate) mod meshed_shape;
+    pub(crate) mod lifetime;
     pub(crate) mod model;
     pub(crate) mod motion;
     pub(crate) mod outline;
@@ -44,6 +46,7 @@ mod section {
     pub(crate) mod water;
     pub(crate) mod wave;
     pub(crate) mod wavemaker;
+    pub(crate) mod wind;
 }
 
 use std::{
@@ -75,6 +78,7 @@ pub use {
     section::sponge_layer::SpongeLayerConfig,
     section::water::WaterConfig,
     section::wave::WaveConfig,
+    section::wind::WindConfig,
     untagged::TimeValueConfig,
 };
 // Parts of the configuration that the constructors of the types above fill in.
@@ -90,6 +94,7 @@ pub use {
     section::domain::{GuardConfig, PeriodicConfig},
     section::force_element::ForceFrame,
     section::joint::LimitsConfig,
+    section::lifetime::StrengthConfig,
     section::meshed_shape::{ConeConfig, EllipsoidConfig, FrustumConfig, PrismConfig, TorusConfig, WedgeConfig},
     section::model::TimeSteppingConfig,
     section::output::{CheckpointConfig, FramesConfig},
@@ -120,8 +125,8 @@ pub struct Scene {
     pub dp: f64,
     /// Simulated time at which the run ends, s.
     pub until: f64,
-    /// Acceleration of gravity, m/s².
-    pub gravity: Option<Vec<f64>>,
+    /// Acceleration of gravity, m/s²: a vector, or a number downwards; of numbers, formulas in t (s) or tables.
+    pub gravity: Option<TimeVectorConfig>,
     /// Largest random offset of a water particle from its lattice point at the start, in each direction, over dp.
     pub jitter: Option<f64>,
     /// Box that water and moving solids must not leave.
@@ -151,6 +156,9 @@ pub struct Scene {
     /// Prescribed forces.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub force: Vec<ForceConfig>,
+    /// Winds on the dry part of solids.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub wind: Vec<WindConfig>,
     /// Rules for pairs of solids that touch.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub contact: Vec<ContactConfig>,

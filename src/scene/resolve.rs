@@ -8,6 +8,7 @@ use super::{
     section::{
         analysis::{self, ProbeSeries},
         contact,
+        gravity::{self, GravityValues},
         joint::verify_names,
         solid,
     },
@@ -42,16 +43,18 @@ macro_rules! names {
 impl Scene {
     /// Returns the properties of the scene that the validation and construction of its sections use.
     pub(super) fn context(&self) -> Context<'_> {
-        Context {
+        let mut ctx = Context {
             origin: &self.origin,
             dimension: self.dimension,
             dp: self.dp,
             h: self.model.smoothing_length(self.dimension, self.dp),
             until: self.until,
-            gravity: self.gravity.as_deref(),
+            gravity: None,
             rho0: self.model.rho0,
             file_notes: RefCell::default(),
-        }
+        };
+        ctx.gravity = self.gravity.as_ref().map(|config| GravityValues::of(&ctx, config));
+        ctx
     }
 
     /// Refuses an invalid scene without opening files.
@@ -63,7 +66,7 @@ impl Scene {
         ctx.require_positive("dp", Some(self.dp))?;
         ctx.require_positive("until", Some(self.until))?;
         if let Some(gravity) = &self.gravity {
-            ctx.require_dimension("gravity", gravity)?;
+            gravity::verify(ctx, gravity)?;
         }
         if let Some(jitter) = self.jitter.filter(|s| !(0.0..=0.1).contains(s)) {
             return Err(ctx.error_at("jitter", format!("particles start 0 to 0.1 dp off their places, not {jitter}")));
@@ -85,6 +88,7 @@ impl Scene {
         each(&self.joint, "joint", |joint, key| joint.verify(ctx, key, solids))?;
         each(&self.spring, "spring", |spring, key| spring.verify(ctx, key, solids))?;
         each(&self.rope, "rope", |rope, key| rope.verify(ctx, key, solids))?;
+        each(&self.wind, "wind", |wind, key| wind.verify(ctx, key, solids))?;
         each(&self.force, "force", |force, key| force.verify(ctx, key, solids))?;
         contact::verify(ctx, &self.contact, solids)?;
         self.model.verify(ctx)?;
@@ -100,7 +104,7 @@ impl Scene {
     /// Returns the values of water that the scene does not name.
     fn usual_model(&self) -> Model {
         let usual = Model::water(self.dimension, self.dp, 1.0);
-        let weightless = self.gravity.as_ref().is_some_and(|g| g.iter().all(|g| *g == 0.0));
+        let weightless = self.context().gravity.is_some_and(|gravity| gravity.strongest == 0.0);
         if weightless || self.solid.iter().all(|solid| solid.free.is_none()) {
             return usual;
         }
@@ -122,7 +126,10 @@ impl Scene {
         scene.model.fill_smoothing(fills, &usual);
         let ctx = &Context { h: scene.model.smoothing_length(self.dimension, self.dp), ..self.context() };
         fills.fill("title", &mut scene.title, "untitled".into(), "the scene has no title");
-        fills.fill("gravity", &mut scene.gravity, usual.gravity.clone(), "the earth's, down the last axis");
+        fills.fill("gravity", &mut scene.gravity, usual.gravity.clone().into(), "the earth's, down the last axis");
+        for value in scene.gravity.iter_mut().flat_map(|gravity| gravity.components_mut()) {
+            value.0.fill(fills, "gravity");
+        }
         scene.model.fill(ctx, fills, &usual);
         scene.time.fill(fills, &usual);
         scene.guard.get_or_insert_default().fill(fills);
@@ -145,6 +152,9 @@ impl Scene {
         }
         for (i, rope) in scene.rope.iter_mut().enumerate() {
             rope.fill(fills, &format!("rope.{i}"));
+        }
+        for (i, wind) in scene.wind.iter_mut().enumerate() {
+            wind.fill(fills, &format!("wind.{i}"));
         }
         for (i, force) in scene.force.iter_mut().enumerate() {
             force.fill(fills, &format!("force.{i}"));
@@ -261,7 +271,7 @@ impl Scene {
 }
 
 /// The order in which values are listed.
-const ORDER: [&str; 24] = [
+const ORDER: [&str; 25] = [
     "title",
     "dimension",
     "dp",
@@ -278,6 +288,7 @@ const ORDER: [&str; 24] = [
     "spring",
     "rope",
     "force",
+    "wind",
     "contact",
     "model",
     "time",

@@ -409,6 +409,11 @@ impl TimeVectorConfig {
         Self(TimeVectorForm::Many(components.into_iter().collect()))
     }
 
+    /// Whether it is written as a list.
+    pub(crate) fn is_list(&self) -> bool {
+        matches!(self.0, TimeVectorForm::Many(_))
+    }
+
     /// The components.
     pub(crate) fn components(&self) -> &[TimeValueConfig] {
         match &self.0 {
@@ -423,6 +428,13 @@ impl TimeVectorConfig {
             TimeVectorForm::One(one) => std::slice::from_mut(one),
             TimeVectorForm::Many(many) => many,
         }
+    }
+}
+
+/// Constant components.
+impl From<Vec<f64>> for TimeVectorConfig {
+    fn from(components: Vec<f64>) -> Self {
+        Self::new(components.into_iter().map(TimeValueConfig::from))
     }
 }
 

@@ -60,37 +60,6 @@ where
         Ok(AddedSolid { solid, displaced })
     }
 
-    /// Takes solid number `solid` out between two steps; the water closes over its place. It keeps its number and its name, stands
-    /// where it was, and has neither skin nor load any more. What the water had yet to give to it stays in the water.
-    ///
-    /// # Errors
-    /// `Usage` if there is no such solid, or something is tied to it: says what.
-    pub fn remove_solid(&mut self, solid: usize) -> Result<()> {
-        let Some(there) = self.system.solids().get(solid) else {
-            let last = self.system.solids().len();
-            return Err(Error::new(ErrorKind::Usage, format!("there is no solid number {solid}")).help(format!(
-                "they are numbered from 0, and there are {last}; find_solid tells the number of a name"
-            )));
-        };
-        if let Some(tie) = self.system.constraints().constraint_on(solid) {
-            return Err(Error::new(ErrorKind::Usage, format!("{tie} is tied to solid {:?}", there.spec.name))
-                .help("only what nothing is tied to can be removed"));
-        }
-        if there.boundary.is_empty() {
-            return Ok(());
-        }
-        let pending = self.bodies.pending_impulse(solid);
-        let energy = self.system.return_impulse(solid, &pending).map_or(0.0, |transfer| transfer.energy);
-        if let Some(accounting) = &mut self.bodies.accounting {
-            accounting.add_returned(energy);
-            accounting.add_solid_energy(-self.system.solids()[solid].energy(&self.system.gravity()));
-        }
-        self.delete_solid(solid);
-        let reordering = self.system.rebuild_neighbours();
-        self.finish_change(reordering);
-        Ok(())
-    }
-
     /// As [`Simulation::restore`], in a simulation made from the same setup, of a state to whose simulation the solids `added` had
     /// been added, in this order.
     ///
@@ -163,6 +132,62 @@ where
         let last = self.system.solids().len() - 1;
         self.bodies.add_body(AcousticAddedMass::for_solid(&mut self.system, last), start);
         Ok(())
+    }
+}
+
+impl<const D: usize> Simulation<D> {
+    /// Takes solid number `solid` out between two steps; the water closes over its place. It keeps its number and its name, stands
+    /// where it was, and has neither skin nor load any more. What the water had yet to give to it stays in the water.
+    ///
+    /// # Errors
+    /// `Usage` if there is no such solid, or something is tied to it: says what.
+    pub fn remove_solid(&mut self, solid: usize) -> Result<()> {
+        let Some(there) = self.system.solids().get(solid) else {
+            let last = self.system.solids().len();
+            return Err(Error::new(ErrorKind::Usage, format!("there is no solid number {solid}")).help(format!(
+                "they are numbered from 0, and there are {last}; find_solid tells the number of a name"
+            )));
+        };
+        if let Some(tie) = self.system.constraints().constraint_on(solid, self.clock.time) {
+            return Err(Error::new(ErrorKind::Usage, format!("{tie} is tied to solid {:?}", there.spec.name))
+                .help("only what nothing is tied to can be removed"));
+        }
+        if there.boundary.is_empty() {
+            return Ok(());
+        }
+        let pending = self.bodies.pending_impulse(solid);
+        let energy = self.system.return_impulse(solid, &pending).map_or(0.0, |transfer| transfer.energy);
+        if let Some(accounting) = &mut self.bodies.accounting {
+            accounting.add_returned(energy);
+            accounting.add_solid_energy(-self.system.solids()[solid].energy(&self.system.gravity()));
+        }
+        self.delete_solid(solid);
+        let reordering = self.system.rebuild_neighbours();
+        self.finish_change(reordering);
+        Ok(())
+    }
+
+    /// Removes the solids whose time is over.
+    pub(super) fn remove_due(&mut self) -> Result<()> {
+        let due: Vec<usize> = self.bodies.constraints().due_removals(self.clock.time).collect();
+        for solid in due {
+            if !self.system.solids()[solid].boundary.is_empty() {
+                self.remove_solid(solid)?;
+                let name = self.system.solids()[solid].spec.name.clone();
+                self.bodies.constraints_mut().record_removal(&name, self.clock.time);
+            }
+        }
+        Ok(())
+    }
+
+    /// Removes those of `solids` whose removal is part of the set-up, before the state after it is restored.
+    pub(super) fn remove_planned(&mut self, solids: &[u32]) {
+        for solid in solids.iter().map(|solid| *solid as usize) {
+            let there = self.system.solids().get(solid).is_some_and(|solid| !solid.boundary.is_empty());
+            if there && self.bodies.constraints().plans_removal(solid) {
+                self.delete_solid(solid);
+            }
+        }
     }
 
     /// Takes a solid out of water and world.

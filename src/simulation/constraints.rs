@@ -3,7 +3,7 @@
 use super::Simulation;
 use crate::{
     error::{Error, ErrorCode, Result, nearest_name},
-    solid::{JointReading, JointSpec, LineReading, MotorCommand, SpringParameters},
+    solid::{ConstraintEvent, JointReading, JointSpec, LineReading, MotorCommand, SpringParameters},
 };
 
 impl<const D: usize> Simulation<D> {
@@ -21,6 +21,11 @@ impl<const D: usize> Simulation<D> {
     /// As [`Simulation::find_joint`].
     pub fn find_spring(&self, name: &str) -> Result<usize> {
         find_by_name("spring", name, self.system.constraints().springs.iter().map(|spring| spring.name.as_str()))
+    }
+
+    /// Beginnings and ends of joints, springs, ropes and solids so far, in their order.
+    pub fn events(&self) -> &[ConstraintEvent] {
+        self.bodies.constraints().events()
     }
 
     /// The longest step (s) that springs and the stiffness of motors allow now; infinite if there are none.

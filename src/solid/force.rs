@@ -2,7 +2,7 @@
 
 use crate::{
     math::{Bivector, Vector},
-    solid::{Kinematics, Load, TimeFunction},
+    solid::{Kinematics, Lifetime, Load, TimeFunction},
 };
 
 /// A force and a torque on a solid, after laws of time.
@@ -29,12 +29,22 @@ pub struct ForceSpec<const D: usize> {
     pub torque: Vec<TimeFunction>,
     /// Whether the axes, the world's at the start, turn with the solid.
     pub rotates_with_solid: bool,
+    /// When it acts; it does not break.
+    pub lifetime: Lifetime,
 }
 
 impl<const D: usize> ForceSpec<D> {
     /// Neither force nor torque, on the centre of mass of solid number `solid`, along the axes of the world.
     pub fn new(name: impl Into<String>, solid: usize) -> Self {
-        Self { name: name.into(), solid, at: None, force: Vec::new(), torque: Vec::new(), rotates_with_solid: false }
+        Self {
+            name: name.into(),
+            solid,
+            at: None,
+            force: Vec::new(),
+            torque: Vec::new(),
+            rotates_with_solid: false,
+            lifetime: Lifetime::default(),
+        }
     }
 
     /// The same load with a force, one component along each axis, N (N/m in 2-D).
@@ -74,8 +84,16 @@ impl<const D: usize> ForceSpec<D> {
         ))
     }
 
+    /// The same load with this lifetime.
+    pub fn lifetime(self, lifetime: Lifetime) -> Self {
+        Self { lifetime, ..self }
+    }
+
     /// The load about the centre of the solid, which started as `start` and is now as `now`, at time `t` (s).
     pub(super) fn load_at(&self, start: &Kinematics<D>, now: &Kinematics<D>, t: f64) -> Load<D> {
+        if !self.lifetime.contains(t) {
+            return Load::zero();
+        }
         let value = |laws: &[TimeFunction], i: usize| laws.get(i).map_or(0.0, |law| law.value_and_rate(t).0);
         let mut force = Vector::from_fn(|i, _| value(&self.force, i));
         let turns: Vec<f64> = (0..self.torque.len()).map(|i| value(&self.torque, i)).collect();

@@ -11,13 +11,15 @@ pub(crate) mod prescribed_motion;
 pub(crate) mod rapier;
 pub(crate) mod statics;
 pub(crate) mod tie_loads;
+pub(crate) mod wind;
 #[cfg(all(test, feature = "dim2", feature = "dim3"))]
 #[path = "../../tests/unit/solid/engine.rs"]
 mod tests;
 
 pub use constraint::{
-    Constraints, ContactPairs, ContactSpec, FreeMode, InitialHold, JointKind, JointReading, JointSpec, LineEnd,
-    LineReading, Mobility, Motor, MotorCommand, RopeSpec, SpringParameters, SpringSpec,
+    ConstraintChange, ConstraintEvent, Constraints, ContactPairs, ContactSpec, FreeMode, InitialHold, JointKind,
+    JointReading, JointSpec, Lifetime, LineEnd, LineReading, Mobility, Motor, MotorCommand, RopeSpec, SpringParameters,
+    SpringSpec, TimedRemoval,
 };
 pub use force::ForceSpec;
 pub use load::Load;
@@ -30,6 +32,8 @@ pub use rapier::rapier2d;
 pub use rapier::rapier3d;
 #[doc(hidden)]
 pub use rapier::{Dim, Engine, EngineFault, HasEngine};
+pub(crate) use wind::AIR_DENSITY;
+pub use wind::WindSpec;
 
 use std::ops::Range;
 

@@ -185,6 +185,8 @@ pub trait Term<const D: usize>: Copy + Send + Sync {
     /// Whether `vector` is used.
     const VECTOR: bool = Self::STRESS || Self::GRADIENT_CORRECTION;
 
+    /// Takes the acceleration of gravity of the next pass, in the units of the pair loop.
+    fn set_gravity(&mut self, _gravity: &[f64; D]) {}
     /// Share along r_ab, m²/s²; symmetric under the swap of a and b.
     #[inline(always)]
     fn along_r<N: Num>(&self, _ab: &Pair<N, D>, sum: N) -> N {
@@ -230,6 +232,9 @@ macro_rules! tuple_of_terms {
             const RENORMALIZATION: bool = $($name::RENORMALIZATION)|+;
             const SHIFT: bool = $($name::SHIFT)|+;
             const SHIFTING_SUPPRESSION: bool = $($name::SHIFTING_SUPPRESSION)|+;
+            fn set_gravity(&mut self, gravity: &[f64; D]) {
+                $(self.$index.set_gravity(gravity);)+
+            }
             #[inline(always)]
             fn along_r<N: Num>(&self, ab: &Pair<N, D>, sum: N) -> N {
                 $(let sum = self.$index.along_r(ab, sum);)+

@@ -37,7 +37,7 @@ use crate::{
     model::Model,
     neighbours::{CHUNK, NeighbourLists},
     particles::PARTICLES_PER_TASK,
-    solid::{Constraints, Load, Solid},
+    solid::{Constraints, Load, Solid, TimeFunction},
     sph::{AuxiliarySums, FluidProperties, equation_of_state::EquationOfState, gradient_correction},
 };
 
@@ -52,6 +52,8 @@ pub struct System<const D: usize> {
     pub(crate) boundary: Boundary<D>,
     pub(crate) solids: Vec<Solid<D>>,
     constraints: Constraints<D>,
+    /// Components of gravity as functions of time, m/s²; empty if it is constant.
+    gravity_law: Vec<TimeFunction>,
     fluid_domain: FluidDomain<D>,
     pub(crate) rates: Rates<D>,
     pub(crate) status: Status,
@@ -117,7 +119,8 @@ impl<const D: usize> System<D> {
     /// Places the water of `setup` in hydrostatic balance below its levels, and the solids with their boundary particles.
     pub(crate) fn new(setup: Setup<D>, pair_loop: Box<dyn PairLoop<D>>) -> Result<Self> {
         let Setup {
-            model,
+            mut model,
+            gravity_law,
             water,
             surface_levels,
             velocity,
@@ -129,6 +132,9 @@ impl<const D: usize> System<D> {
             limits,
             sponge_layers,
         } = setup;
+        if !gravity_law.is_empty() {
+            model.gravity = setup::gravity_at::<D>(&gravity_law, 0.0).iter().copied().collect();
+        }
         if let Some(what) = model.conflict() {
             return Err(Error::scene(what));
         }
@@ -164,6 +170,7 @@ impl<const D: usize> System<D> {
             fluid,
             solids: Vec::new(),
             constraints,
+            gravity_law,
             fluid_domain: region,
             status: Status {
                 step_limits: StepLimits { acceleration: 0.0, approach_rate: 0.0 },
@@ -339,6 +346,18 @@ impl<const D: usize> System<D> {
             parts.into_iter().sum()
         };
         self.solids.iter().map(of).collect()
+    }
+
+    /// Sets gravity to that of time `t` (s). Returns its change (m/s²); `None` if gravity is constant.
+    pub(crate) fn set_gravity_at(&mut self, t: f64) -> Option<Vector<D>> {
+        if self.gravity_law.is_empty() {
+            return None;
+        }
+        let gravity = setup::gravity_at(&self.gravity_law, t);
+        let change = gravity - self.properties.gravity;
+        self.properties.gravity = gravity;
+        self.pair_loop.set_gravity(&self.properties);
+        Some(change)
     }
 
     /// The largest values that limit the next step.

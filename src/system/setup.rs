@@ -10,7 +10,10 @@ use crate::{
     geometry::{Shape, WaterRegion, fill_around},
     math::{Bounds, Pose, Vector},
     model::Model,
-    solid::{Constraints, ContactSpec, ForceSpec, InitialHold, JointSpec, Role, RopeSpec, SolidSpec, SpringSpec},
+    solid::{
+        Constraints, ContactSpec, ForceSpec, InitialHold, JointSpec, Role, RopeSpec, SolidSpec, SpringSpec,
+        TimeFunction,
+    },
 };
 
 /// What a simulation starts from.
@@ -32,6 +35,8 @@ use crate::{
 pub struct Setup<const D: usize> {
     /// The model.
     pub model: Model,
+    /// Components of gravity as functions of time, m/s², in place of the model's; empty if it is constant.
+    pub gravity_law: Vec<TimeFunction>,
     /// Places of the water particles, m.
     pub water: Vec<Vector<D>>,
     /// Height of the still surface above each of them, m.
@@ -59,6 +64,7 @@ impl<const D: usize> Setup<D> {
     pub fn new(model: Model) -> Self {
         Self {
             model,
+            gravity_law: Vec::new(),
             water: Vec::new(),
             surface_levels: Vec::new(),
             velocity: Vec::new(),
@@ -70,6 +76,12 @@ impl<const D: usize> Setup<D> {
             limits: ParticleLimits::default(),
             sponge_layers: Vec::new(),
         }
+    }
+
+    /// The same setup with gravity by these functions of time (m/s²), one along each axis. Water starts at rest under gravity of
+    /// time 0.
+    pub fn gravity_law<F: Into<TimeFunction>>(self, law: impl IntoIterator<Item = F>) -> Self {
+        Self { gravity_law: law.into_iter().map(Into::into).collect(), ..self }
     }
 
     /// The same setup with more water particles at rest at `places` (m), below a still surface at the height `level` (m).
@@ -188,6 +200,14 @@ impl<const D: usize> Setup<D> {
         self
     }
 
+    /// Acceleration of gravity at the start, m/s².
+    pub(crate) fn initial_gravity(&self) -> Vector<D> {
+        match self.gravity_law.is_empty() {
+            true => self.model.fluid_properties::<D>().gravity,
+            false => gravity_at(&self.gravity_law, 0.0),
+        }
+    }
+
     /// Refuses a setup whose constants have no meaning.
     pub(crate) fn check(&self) -> Result<()> {
         let m = &self.model;
@@ -213,6 +233,10 @@ impl<const D: usize> Setup<D> {
         if m.gravity.len() != D || m.gravity.iter().any(|g| !g.is_finite()) {
             return Err(Error::scene(format!("gravity needs {D} finite components")));
         }
+        let law = &self.gravity_law;
+        if !(law.is_empty() || law.len() == D && law.iter().all(|law| law.value_and_rate(0.0).0.is_finite())) {
+            return Err(Error::scene(format!("gravity by functions of time needs {D} components, finite at t = 0")));
+        }
         if self.surface_levels.len() != self.water.len() {
             return Err(Error::scene("every water particle needs the level of its surface"));
         }
@@ -227,4 +251,9 @@ impl<const D: usize> Setup<D> {
         self.constraints.check(&self.solids)?;
         periodic::check(&self.periodic, m, &self.solids)
     }
+}
+
+/// The acceleration of gravity (m/s²) by the components of `law` at time `t` (s).
+pub(super) fn gravity_at<const D: usize>(law: &[TimeFunction], t: f64) -> Vector<D> {
+    Vector::from_fn(|i, _| law.get(i).map_or(0.0, |component| component.value_and_rate(t).0))
 }

@@ -138,7 +138,12 @@ impl<const D: usize> System<D> {
 
     /// Acceleration of gravity (m/s²) along the axes that have a height: those that are not periodic.
     pub(crate) fn non_periodic_gravity(&self) -> Vector<D> {
-        Vector::from_fn(|i, _| if self.fluid.images.periodic[i].is_some() { 0.0 } else { self.properties.gravity[i] })
+        self.non_periodic(&self.properties.gravity)
+    }
+
+    /// The components of a vector along the axes that are not periodic.
+    pub(crate) fn non_periodic(&self, x: &Vector<D>) -> Vector<D> {
+        Vector::from_fn(|i, _| if self.fluid.images.periodic[i].is_some() { 0.0 } else { x[i] })
     }
 
     /// Power of gravity on the water along periodic axes, Σ m g·v, W (W/m in 2-D).

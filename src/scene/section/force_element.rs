@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     joint::verify_ends,
+    lifetime::{Element, LifetimeConfig, StrengthConfig},
     shape::vector,
     solid::{SolidConfig, require_solid},
 };
@@ -38,6 +39,12 @@ pub struct SpringConfig {
     pub length: Option<f64>,
     /// Whether it bears tension only.
     pub tension_only: Option<bool>,
+    /// Time from which it acts, s.
+    pub since: Option<f64>,
+    /// Time at which it ends, s.
+    pub until: Option<f64>,
+    /// Load under which it breaks, N or N m: of a line its tension, of a joint force or torque.
+    pub breaks: Option<StrengthConfig>,
 }
 
 /// A section `[[rope]]`: an inextensible line that bears tension only.
@@ -55,6 +62,12 @@ pub struct RopeConfig {
     pub to: Vec<f64>,
     /// Its length, m.
     pub length: Option<f64>,
+    /// Time from which it acts, s.
+    pub since: Option<f64>,
+    /// Time at which it ends, s.
+    pub until: Option<f64>,
+    /// Load under which it breaks, N or N m: of a line its tension, of a joint force or torque.
+    pub breaks: Option<StrengthConfig>,
 }
 
 /// A section `[[force]]`: a force and a torque on a free solid, as functions of time.
@@ -74,6 +87,11 @@ pub struct ForceConfig {
     pub torque: Option<TimeVectorConfig>,
     /// Whether the axes turn with the solid.
     pub frame: Option<ForceFrame>,
+    /// Time from which it acts, s.
+    #[serde(alias = "from")]
+    pub since: Option<f64>,
+    /// Time at which it ends, s.
+    pub until: Option<f64>,
 }
 
 /// The axes of a force.
@@ -97,7 +115,19 @@ impl SpringConfig {
         stiffness: f64,
     ) -> Self {
         let (between, from, to) = (between.map(String::from).to_vec(), from.into(), to.into());
-        Self { name: name.into(), between, from, to, stiffness, damping: None, length: None, tension_only: None }
+        Self {
+            name: name.into(),
+            between,
+            from,
+            to,
+            stiffness,
+            damping: None,
+            length: None,
+            tension_only: None,
+            since: None,
+            until: None,
+            breaks: None,
+        }
     }
 
     /// A mooring line of `stiffness` (N/m) from the point `from` of `solid` to the point `to` of the ground, as long as it starts.
@@ -117,6 +147,11 @@ impl SpringConfig {
         Self { damping: Some(damping), ..self }
     }
 
+    /// Its lifetime.
+    fn lifetime(&self) -> LifetimeConfig<'_> {
+        LifetimeConfig { since: self.since, until: self.until, breaks: self.breaks.as_ref() }
+    }
+
     /// Returns the same spring with this length without tension (m).
     pub fn length(self, length: f64) -> Self {
         Self { length: Some(length), ..self }
@@ -126,7 +161,9 @@ impl SpringConfig {
     pub(crate) fn fill(&mut self, defaults: &mut Defaults, key: &str) {
         defaults.fill(format!("{key}.damping"), &mut self.damping, 0.0, "a spring without loss");
         let length = distance(&self.from, &self.to);
-        defaults.fill(format!("{key}.length"), &mut self.length, length, "as it starts");
+        if self.since.is_none_or(|since| since == 0.0) {
+            defaults.fill(format!("{key}.length"), &mut self.length, length, "as it starts");
+        }
         defaults.fill(format!("{key}.tension_only"), &mut self.tension_only, false, "it pushes as it pulls");
     }
 
@@ -135,6 +172,7 @@ impl SpringConfig {
         verify_ends(ctx, key, &self.between, solids)?;
         ctx.require_dimension(&format!("{key}.from"), &self.from)?;
         ctx.require_dimension(&format!("{key}.to"), &self.to)?;
+        self.lifetime().verify(ctx, key, Element::Line)?;
         ctx.require_positive(&format!("{key}.stiffness"), Some(self.stiffness))
     }
 
@@ -147,6 +185,7 @@ impl SpringConfig {
             damping: self.damping.unwrap_or_default(),
             rest_length: self.length,
             tension_only: self.tension_only.unwrap_or_default(),
+            lifetime: self.lifetime().build(tied(solids, &self.between)),
         }
     }
 }
@@ -160,7 +199,21 @@ impl RopeConfig {
         to: impl Into<Vec<f64>>,
     ) -> Self {
         let between = between.map(String::from).to_vec();
-        Self { name: name.into(), between, from: from.into(), to: to.into(), length: None }
+        Self {
+            name: name.into(),
+            between,
+            from: from.into(),
+            to: to.into(),
+            length: None,
+            since: None,
+            until: None,
+            breaks: None,
+        }
+    }
+
+    /// Its lifetime.
+    fn lifetime(&self) -> LifetimeConfig<'_> {
+        LifetimeConfig { since: self.since, until: self.until, breaks: self.breaks.as_ref() }
     }
 
     /// Returns the same rope with this length (m).
@@ -171,7 +224,9 @@ impl RopeConfig {
     /// Fills in the defaults.
     pub(crate) fn fill(&mut self, defaults: &mut Defaults, key: &str) {
         let length = distance(&self.from, &self.to);
-        defaults.fill(format!("{key}.length"), &mut self.length, length, "as it starts");
+        if self.since.is_none_or(|since| since == 0.0) {
+            defaults.fill(format!("{key}.length"), &mut self.length, length, "as it starts");
+        }
     }
 
     /// Refuses ends that cannot move and a length that is not positive.
@@ -179,20 +234,36 @@ impl RopeConfig {
         verify_ends(ctx, key, &self.between, solids)?;
         ctx.require_dimension(&format!("{key}.from"), &self.from)?;
         ctx.require_dimension(&format!("{key}.to"), &self.to)?;
+        self.lifetime().verify(ctx, key, Element::Line)?;
         ctx.require_positive(&format!("{key}.length"), self.length)
     }
 
     /// The rope between the points of `solids`.
     pub(crate) fn build<const D: usize>(&self, solids: &[SolidConfig]) -> RopeSpec<D> {
         let ends = ends(solids, &self.between, &self.from, &self.to);
-        RopeSpec { name: self.name.clone(), ends, max_length: self.length }
+        let lifetime = self.lifetime().build(tied(solids, &self.between));
+        RopeSpec { name: self.name.clone(), ends, max_length: self.length, lifetime }
     }
 }
 
 impl ForceConfig {
     /// Neither force nor torque, on the centre of mass of the solid `on`.
     pub fn new(name: impl Into<String>, on: impl Into<String>) -> Self {
-        Self { name: name.into(), on: on.into(), at: None, force: None, torque: None, frame: None }
+        Self {
+            name: name.into(),
+            on: on.into(),
+            at: None,
+            force: None,
+            torque: None,
+            frame: None,
+            since: None,
+            until: None,
+        }
+    }
+
+    /// Its lifetime.
+    fn lifetime(&self) -> LifetimeConfig<'_> {
+        LifetimeConfig { since: self.since, until: self.until, breaks: None }
     }
 
     /// Returns the same load with a force (N), one component along each axis.
@@ -228,6 +299,7 @@ impl ForceConfig {
     /// Refuses a force on a solid that is not free, and components that do not fit the dimension.
     pub(crate) fn verify(&self, ctx: &Context, key: &str, solids: &[SolidConfig]) -> Result<()> {
         require_solid(ctx, solids, &format!("{key}.on"), &self.on)?;
+        self.lifetime().verify(ctx, key, Element::Force)?;
         if !solids.iter().any(|solid| solid.name == self.on && solid.free.is_some()) {
             let what = format!("\"{}\" is not free: a force does not move it", self.on);
             return Err(ctx.error_with_help(&format!("{key}.on"), what, "a force acts on a free solid"));
@@ -252,8 +324,14 @@ impl ForceConfig {
         Ok(())
     }
 
-    /// The force on the solid with this number.
-    pub(crate) fn build<const D: usize>(&self, ctx: &Context, key: &str, solid: usize) -> Result<ForceSpec<D>> {
+    /// The force on one of `solids`.
+    pub(crate) fn build<const D: usize>(
+        &self,
+        ctx: &Context,
+        key: &str,
+        solids: &[SolidConfig],
+    ) -> Result<ForceSpec<D>> {
+        let solid = solids.iter().position(|solid| solid.name == self.on).unwrap_or_default();
         let laws = |word: &str, values: &[TimeValueConfig]| -> Result<Vec<TimeFunction>> {
             values.iter().map(|value| value.0.build(ctx, &format!("{key}.{word}"), CoordinateUnit::Si)).collect()
         };
@@ -264,6 +342,7 @@ impl ForceConfig {
             force: laws("force", self.force.as_ref().map_or(&[], |values| values.components()))?,
             torque: laws("torque", self.torque.as_ref().map_or(&[], |values| values.components()))?,
             rotates_with_solid: self.frame == Some(ForceFrame::Body),
+            lifetime: self.lifetime().build(tied(solids, std::slice::from_ref(&self.on))),
         })
     }
 }
@@ -271,6 +350,11 @@ impl ForceConfig {
 /// The distance of two points, m.
 fn distance(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
+}
+
+/// The `solids` that are named in `between`.
+fn tied<'a>(solids: &'a [SolidConfig], between: &'a [String]) -> impl Iterator<Item = &'a SolidConfig> {
+    solids.iter().filter(|solid| between.contains(&solid.name))
 }
 
 /// The two ends of a line; one without a solid is fixed in the world.

@@ -9,6 +9,7 @@ use serde::{
 };
 
 use super::{
+    lifetime::{Element, LifetimeConfig, StrengthConfig},
     shape::vector,
     solid::{MotionMode, SolidConfig, require_solid, verify_modes},
 };
@@ -48,6 +49,13 @@ pub struct JointConfig {
     pub motor: Option<MotorConfig>,
     /// Whether its two solids have contact forces with each other.
     pub contacts: Option<bool>,
+    /// Time from which it acts, s.
+    #[serde(alias = "from")]
+    pub since: Option<f64>,
+    /// Time at which it ends, s.
+    pub until: Option<f64>,
+    /// Load under which it breaks, N or N m: of a line its tension, of a joint force or torque.
+    pub breaks: Option<StrengthConfig>,
 }
 
 /// The kind of a joint, by the motion that it leaves free.
@@ -180,6 +188,9 @@ impl JointConfig {
             limits_deg: None,
             motor: None,
             contacts: None,
+            since: None,
+            until: None,
+            breaks: None,
         }
     }
 
@@ -196,6 +207,11 @@ impl JointConfig {
     /// Returns the same joint with end stops, m or rad from the start.
     pub fn limits(self, min: f64, max: f64) -> Self {
         Self { limits: Some(LimitsConfig::One(vec![min, max])), ..self }
+    }
+
+    /// Its lifetime.
+    fn lifetime(&self) -> LifetimeConfig<'_> {
+        LifetimeConfig { since: self.since, until: self.until, breaks: self.breaks.as_ref() }
     }
 
     /// Returns the same joint with a motor.
@@ -215,6 +231,7 @@ impl JointConfig {
     /// Refuses a joint whose keys do not fit its kind.
     pub(crate) fn verify(&self, ctx: &Context, key: &str, solids: &[SolidConfig]) -> Result<()> {
         verify_ends(ctx, key, &self.between, solids)?;
+        self.lifetime().verify(ctx, key, Element::Joint)?;
         ctx.require_dimension(&format!("{key}.at"), &self.at)?;
         let three = ctx.dimension == 3;
         let (hinge, slider) = (self.kind == JointKindConfig::Hinge, self.kind == JointKindConfig::Slider);
@@ -320,6 +337,7 @@ impl JointConfig {
         ctx: &Context,
         key: &str,
         between: [Option<usize>; 2],
+        solids: &[SolidConfig],
     ) -> Result<JointSpec<D>> {
         let kind = match self.kind {
             JointKindConfig::Hinge => JointKind::Hinge,
@@ -332,6 +350,7 @@ impl JointConfig {
         let axis = vector(self.axis.as_ref().or(self.along.as_ref()).map_or(&[], |x| x));
         let mut joint = JointSpec::new(&self.name, kind, between, vector(&self.at), axis);
         joint.contacts_enabled = self.contacts.unwrap_or_default();
+        joint.lifetime = self.lifetime().build(solids.iter().filter(|solid| self.between.contains(&solid.name)));
         let stops = [(&self.limits, 1.0), (&self.limits_deg, 1f64.to_radians())];
         let stop = |mode: Option<&MotionMode>| {
             stops.iter().find_map(|(limits, unit)| match (limits, mode) {

@@ -169,7 +169,7 @@ impl ModelConfig {
 
     /// The laws and constants of a scene over `still` water.
     pub(crate) fn build(&self, ctx: &Context, time: &TimeSteppingConfig, still: &StillWaterLevel) -> Result<Model> {
-        let gravity = ctx.gravity.map_or_else(|| vec![0.0; ctx.dimension], <[f64]>::to_vec);
+        let gravity = ctx.gravity.as_ref().map_or_else(|| vec![0.0; ctx.dimension], |gravity| gravity.initial.clone());
         let g = ctx.gravity_norm();
         let c0 = self.c0.unwrap_or(self.c0_factor.unwrap_or_default() * (g * still.depth).sqrt());
         if !(c0.is_finite() && c0 > 0.0) {
@@ -204,7 +204,7 @@ impl ModelConfig {
             let help = "write  kernel = \"wendland\"  and  shifting = \"none\", or  gradient = \"plain\"";
             return Err(ctx.error_with_help("model.gradient", what, help));
         }
-        if model.gravity.iter().all(|g| *g == 0.0) {
+        if !ctx.has_gravity() {
             return Ok(());
         }
         let (h, stiffness) = (model.h / model.dp, model.lattice_stiffness::<D>());

@@ -1,7 +1,5 @@
 //! Lines and outlines of shapes: points, a table of points, or a drawing.
 
-use std::cell::RefCell;
-
 use super::shape::vector;
 use crate::{
     error::{Error, Result},
@@ -29,7 +27,7 @@ pub(super) fn verify_line(ctx: &Context, key: &str, config: &PolylineConfig) -> 
 
 /// Refuses an outline that gives neither points nor a file, or both, or points of another dimension than 2.
 pub(super) fn verify_outline(ctx: &Context, key: &str, config: &PolylineConfig) -> Result<()> {
-    let flat = Context { dimension: 2, file_notes: RefCell::default(), ..*ctx };
+    let flat = Context { dimension: 2, ..ctx.clone() };
     verify_line(&flat, key, config)?;
     verify_drawing(ctx, key, config)
 }

@@ -57,6 +57,8 @@ pub struct SolidConfig {
     pub contact_skin: Option<f64>,
     /// Whether the space that it encloses below its rim starts without water.
     pub dry: Option<bool>,
+    /// Time at which it is removed, with the constraints on it, s.
+    pub until: Option<f64>,
 }
 
 /// A body that water, weight and contacts move.
@@ -133,6 +135,7 @@ impl SolidConfig {
             restitution: None,
             contact_skin: None,
             dry: None,
+            until: None,
         }
     }
 
@@ -197,6 +200,7 @@ impl SolidConfig {
             at.verify(ctx, &format!("{key}.at"), true)?;
         }
         self.verify_role(ctx, key)?;
+        ctx.require_positive(&format!("{key}.until"), self.until)?;
         ctx.require_range(&format!("{key}.friction"), self.friction, 10.0)?;
         ctx.require_range(&format!("{key}.restitution"), self.restitution, 1.0)
     }

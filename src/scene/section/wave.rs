@@ -304,14 +304,14 @@ impl WaveConfig {
             };
             return Err(ctx.error_at(key, what));
         }
-        let gravity = ctx.gravity.is_none_or(|g| {
-            let (up, rest) = g.split_last().map_or((0.0, &[][..]), |(up, rest)| (*up, rest));
-            up < 0.0 && rest.iter().all(|x| *x == 0.0)
+        let gravity = ctx.gravity.as_ref().is_none_or(|g| {
+            let (up, rest) = g.initial.split_last().map_or((0.0, &[][..]), |(up, rest)| (*up, rest));
+            up < 0.0 && rest.iter().all(|x| *x == 0.0) && !g.varies
         });
         if !gravity {
             return Err(ctx.error_with_help(
                 "gravity",
-                "waves need gravity straight down",
+                "waves need a constant gravity straight down",
                 "write  gravity = [0.0, -9.81]",
             ));
         }

@@ -63,7 +63,7 @@ pub(super) fn build<const D: usize>(
 ) -> Result<PrescribedMotion<D>> {
     let own = world_bounds(shape, pose);
     let depth = wave.depth.unwrap_or(pool.still.depth);
-    let g = ctx.gravity.and_then(|g| g.last()).map_or(0.0, |g| -g);
+    let g = ctx.gravity.as_ref().and_then(|g| g.initial.last()).map_or(0.0, |g| -g);
     let maker = Wavemaker { depth, g, paddle: Paddle::Piston };
     match &config.along {
         Some(along) => piston_motion(ctx, key, wave, vector::<D>(along).normalize(), &maker, (&own, pool)),

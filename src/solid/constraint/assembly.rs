@@ -5,14 +5,15 @@ use serde::{Deserialize, Serialize};
 use super::{
     jacobian::{ConstraintJacobian, Mobility},
     joint::Joint,
+    lifetime::{ConstraintEvent, Lifetime, Phase, Phases},
     lines::{AttachedLine, RopeSpec, SpringParameters, SpringSpec, start_length},
-    links::{Constraints, InitialHold},
+    links::{Constraints, InitialHold, TimedRemoval},
     motor::MotorCommand,
     reactions::{Reaction, project},
 };
 use crate::{
     math::{Bivector, Vector},
-    solid::{Engine, ForceSpec, Kinematics, Load, LoadContext},
+    solid::{Engine, ForceSpec, Kinematics, Load, LoadContext, WindSpec},
 };
 
 /// Δt times the highest frequency of the springs, at most: their period is right within 0.2 %.
@@ -74,29 +75,43 @@ impl<const D: usize> ConstraintLoads<D> {
 /// Its state in a checkpoint.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct AssemblyState<const D: usize> {
-    joints: Vec<(Option<MotorCommand>, JointReading<D>)>,
-    springs: Vec<(SpringParameters, LineReading)>,
-    ropes: Vec<LineReading>,
+    pub(super) joints: Vec<(Option<MotorCommand>, JointReading<D>)>,
+    pub(super) springs: Vec<(SpringParameters, LineReading)>,
+    pub(super) ropes: Vec<LineReading>,
+    pub(super) phases: Phases<D>,
 }
 
-struct Spring<const D: usize> {
-    line: AttachedLine<D>,
+pub(super) struct Spring<const D: usize> {
+    pub(super) name: String,
+    pub(super) line: AttachedLine<D>,
     tension_only: bool,
+    /// Whether the specification gives its length without tension.
+    pub(super) has_rest_length: bool,
+    pub(super) lifetime: Lifetime,
+}
+
+pub(super) struct Rope<const D: usize> {
+    pub(super) name: String,
+    pub(super) line: AttachedLine<D>,
+    pub(super) max_length: Option<f64>,
+    pub(super) lifetime: Lifetime,
 }
 
 /// All ties at work.
 pub(crate) struct Assembly<const D: usize> {
-    start: Vec<Kinematics<D>>,
-    joints: Vec<Joint<D>>,
-    springs: Vec<Spring<D>>,
-    ropes: Vec<AttachedLine<D>>,
-    forces: Vec<ForceSpec<D>>,
-    holds: Vec<InitialHold>,
+    pub(super) start: Vec<Kinematics<D>>,
+    pub(super) joints: Vec<Joint<D>>,
+    pub(super) springs: Vec<Spring<D>>,
+    pub(super) ropes: Vec<Rope<D>>,
+    pub(super) forces: Vec<ForceSpec<D>>,
+    winds: Vec<WindSpec<D>>,
+    pub(super) holds: Vec<InitialHold>,
+    pub(super) removals: Vec<TimedRemoval>,
     /// Rows of each joint's locks and of its coordinate in the present step.
     rows: Vec<Vec<ConstraintJacobian<D>>>,
     /// Loads on each solid in the last step.
     tied: Vec<ConstraintLoads<D>>,
-    state: AssemblyState<D>,
+    pub(super) state: AssemblyState<D>,
 }
 
 impl<const D: usize> Assembly<D> {
@@ -120,20 +135,34 @@ impl<const D: usize> Assembly<D> {
             (elastic, LineReading { length, tension: 0.0 })
         };
         let rope = |r: &RopeSpec<D>| LineReading { length: start_length(&r.ends), tension: 0.0 };
-        let made =
-            |s: &SpringSpec<D>| Spring { line: AttachedLine::new(&s.ends, &start), tension_only: s.tension_only };
+        let attached_spring = |s: &SpringSpec<D>| Spring {
+            name: s.name.clone(),
+            line: AttachedLine::new(&s.ends, &start),
+            tension_only: s.tension_only,
+            has_rest_length: s.rest_length.is_some(),
+            lifetime: s.lifetime,
+        };
+        let attached_rope = |r: &RopeSpec<D>| Rope {
+            name: r.name.clone(),
+            line: AttachedLine::new(&r.ends, &start),
+            max_length: r.max_length,
+            lifetime: r.lifetime,
+        };
         Self {
             joints: links.joints.iter().map(|joint| Joint::new(joint.clone(), &start)).collect(),
-            springs: links.springs.iter().map(made).collect(),
-            ropes: links.ropes.iter().map(|r| AttachedLine::new(&r.ends, &start)).collect(),
+            springs: links.springs.iter().map(attached_spring).collect(),
+            ropes: links.ropes.iter().map(attached_rope).collect(),
             forces: links.forces.clone(),
+            winds: links.winds.clone(),
             holds: links.holds.clone(),
+            removals: links.removals.clone(),
             rows: Vec::new(),
             tied: vec![ConstraintLoads::zero(); start.len()],
             state: AssemblyState {
                 joints: vec![(None, none); links.joints.len()],
                 springs: links.springs.iter().map(spring).collect(),
                 ropes: links.ropes.iter().map(rope).collect(),
+                phases: Phases::at_start(links),
             },
             start,
         }
@@ -151,6 +180,7 @@ impl<const D: usize> Assembly<D> {
             && self.springs.is_empty()
             && self.ropes.is_empty()
             && self.forces.is_empty()
+            && self.winds.is_empty()
             && self.holds.is_empty()
     }
 
@@ -164,11 +194,16 @@ impl<const D: usize> Assembly<D> {
         [t, dt]: [f64; 2],
     ) {
         self.tied.fill(ConstraintLoads::zero());
+        self.update_phases(engine, solids, t);
         for hold in &self.holds {
             self.tied[hold.solid].is_held = hold.is_active(t);
             engine.set_held(hold.solid, hold.is_active(t));
         }
-        for (spring, (elastic, reading)) in self.springs.iter().zip(&mut self.state.springs) {
+        let phases = &mut self.state.phases;
+        for (i, (spring, (elastic, reading))) in self.springs.iter().zip(&mut self.state.springs).enumerate() {
+            if phases.springs[i] != Phase::Acting {
+                continue;
+            }
             let (ends, mobility) = (spring.line.end_kinematics(solids), spring.line.mobility(engine));
             let (length, row) = spring.line.length_and_jacobian(&ends);
             if let Some(row) = row {
@@ -176,6 +211,11 @@ impl<const D: usize> Assembly<D> {
                 let wet = spring.line.solids().into_iter().flatten().any(|i| around.wet[i]);
                 let elastic = if wet { elastic.damped_in_water(around.sound_crossing_time, ease) } else { *elastic };
                 reading.tension = elastic.tension(length, row.rate(&ends), ease, dt, spring.tension_only);
+                if reading.tension > spring.lifetime.strength {
+                    phases.break_spring(i, &spring.name, t, reading.tension);
+                    reading.tension = 0.0;
+                    continue;
+                }
                 give(engine, spring.line.solids(), &row.loads(-reading.tension));
                 note(&mut self.tied, spring.line.solids(), &row.loads(-reading.tension), |tied| &mut tied.springs);
             }
@@ -185,9 +225,18 @@ impl<const D: usize> Assembly<D> {
             engine.add_load(force.solid, &load);
             self.tied[force.solid].forces += load;
         }
+        for (solid, load) in self.winds.iter().flat_map(|wind| wind.loads_at(solids, t + 0.5 * dt)) {
+            engine.add_load(solid, &load);
+            self.tied[solid].forces += load;
+        }
         // Last, so that they include the loads of the others.
         self.rows.clear();
-        for (joint, (set, reading)) in self.joints.iter().zip(&mut self.state.joints) {
+        for (i, (joint, (set, reading))) in self.joints.iter().zip(&mut self.state.joints).enumerate() {
+            if phases.joints[i] != Phase::Acting {
+                reading.motor_force = 0.0;
+                self.rows.push(Vec::new());
+                continue;
+            }
             let (ends, mobility) = (joint.end_kinematics(solids), joint.mobility(engine));
             let ((rows, _), free) = (joint.jacobians(&ends, &mobility), joint.coordinate_jacobian(&ends));
             let drive = joint.motor_command(*set, t + 0.5 * dt);
@@ -231,7 +280,7 @@ impl<const D: usize> Assembly<D> {
         }
         let (of_joints, of_ropes) = pulls.split_at(self.joints.len());
         for ((rope, reading), pull) in self.ropes.iter().zip(&mut self.state.ropes).zip(of_ropes) {
-            let length = rope.length_and_jacobian(&rope.end_kinematics(after)).0;
+            let length = rope.line.length_and_jacobian(&rope.line.end_kinematics(after)).0;
             *reading = LineReading { length, tension: pull.first().map_or(0.0, |pull| -pull.force) };
         }
         for pull in of_joints.iter().flatten() {
@@ -255,7 +304,11 @@ impl<const D: usize> Assembly<D> {
             let rows = self.rows[i].iter().zip(engine.joint_impulses(i));
             rows.map(|(row, impulse)| Reaction { between, jacobian: *row, mobility, force: impulse / dt }).collect()
         };
-        let of_rope = |(i, rope): (usize, &AttachedLine<D>)| {
+        let of_rope = |(i, rope): (usize, &Rope<D>)| {
+            if self.state.phases.ropes[i] != Phase::Acting {
+                return Vec::new();
+            }
+            let rope = &rope.line;
             let (between, mobility) = (rope.solids(), rope.mobility(engine));
             let force = -engine.rope_impulse(i) / dt;
             let pull = |row| Reaction { between, jacobian: row, mobility, force };
@@ -289,7 +342,11 @@ impl<const D: usize> Assembly<D> {
                     }
                 }
             };
-        for (joint, (set, _)) in self.joints.iter().zip(&self.state.joints) {
+        let phases = &self.state.phases;
+        for (i, (joint, (set, _))) in self.joints.iter().zip(&self.state.joints).enumerate() {
+            if phases.joints[i].at(&joint.spec.lifetime, t) != Phase::Acting {
+                continue;
+            }
             let Some(drive) = joint.motor_command(*set, t).filter(|drive| drive.stiffness > 0.0) else { continue };
             let (ends, mobility) = (joint.end_kinematics(solids), joint.mobility(engine));
             if let (rows, locks) = joint.jacobians(&ends, &mobility)
@@ -298,18 +355,16 @@ impl<const D: usize> Assembly<D> {
                 stiffen(joint.spec.between, row, &mobility, drive.stiffness);
             }
         }
-        for (spring, (elastic, _)) in self.springs.iter().zip(&self.state.springs) {
+        for (i, (spring, (elastic, _))) in self.springs.iter().zip(&self.state.springs).enumerate() {
+            if phases.springs[i].at(&spring.lifetime, t) != Phase::Acting {
+                continue;
+            }
             let (ends, mobility) = (spring.line.end_kinematics(solids), spring.line.mobility(engine));
             if let Some(row) = spring.line.length_and_jacobian(&ends).1 {
                 stiffen(spring.line.solids(), &row, &mobility, elastic.stiffness);
             }
         }
         SPRING_STEP / squares.into_iter().fold(0.0, f64::max).sqrt()
-    }
-
-    /// Time (s) from `t` (s) until the next held solid is released; no step extends past it.
-    pub(crate) fn next_release(&self, t: f64) -> f64 {
-        self.holds.iter().filter(|hold| hold.is_active(t)).map(|hold| hold.until - t).fold(f64::INFINITY, f64::min)
     }
 
     /// Whether there is a joint or a rope.
@@ -334,8 +389,11 @@ impl<const D: usize> Assembly<D> {
         joint.spec.free_modes.iter().map(|free| joint.coordinate(free.mode, &ends)).collect()
     }
 
-    /// Distance (m) and angle (rad) by which joint number `i` is violated.
+    /// Distance (m) and angle (rad) by which joint number `i` is violated; 0 where it does not act.
     pub(crate) fn joint_gap(&self, i: usize, solids: &[Kinematics<D>]) -> [f64; 2] {
+        if self.state.phases.joints[i] != Phase::Acting {
+            return [0.0; 2];
+        }
         self.joints[i].gap(&self.joints[i].end_kinematics(solids))
     }
 
@@ -359,6 +417,11 @@ impl<const D: usize> Assembly<D> {
         self.state.joints[i].0 = drive;
     }
 
+    /// Beginnings and ends of constraints and solids so far.
+    pub(crate) fn events(&self) -> &[ConstraintEvent] {
+        &self.state.phases.events
+    }
+
     /// The state in a checkpoint.
     pub(crate) fn save(&self) -> AssemblyState<D> {
         self.state.clone()
@@ -368,9 +431,11 @@ impl<const D: usize> Assembly<D> {
     pub(crate) fn restore(&mut self, kept: AssemblyState<D>) -> bool {
         let same = kept.joints.len() == self.joints.len()
             && kept.springs.len() == self.springs.len()
-            && kept.ropes.len() == self.ropes.len();
+            && kept.ropes.len() == self.ropes.len()
+            && kept.phases.matches(&self.state.phases);
         if same {
             self.state = kept;
+            self.restore_frames();
         }
         same
     }

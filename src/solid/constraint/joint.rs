@@ -5,6 +5,7 @@ use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
 
 use super::{
     jacobian::{ConstraintJacobian, Mobility, kinematics_of_end, orthogonalize},
+    lifetime::Lifetime,
     motor::{Motor, MotorCommand, MotorInput},
 };
 use crate::{
@@ -83,6 +84,8 @@ pub struct JointSpec<const D: usize> {
     pub motor: Option<Motor>,
     /// Whether the two solids have contact with one another.
     pub contacts_enabled: bool,
+    /// When it acts, and the load under which it breaks.
+    pub lifetime: Lifetime,
 }
 
 impl<const D: usize> JointSpec<D> {
@@ -105,6 +108,7 @@ impl<const D: usize> JointSpec<D> {
             limits: None,
             motor: None,
             contacts_enabled: false,
+            lifetime: Lifetime::default(),
         }
     }
 
@@ -132,13 +136,20 @@ impl<const D: usize> JointSpec<D> {
         self.contacts_enabled = true;
         self
     }
+
+    /// The same joint with this lifetime. One that begins later locks its solids as they stand then, with `at` and `axis` in the
+    /// second solid from the start on.
+    pub fn lifetime(mut self, lifetime: Lifetime) -> Self {
+        self.lifetime = lifetime;
+        self
+    }
 }
 
 /// A joint in a running system.
 pub(in crate::solid) struct Joint<const D: usize> {
     pub(in crate::solid) spec: JointSpec<D>,
     /// Its frames in the two solids; x is its axis.
-    frames: [Pose<D>; 2],
+    pub(super) frames: [Pose<D>; 2],
 }
 
 impl<const D: usize> Joint<D> {
@@ -155,6 +166,14 @@ impl<const D: usize> Joint<D> {
 
     pub(in crate::solid) fn mobility(&self, engine: &dyn Engine<D>) -> [Mobility<D>; 2] {
         self.spec.between.map(|end| end.map_or_else(Mobility::none, |solid| engine.mobility(solid)))
+    }
+
+    /// Its frames in the two solids if it is connected where they are now.
+    pub(super) fn frames_at(&self, solids: &[Kinematics<D>]) -> [Pose<D>; 2] {
+        let [first, second] = self.end_kinematics(solids);
+        let world = second.pose.then(&self.frames[1]);
+        let turn = first.pose.rotation.transpose() * world.rotation;
+        [Pose { position: first.pose.local(&world.position), rotation: turn }, self.frames[1]]
     }
 
     fn sits(&self, ends: &[Kinematics<D>; 2]) -> [Pose<D>; 2] {

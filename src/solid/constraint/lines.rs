@@ -9,7 +9,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::jacobian::{ConstraintJacobian, Mobility, kinematics_of_end};
+use super::{
+    jacobian::{ConstraintJacobian, Mobility, kinematics_of_end},
+    lifetime::Lifetime,
+};
 use crate::{
     math::Vector,
     solid::{Engine, Kinematics},
@@ -63,16 +66,26 @@ pub struct SpringSpec<const D: usize> {
     pub stiffness: f64,
     /// c, N s/m.
     pub damping: f64,
-    /// l₀, m; `None`: its length at the start.
+    /// l₀, m; `None`: its length where it begins.
     pub rest_length: Option<f64>,
     /// Whether it goes slack instead of pushing.
     pub tension_only: bool,
+    /// When it acts, and the load under which it breaks.
+    pub lifetime: Lifetime,
 }
 
 impl<const D: usize> SpringSpec<D> {
     /// A spring of `stiffness` (N/m; N/m² in 2-D) without damping, as long as at the start.
     pub fn new(name: impl Into<String>, ends: [LineEnd<D>; 2], stiffness: f64) -> Self {
-        Self { name: name.into(), ends, stiffness, damping: 0.0, rest_length: None, tension_only: false }
+        Self {
+            name: name.into(),
+            ends,
+            stiffness,
+            damping: 0.0,
+            rest_length: None,
+            tension_only: false,
+            lifetime: Lifetime::default(),
+        }
     }
 
     /// The same spring with a damping (N s/m).
@@ -88,6 +101,11 @@ impl<const D: usize> SpringSpec<D> {
     /// The same spring as a mooring line, which goes slack instead of pushing.
     pub fn tension_only(self) -> Self {
         Self { tension_only: true, ..self }
+    }
+
+    /// The same spring with this lifetime.
+    pub fn lifetime(self, lifetime: Lifetime) -> Self {
+        Self { lifetime, ..self }
     }
 }
 
@@ -107,19 +125,26 @@ pub struct RopeSpec<const D: usize> {
     pub name: String,
     /// Its two ends.
     pub ends: [LineEnd<D>; 2],
-    /// The longest that it can be, m; `None`: its length at the start.
+    /// The longest that it can be, m; `None`: its length where it begins.
     pub max_length: Option<f64>,
+    /// When it acts, and the load under which it breaks.
+    pub lifetime: Lifetime,
 }
 
 impl<const D: usize> RopeSpec<D> {
     /// A rope that is taut at the start.
     pub fn new(name: impl Into<String>, ends: [LineEnd<D>; 2]) -> Self {
-        Self { name: name.into(), ends, max_length: None }
+        Self { name: name.into(), ends, max_length: None, lifetime: Lifetime::default() }
     }
 
     /// The same rope with this length (m).
     pub fn max_length(self, length: f64) -> Self {
         Self { max_length: Some(length), ..self }
+    }
+
+    /// The same rope with this lifetime.
+    pub fn lifetime(self, lifetime: Lifetime) -> Self {
+        Self { lifetime, ..self }
     }
 }
 

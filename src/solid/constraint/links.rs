@@ -8,7 +8,7 @@ use super::{
 };
 use crate::{
     error::{Error, Result},
-    solid::{ForceSpec, Role, SolidSpec},
+    solid::{ForceSpec, Role, SolidSpec, WindSpec},
 };
 
 /// All constraints of a simulation. Solids are numbered as in its list of solids.
@@ -23,10 +23,35 @@ pub struct Constraints<const D: usize> {
     pub ropes: Vec<RopeSpec<D>>,
     /// Prescribed forces and torques.
     pub forces: Vec<ForceSpec<D>>,
+    /// Winds.
+    pub winds: Vec<WindSpec<D>>,
     /// Free solids that are held at rest at first.
     pub holds: Vec<InitialHold>,
+    /// Solids that are removed during the run.
+    pub removals: Vec<TimedRemoval>,
     /// Pairs of solids with their own friction and restitution, or without contact.
     pub contacts: ContactPairs,
+}
+
+impl<const D: usize> Constraints<D> {
+    /// The constraints that act at the start.
+    pub(crate) fn at_start(&self) -> Self {
+        let mut made = self.clone();
+        made.joints.retain(|joint| joint.lifetime.contains(0.0));
+        made.springs.retain(|spring| spring.lifetime.contains(0.0));
+        made.ropes.retain(|rope| rope.lifetime.contains(0.0));
+        made.forces.retain(|force| force.lifetime.contains(0.0));
+        made
+    }
+}
+
+/// A solid that is removed during the run, such as a gate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TimedRemoval {
+    /// Number of the solid.
+    pub solid: usize,
+    /// Time of the removal, s.
+    pub at: f64,
 }
 
 /// A free solid that is held at rest until it is released.
@@ -135,7 +160,9 @@ impl<const D: usize> Constraints<D> {
             && self.springs.is_empty()
             && self.ropes.is_empty()
             && self.forces.is_empty()
+            && self.winds.is_empty()
             && self.holds.is_empty()
+            && self.removals.is_empty()
             && self.contacts.is_empty()
     }
 
@@ -145,16 +172,21 @@ impl<const D: usize> Constraints<D> {
         self.contacts.find(a, b).is_none_or(|pair| pair.can_touch) && !self.joints.iter().any(jointed)
     }
 
-    /// The name of a constraint of solid number `solid`, if it has one.
-    pub(crate) fn constraint_on(&self, solid: usize) -> Option<String> {
-        let joints = self.joints.iter().map(|joint| (&joint.name, joint.between));
+    /// The name of a constraint of solid number `solid` that is not over at time `t` (s), if it has one.
+    pub(crate) fn constraint_on(&self, solid: usize, t: f64) -> Option<String> {
+        let joints = self.joints.iter().map(|joint| (&joint.name, joint.between, &joint.lifetime));
         let ends = |ends: &[LineEnd<D>; 2]| ends.map(|end| end.solid);
-        let springs = self.springs.iter().map(|spring| (&spring.name, ends(&spring.ends)));
-        let ropes = self.ropes.iter().map(|rope| (&rope.name, ends(&rope.ends)));
-        let forces = self.forces.iter().map(|force| (&force.name, [Some(force.solid), None]));
-        let named = joints.chain(springs).chain(ropes).chain(forces);
-        let held = self.holds.iter().any(|hold| hold.solid == solid).then(|| "its release".to_string());
-        named.filter(|(_, ends)| ends.contains(&Some(solid))).map(|(name, _)| format!("{name:?}")).next().or(held)
+        let springs = self.springs.iter().map(|spring| (&spring.name, ends(&spring.ends), &spring.lifetime));
+        let ropes = self.ropes.iter().map(|rope| (&rope.name, ends(&rope.ends), &rope.lifetime));
+        let forces = self.forces.iter().map(|force| (&force.name, [Some(force.solid), None], &force.lifetime));
+        let in_wind =
+            |wind: &WindSpec<D>| wind.targets.iter().any(|target| target.solid == solid && !target.lifetime.is_over(t));
+        let mut named = joints.chain(springs).chain(ropes).chain(forces);
+        let held = self.holds.iter().any(|hold| hold.solid == solid && hold.is_active(t));
+        let first = named.find(|(_, ends, lifetime)| ends.contains(&Some(solid)) && !lifetime.is_over(t));
+        let blown = self.winds.iter().any(in_wind);
+        let first = first.map(|(name, ..)| format!("{name:?}"));
+        first.or_else(|| held.then(|| "its release".into())).or_else(|| blown.then(|| "a wind".into()))
     }
 
     /// Checks all constraints between these solids.
@@ -166,7 +198,9 @@ impl<const D: usize> Constraints<D> {
         self.springs.iter().try_for_each(|spring| check_spring(spring, solids))?;
         self.ropes.iter().try_for_each(|rope| check_rope(rope, solids))?;
         self.forces.iter().try_for_each(|force| check_force(force, solids))?;
+        self.winds.iter().try_for_each(|wind| check_wind(wind, solids))?;
         self.holds.iter().try_for_each(|hold| check_hold(hold, solids))?;
+        self.removals.iter().try_for_each(|removal| self.check_removal(removal, solids))?;
         self.contacts.0.values().try_for_each(|pair| check_contact(pair, solids))
     }
 
@@ -178,6 +212,7 @@ impl<const D: usize> Constraints<D> {
         let joint = &self.joints[i];
         let who = format!("joint \"{}\"", joint.name);
         check_ends(&who, joint.between, solids)?;
+        joint.lifetime.check(&who)?;
         let refuse = |what: &str, help: &str| Err(Error::scene(format!("{who} {what}")).help(help));
         if !joint.at.norm().is_finite() {
             return refuse("has no finite place", "its place is a point of the world at the start, m");
@@ -209,12 +244,31 @@ impl<const D: usize> Constraints<D> {
             let help = "from 0 or less to 0 or more: 0 is where it starts; a turn less than a whole one";
             return refuse(&format!("has limits {min} to {max}"), help);
         }
-        let twin = |other: &&JointSpec<D>| same(other.between, joint.between) && (other.at - joint.at).norm() < 1e-9;
+        let at_once = |other: &JointSpec<D>| other.lifetime.overlaps(&joint.lifetime);
+        let twin = |other: &&JointSpec<D>| {
+            same(other.between, joint.between) && (other.at - joint.at).norm() < 1e-9 && at_once(other)
+        };
         if let Some(other) = self.joints[..i].iter().find(twin) {
             let what = format!("sits where joint \"{}\" of the same two solids does", other.name);
             return refuse(&what, "one joint holds them there: remove the other, or make it one of another kind");
         }
         Ok(())
+    }
+
+    /// Refuses the removal of a solid to which something is still tied.
+    fn check_removal(&self, removal: &TimedRemoval, solids: &[SolidSpec<D>]) -> Result<()> {
+        let Some(solid) = solids.get(removal.solid) else {
+            return Err(Error::scene("a solid that is not there is to be removed"));
+        };
+        if !(removal.at > 0.0 && removal.at.is_finite()) {
+            let what = format!("solid \"{}\" is to be removed at {} s", solid.name, removal.at);
+            return Err(Error::scene(what).help("a solid is removed at a time above 0, s"));
+        }
+        match self.constraint_on(removal.solid, removal.at) {
+            Some(tie) => Err(Error::scene(format!("{tie} is tied to solid \"{}\", which is removed", solid.name))
+                .help("end the constraint at the same time or before")),
+            None => Ok(()),
+        }
     }
 }
 
@@ -231,6 +285,7 @@ fn reaches(&[min, max]: &[f64; 2], turn: bool) -> bool {
 pub(crate) fn check_spring<const D: usize>(spring: &SpringSpec<D>, solids: &[SolidSpec<D>]) -> Result<()> {
     let who = format!("spring \"{}\"", spring.name);
     check_line(&who, &spring.ends, solids)?;
+    spring.lifetime.check(&who)?;
     let numbers = [("stiffness", spring.stiffness, 0.0), ("damping", spring.damping, 0.0)];
     for (word, x, least) in numbers.into_iter().chain(spring.rest_length.map(|l| ("length", l, 0.0))) {
         if !(x >= least && x.is_finite()) {
@@ -252,13 +307,14 @@ pub(crate) fn check_spring<const D: usize>(spring: &SpringSpec<D>, solids: &[Sol
 pub(crate) fn check_rope<const D: usize>(rope: &RopeSpec<D>, solids: &[SolidSpec<D>]) -> Result<()> {
     let who = format!("rope \"{}\"", rope.name);
     check_line(&who, &rope.ends, solids)?;
+    rope.lifetime.check(&who)?;
     let start = start_length(&rope.ends);
     let length = rope.max_length.unwrap_or(start);
     if !(length > 0.0 && length.is_finite()) {
         return Err(Error::scene(format!("{who} is {length} m long")).help("give it a length above 0, m"));
     }
     // Room for the round-off of places written in decimals.
-    if start > length * (1.0 + 1e-9) {
+    if rope.lifetime.has_begun(0.0) && start > length * (1.0 + 1e-9) {
         let what = format!("{who} is {length} m long, and its ends start {start} m apart");
         return Err(Error::scene(what).help(format!("write  length = {start:.6}  or more, or start nearer")));
     }
@@ -272,9 +328,23 @@ pub(crate) fn check_rope<const D: usize>(rope: &RopeSpec<D>, solids: &[SolidSpec
 pub(crate) fn check_force<const D: usize>(force: &ForceSpec<D>, solids: &[SolidSpec<D>]) -> Result<()> {
     let who = format!("force \"{}\"", force.name);
     check_ends(&who, [Some(force.solid), None], solids)?;
+    force.lifetime.check(&who)?;
     let finite = |laws: &[crate::solid::TimeFunction]| laws.iter().all(|law| law.value_and_rate(0.0).0.is_finite());
     if !finite(&force.force) || !finite(&force.torque) {
         return Err(Error::scene(format!("{who} is not finite at t = 0")).help("check its formula or table"));
+    }
+    Ok(())
+}
+
+/// Checks a wind.
+fn check_wind<const D: usize>(wind: &WindSpec<D>, solids: &[SolidSpec<D>]) -> Result<()> {
+    let free = |i: usize| matches!(solids.get(i), Some(SolidSpec { role: Role::Free(_), .. }));
+    if !wind.targets.iter().all(|target| free(target.solid)) {
+        return Err(Error::scene("a wind acts on a solid that is not free").help("name free solids"));
+    }
+    let finite = wind.velocity.iter().all(|law| law.value_and_rate(0.0).0.is_finite()) && wind.level.is_finite();
+    if !(finite && wind.drag >= 0.0 && wind.density >= 0.0 && (wind.drag * wind.density).is_finite()) {
+        return Err(Error::scene("a wind is not finite at t = 0").help("check its velocity, drag and density"));
     }
     Ok(())
 }

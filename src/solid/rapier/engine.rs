@@ -6,7 +6,7 @@
 
 use crate::{
     error::{Error, ErrorCode, ErrorKind, Result},
-    math::{Bivector, Vector},
+    math::{Bivector, Pose, Vector},
     solid::{Constraints, Kinematics, Load, Mobility, SolidSpec},
 };
 
@@ -53,6 +53,15 @@ pub trait Engine<const D: usize>: Send + Sync {
 
     /// Holds a free solid at rest if `held` is true, or else releases it with its original locks.
     fn set_held(&mut self, solid: usize, held: bool);
+
+    /// Sets the acceleration of gravity (m/s²) from the next step on.
+    fn set_gravity(&mut self, gravity: &Vector<D>);
+
+    /// Connects joint number `joint` with these frames in its two solids, or disconnects it.
+    fn set_joint(&mut self, joint: usize, frames: Option<&[Pose<D>; 2]>);
+
+    /// Connects rope number `rope` with this largest length (m), or disconnects it.
+    fn set_rope(&mut self, rope: usize, max_length: Option<f64>);
 
     /// Returns the solid that `solid`, placed at `start`, would overlap most, and the depth (m) including contact
     /// skins.

@@ -62,6 +62,7 @@ impl RapierJoints {
             (joint.local_frame1, joint.local_frame2, joint.contacts_enabled) =
                 (frames[0], frames[1], spec.contacts_enabled);
             joint.softness = SpringCoefficients::new(LOCK, 1.0);
+            joint.set_enabled(spec.lifetime.has_begun(0.0));
             for (mode, limits) in spec.end_stops() {
                 joint.limit_axes |= JointAxesMask::from_bits_truncate(1 << mode);
                 joint.limits[mode] = JointLimits::from(limits);
@@ -77,11 +78,30 @@ impl RapierJoints {
             (joint.coupled_axes, joint.limit_axes) = (JointAxesMask::LIN_AXES, JointAxesMask::LIN_X);
             joint.limits[0] = JointLimits::from([0.0, longest]);
             joint.softness = SpringCoefficients::new(LOCK, 1.0);
+            joint.set_enabled(spec.lifetime.has_begun(0.0));
             [joint.local_frame1, joint.local_frame2] = local.each_ref().map(|x| to_frame(&Pose::at(*x)));
             let [first, second] = spec.ends.map(|end| body(end.solid));
             ropes.push((world.insert_impulse_joint(first, second, joint), longest));
         }
         Self { joints, ropes, contact_pairs: ContactPairHooks(links.contacts.clone()) }
+    }
+
+    /// Connects joint number `i` with these frames, or disconnects it.
+    pub(super) fn set_joint(&self, world: &mut PhysicsWorld, i: usize, frames: Option<&[Pose<D>; 2]>) {
+        let Some(joint) = world.impulse_joints.get_mut(self.joints[i], true) else { return };
+        joint.data.set_enabled(frames.is_some());
+        if let Some(frames) = frames {
+            [joint.data.local_frame1, joint.data.local_frame2] = frames.each_ref().map(to_frame);
+        }
+    }
+
+    /// Connects rope number `i` with this length (m), or disconnects it.
+    pub(super) fn set_rope(&mut self, world: &mut PhysicsWorld, i: usize, max_length: Option<f64>) {
+        let (handle, longest) = &mut self.ropes[i];
+        *longest = max_length.unwrap_or(*longest);
+        if let Some(rope) = world.impulse_joints.get_mut(*handle, true) {
+            rope.data.set_enabled(max_length.is_some());
+        }
     }
 
     /// Sets the length limit of each rope for a step of `dt` (s).

@@ -328,6 +328,18 @@ impl Engine<D> for RapierWorld {
         body.set_locked_axes(if held { LockedAxes::all() } else { self.locks[solid] }, true);
     }
 
+    fn set_gravity(&mut self, gravity: &Vector<D>) {
+        self.world.gravity = to_point(gravity);
+    }
+
+    fn set_joint(&mut self, joint: usize, frames: Option<&[Pose<D>; 2]>) {
+        self.ties.set_joint(&mut self.world, joint, frames);
+    }
+
+    fn set_rope(&mut self, rope: usize, max_length: Option<f64>) {
+        self.ties.set_rope(&mut self.world, rope, max_length);
+    }
+
     fn gyroscopic_rate(&self, solid: usize) -> Option<Bivector<D>> {
         self.turned.get(solid).copied().flatten()
     }

@@ -32,6 +32,7 @@ impl Fourtakas {
         FourtakasTerm {
             strength: 2.0 * self.delta * medium.h * medium.c0,
             slope: std::array::from_fn(|i| medium.gravity[i] / c2),
+            c2,
             stiffening: 0.5 * (medium.gamma - 2.0),
         }
     }
@@ -43,10 +44,16 @@ pub struct FourtakasTerm<const D: usize> {
     strength: f64,
     /// g/c₀², 1/m.
     slope: [f64; D],
+    /// c₀², m²/s²; infinite where the hydrostatic part is not left out.
+    pub(super) c2: f64,
     stiffening: f64,
 }
 
 impl<const D: usize> Term<D> for FourtakasTerm<D> {
+    fn set_gravity(&mut self, gravity: &[f64; D]) {
+        self.slope = std::array::from_fn(|i| gravity[i] / self.c2);
+    }
+
     #[inline(always)]
     fn rate<N: Num>(&self, ab: &Pair<N, D>, sum: (N, N)) -> (N, N) {
         let mut rise = ab.constant(self.slope[0]) * ab.r_ab[0];

@@ -29,6 +29,8 @@ impl Molteni {
     /// The law in water of the given constants: that of [`super::Fourtakas`] with no hydrostatic part, so that one
     /// sweep less is compiled for every other choice of laws.
     pub fn term<const D: usize>(&self, medium: &FluidProperties<D>) -> FourtakasTerm<D> {
-        Fourtakas { delta: self.delta }.term(&FluidProperties { gravity: Vector::zeros(), ..*medium })
+        let mut term = Fourtakas { delta: self.delta }.term(&FluidProperties { gravity: Vector::zeros(), ..*medium });
+        term.c2 = f64::INFINITY;
+        term
     }
 }

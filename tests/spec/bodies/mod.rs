@@ -19,3 +19,4 @@ mod meshes;
 mod natural_periods;
 mod shapes;
 mod trim;
+mod wind;

@@ -1,5 +1,6 @@
 //! Joints, ropes, forces and prescribed motions.
 
+mod events;
 mod hinge_loads;
 mod joints;
 mod prescribed_motions;

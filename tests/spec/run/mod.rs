@@ -3,6 +3,7 @@
 mod checks;
 mod determinism;
 mod gauges;
+mod mounted_probes;
 mod probes;
 mod progress;
 mod rao;

@@ -1,6 +1,7 @@
 //! The water: equations, pair loop, neighbours, time integration, and water at rest.
 
 mod gradient_correction;
+mod gravity;
 mod kernels;
 mod laws;
 mod neighbours;

@@ -9,8 +9,8 @@ use crate::{
     math::{Bivector, Pose, Vector, expression::Formula},
     solid::{
         Constraints, ContactSpec, Dim, Engine, ForceSpec, FreeBody, HasEngine, InitialHold, JointKind, JointSpec,
-        Kinematics, LineEnd, Load, Motor, MotorCommand, PrescribedMotion, Role, RopeSpec, SolidSpec, SpringParameters,
-        SpringSpec, TimeFunction,
+        Kinematics, Lifetime, LineEnd, Load, Motor, MotorCommand, PrescribedMotion, Role, RopeSpec, SolidSpec,
+        SpringParameters, SpringSpec, TimeFunction,
     },
 };
 
@@ -68,6 +68,7 @@ where
         let idle = Load::zero();
         self.engine.step(dt, &vec![idle; targets.len()], &targets).unwrap();
         self.assembly.update_reactions(&*self.engine, [&before, &self.now()], dt, None);
+        self.assembly.break_overloaded(&mut *self.engine, self.t);
     }
 
     pub(in crate::solid) fn run(&mut self, dt: f64, until: f64) {
@@ -159,8 +160,15 @@ fn a_body_frame_force_rotates_with_the_body_and_a_world_frame_force_does_not() {
     let run = |turns: bool, at: Option<Vector<2>>| {
         let solids = vec![bar::<2>("boat", 0.4, point(0.0, 0.0), true)];
         let force = vec![TimeFunction::constant(12.0), TimeFunction::constant(0.0)];
-        let thrust =
-            ForceSpec { name: "thrust".into(), solid: 0, at, force, torque: vec![], rotates_with_solid: turns };
+        let thrust = ForceSpec {
+            name: "thrust".into(),
+            solid: 0,
+            at,
+            force,
+            torque: vec![],
+            rotates_with_solid: turns,
+            lifetime: Lifetime::default(),
+        };
         let mut air = DrySystem::new(solids, Constraints { forces: vec![thrust], ..Constraints::default() }, 0.0);
         air.engine.set_velocity(0, &Vector::zeros(), &Bivector::from_axial(&[PI]));
         air.run(1e-4, 1.0);
@@ -220,7 +228,7 @@ fn a_held_body_is_at_rest_until_its_release() {
     air.engine.push(0, &Vector::from([50.0, 0.0]), &Vector::from([0.0, 0.3]));
     air.run(1e-3, 0.4999);
     assert_eq!((air.now()[0].velocity, air.now()[0].centre), (Vector::zeros(), Vector::zeros()));
-    assert!((air.assembly.next_release(0.4999) - 1e-4).abs() < 1e-12, "no step passes the release");
+    assert!((air.assembly.next_event(0.4999) - 1e-4).abs() < 1e-12, "no step passes the release");
     air.run(1e-3, 1.5);
     assert!((air.now()[0].velocity - Vector::from([0.0, -G])).norm() < 1e-2, "{:?}", air.now()[0]);
 }
@@ -255,8 +263,14 @@ where
             damping: 5.0,
             rest_length: None,
             tension_only: true,
+            lifetime: Lifetime::default(),
         };
-        let rope = RopeSpec { name: "rope".into(), ends: line(None, 0.1, 0.3), max_length: None };
+        let rope = RopeSpec {
+            name: "rope".into(),
+            ends: line(None, 0.1, 0.3),
+            max_length: None,
+            lifetime: Lifetime::default(),
+        };
         DrySystem::new(
             solids,
             Constraints { joints, springs: vec![spring], ropes: vec![rope], ..Constraints::default() },
@@ -319,11 +333,19 @@ fn invalid_constraints_are_refused_with_the_reason() {
     assert!(message(twice).contains("sits where joint \"hinge\""));
     let ends = [LineEnd { solid: Some(0), at }, LineEnd { solid: None, at: point(0.0, 1.0) }];
     let spring = |stiffness: f64, damping: f64| {
-        let spring = SpringSpec { name: "s".into(), ends, stiffness, damping, rest_length: None, tension_only: false };
+        let spring = SpringSpec {
+            name: "s".into(),
+            ends,
+            stiffness,
+            damping,
+            rest_length: None,
+            tension_only: false,
+            lifetime: Lifetime::default(),
+        };
         message(Constraints { springs: vec![spring], ..Constraints::default() })
     };
     assert!(spring(-1.0, 0.0).contains("stiffness of -1") && spring(1.0, -2.0).contains("damping of -2"));
     assert!(spring(0.0, 0.0).contains("neither stiff nor damped"));
-    let rope = RopeSpec { name: "r".into(), ends, max_length: Some(0.9) };
+    let rope = RopeSpec { name: "r".into(), ends, max_length: Some(0.9), lifetime: Lifetime::default() };
     assert!(message(Constraints { ropes: vec![rope], ..Constraints::default() }).contains("start 1 m apart"));
 }

@@ -3,7 +3,7 @@
 use crate::{
     math::{Bivector, Vector},
     solid::{
-        Constraints, Dim, ForceSpec, HasEngine, JointKind, JointSpec, TimeFunction,
+        Constraints, Dim, ForceSpec, HasEngine, JointKind, JointSpec, Lifetime, TimeFunction,
         constraint::assembly::tests::{DrySystem, G, bar, body, hinge, joined, point},
     },
 };
@@ -25,7 +25,15 @@ where
     let torque =
         (0..D * (D - 1) / 2).map(|i| TimeFunction::constant(if D == 2 || i == 1 { 8.0 } else { 0.0 })).collect();
     let force = (0..D).map(|i| TimeFunction::constant(if i == 0 { 5.0 } else { 0.0 })).collect();
-    let push = ForceSpec { name: "push".into(), solid: 0, at: None, force, torque, rotates_with_solid: false };
+    let push = ForceSpec {
+        name: "push".into(),
+        solid: 0,
+        at: None,
+        force,
+        torque,
+        rotates_with_solid: false,
+        lifetime: Lifetime::default(),
+    };
     let mut air =
         DrySystem::new(solids, Constraints { joints: vec![guide], forces: vec![push], ..Constraints::default() }, G);
     air.run(1e-4, 0.05);

@@ -7,8 +7,8 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 use crate::{
     math::{Bivector, Vector, expression::Formula},
     solid::{
-        Constraints, Dim, ForceSpec, HasEngine, JointKind, JointSpec, Motor, PrescribedMotion, Role, SolidSpec,
-        TimeFunction,
+        Constraints, Dim, ForceSpec, HasEngine, JointKind, JointSpec, Lifetime, Motor, PrescribedMotion, Role,
+        SolidSpec, TimeFunction,
         constraint::assembly::tests::{DrySystem, G, bar, body, hinge, inertia, joined, point, slider},
     },
 };
@@ -363,7 +363,15 @@ where
     let Role::Free(buoy) = &mut solids[1].role else { panic!() };
     buoy.spin = Bivector::from_axial(&[0.7, 0.0, 0.0][..if D == 2 { 1 } else { 3 }]);
     let force = (0..D).map(|i| TimeFunction::constant(if i == 0 || i == D - 1 { 12.0 } else { 0.0 })).collect();
-    let push = ForceSpec { name: "push".into(), solid: 1, at: None, force, torque: vec![], rotates_with_solid: false };
+    let push = ForceSpec {
+        name: "push".into(),
+        solid: 1,
+        at: None,
+        force,
+        torque: vec![],
+        rotates_with_solid: false,
+        lifetime: Lifetime::default(),
+    };
     let tow = JointSpec::new("rail", JointKind::Tow, [Some(0), Some(1)], Vector::zeros(), point(1.0, 0.0));
     let links = Constraints { joints: vec![tow], forces: vec![push], ..Constraints::default() };
     let mut air = DrySystem::new(solids, links, 0.0);

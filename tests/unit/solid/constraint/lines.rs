@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use crate::{
     math::{Bivector, Vector},
     solid::{
-        Constraints, Dim, HasEngine, LineEnd, RopeSpec, SpringParameters, SpringSpec,
+        Constraints, Dim, HasEngine, Lifetime, LineEnd, RopeSpec, SpringParameters, SpringSpec,
         constraint::assembly::tests::{DrySystem, G, bar, body, point},
     },
 };
@@ -23,6 +23,7 @@ where
         damping: 0.0,
         rest_length: Some(0.7),
         tension_only: false,
+        lifetime: Lifetime::default(),
     };
     let m = body(&solids[0]).mass;
     let links = Constraints { springs: vec![spec.clone()], ..Constraints::default() };
@@ -64,8 +65,15 @@ fn a_damped_spring_reaches_its_static_deflection_for_any_damping() {
         let solids = vec![bar::<2>("box", 0.2, point(0.0, 0.0), true)];
         let weight = body(&solids[0]).mass * G;
         let ends = [LineEnd { solid: Some(0), at: point(0.0, 0.05) }, LineEnd { solid: None, at: point(0.0, 1.0) }];
-        let spec =
-            SpringSpec { name: "line".into(), ends, stiffness: 2000.0, damping, rest_length: None, tension_only: true };
+        let spec = SpringSpec {
+            name: "line".into(),
+            ends,
+            stiffness: 2000.0,
+            damping,
+            rest_length: None,
+            tension_only: true,
+            lifetime: Lifetime::default(),
+        };
         let mut air = DrySystem::new(solids, Constraints { springs: vec![spec], ..Constraints::default() }, G);
         let limit = air.assembly.step_limit(&*air.engine, &air.now(), air.t);
         assert!((limit - 0.2 / 10.0).abs() < 1e-12, "damping does not shorten the step: {limit}");
@@ -88,7 +96,7 @@ where
     // A stone with an eccentric attachment is thrown sideways: the rope becomes taut, turns the stone, and the stone swings.
     let solids = vec![bar("stone", 0.2, point::<D>(0.2, -0.5), true)];
     let ends = [LineEnd { solid: None, at: Vector::zeros() }, LineEnd { solid: Some(0), at: point(0.25, -0.45) }];
-    let rope = RopeSpec { name: "rope".into(), ends, max_length: Some(0.8) };
+    let rope = RopeSpec { name: "rope".into(), ends, max_length: Some(0.8), lifetime: Lifetime::default() };
     let mut air = DrySystem::new(solids, Constraints { ropes: vec![rope], ..Constraints::default() }, G);
     air.engine.set_velocity(0, &point(speed, 0.2), &Bivector::zero());
     let (mut longest, mut taut): (f64, f64) = (0.0, 0.0);
@@ -114,7 +122,7 @@ fn a_rope_at_rest_carries_the_weight() {
     let solids = vec![bar::<2>("stone", 0.2, point(0.0, -0.5), true)];
     let weight = body(&solids[0]).mass * G;
     let ends = [LineEnd { solid: None, at: Vector::zeros() }, LineEnd { solid: Some(0), at: point(0.0, -0.45) }];
-    let rope = RopeSpec { name: "rope".into(), ends, max_length: None };
+    let rope = RopeSpec { name: "rope".into(), ends, max_length: None, lifetime: Lifetime::default() };
     let mut air = DrySystem::new(solids, Constraints { ropes: vec![rope], ..Constraints::default() }, G);
     air.run(1e-3, 1.0);
     assert!((air.assembly.rope_reading(0).tension / weight - 1.0).abs() < 1e-6, "{:?}", air.assembly.rope_reading(0));

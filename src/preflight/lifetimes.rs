@@ -1,0 +1,28 @@
+//! Times of constraints and solids that the run does not reach.
+
+use super::{Finding, PreflightContext};
+use crate::{math::format::three_digits, solid::Lifetime};
+
+/// Elements that begin, end or are removed after the end of the run.
+pub(super) fn check<const D: usize>(context: &PreflightContext<'_, D>, findings: &mut Vec<Finding>) {
+    let links = context.system.constraints();
+    let joints = links.joints.iter().map(|joint| ("joint", &joint.name, joint.lifetime));
+    let springs = links.springs.iter().map(|spring| ("spring", &spring.name, spring.lifetime));
+    let ropes = links.ropes.iter().map(|rope| ("rope", &rope.name, rope.lifetime));
+    let forces = links.forces.iter().map(|force| ("force", &force.name, force.lifetime));
+    let removed = links.removals.iter().map(|removal| {
+        let name = &context.solids()[removal.solid].spec.name;
+        ("solid", name, Lifetime::default().until(removal.at))
+    });
+    let end = context.end_time();
+    for (kind, name, lifetime) in joints.chain(springs).chain(ropes).chain(forces).chain(removed) {
+        let run = format!("the run ends at {} s", three_digits(end));
+        if lifetime.since >= end {
+            let what = format!("{kind} \"{name}\" never acts: it begins at {} s, and {run}", lifetime.since);
+            findings.push(Finding::warning("event_after_end", what, "begin earlier, or run longer".into()));
+        } else if lifetime.until.is_finite() && lifetime.until >= end {
+            let what = format!("{kind} \"{name}\" stays to the end: until is {} s, and {run}", lifetime.until);
+            findings.push(Finding::note("event_after_end", what, "end it earlier, or run longer".into()));
+        }
+    }
+}

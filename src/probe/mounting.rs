@@ -1,0 +1,51 @@
+//! Points at which probes measure: of the world, or of a solid that they go with.
+
+use super::{find_solid, point};
+use crate::{
+    error::Result,
+    math::{Matrix, Vector},
+    system::System,
+};
+
+/// A point of the world or of a solid.
+pub(super) struct MountedPoint<const D: usize> {
+    /// Coordinates in the world, or in the frame of the solid, m.
+    at: Vector<D>,
+    /// Number of the solid.
+    solid: Option<usize>,
+}
+
+impl<const D: usize> MountedPoint<D> {
+    /// The point of the world whose first `count` coordinates are `at` (m).
+    ///
+    /// # Errors
+    /// `Usage` if `at` does not have `count` finite numbers.
+    pub(super) fn in_world(at: &[f64], count: usize) -> Result<Self> {
+        Ok(Self { at: point(at, count)?, solid: None })
+    }
+
+    /// The same point in the frame of the solid called `on`, if a name is given.
+    ///
+    /// # Errors
+    /// `Scene` if there is no such solid.
+    pub(super) fn on(self, system: &System<D>, on: Option<&str>) -> Result<Self> {
+        Ok(Self { solid: on.map(|name| find_solid(system, name)).transpose()?, ..self })
+    }
+
+    /// Whether it goes with a solid.
+    pub(super) fn is_mounted(&self) -> bool {
+        self.solid.is_some()
+    }
+
+    /// Its place in the world, m.
+    pub(super) fn position(&self, system: &System<D>) -> Vector<D> {
+        self.solid.map_or(self.at, |solid| system.solids()[solid].kinematics.pose.point(&self.at))
+    }
+
+    /// Its velocity, m/s, and the rotation of its axes; those of the world if it does not go with a solid.
+    pub(super) fn velocity_and_axes(&self, system: &System<D>) -> (Vector<D>, Matrix<D>) {
+        let Some(solid) = self.solid else { return (Vector::zeros(), Matrix::identity()) };
+        let now = &system.solids()[solid].kinematics;
+        (now.velocity + now.spin.velocity_at(&(self.position(system) - now.centre)), now.pose.rotation)
+    }
+}

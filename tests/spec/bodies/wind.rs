@@ -1,0 +1,61 @@
+//! Wind on the dry part of a float, as a scene says it.
+
+use std::path::Path;
+
+use pontoon::{Result, scene::Scene};
+
+use crate::common::scene_simulation;
+
+const SCENE: &str = r#"
+dimension = 2
+dp = 0.02
+until = 0.2
+water = [{ fill = { box = { min = [0.0, 0.0], max = [1.0, 0.3] } } }]
+[[solid]]
+name = "tank"
+fixed = true
+shape = { tank = { size = [1.0, 0.6] } }
+[[solid]]
+name = "float"
+shape = { box = { size = [0.2, 0.2] } }
+at = { x = 0.5, draft = "equilibrium" }
+free = { density = 500.0 }
+[[wind]]
+velocity = ["10*t/0.05", 0.0]
+drag = 1.2
+on = ["float"]
+"#;
+
+#[test]
+fn the_wind_of_a_scene_acts_on_the_dry_half_of_a_float() -> Result<()> {
+    let mut sim = scene_simulation::<2>(SCENE)?;
+    sim.enable_load_breakdown();
+    while sim.time() < 0.05 {
+        sim.step_to(0.05)?;
+    }
+    let wind = 10.0 * (1.0 - 0.5 * sim.dt() / 0.05);
+    let expected = 0.5 * 1.225 * 1.2 * 0.1 * wind * wind;
+    let load = sim.load_breakdown(1).unwrap().forces;
+    // The float moves by less than 0.1 mm and 0.02 m/s: 0.4 %.
+    assert!((load.force[0] / expected - 1.0).abs() < 0.005, "{} of {expected} N/m", load.force[0]);
+    // The middle of the dry half lies 0.05 m above the centre: clockwise.
+    let torque = load.torque.axial()[0];
+    assert!((torque / (-0.05 * expected) - 1.0).abs() < 0.02, "{torque} N m/m");
+    Ok(())
+}
+
+#[test]
+fn a_wind_that_cannot_be_meant_is_refused() {
+    for (from, to, what) in [
+        ("on = [\"float\"]", "on = []", "acts on nothing"),
+        ("on = [\"float\"]", "on = [\"tank\"]", "is not free"),
+        ("on = [\"float\"]", "on = [\"flot\"]", "no solid is called \"flot\""),
+        ("drag = 1.2", "drag = -1.2", "drag must be a positive number"),
+        ("[\"10*t/0.05\", 0.0]", "10.0", "the wind has 1 components"),
+        ("[\"10*t/0.05\", 0.0]", "[{ file = \"gust.csv\", column = \"u\" }, 0.0]", "gust.csv"),
+    ] {
+        let scene = Scene::parse(&SCENE.replace(from, to), Path::new(""), &[]);
+        let message = scene.and_then(|scene| scene.build::<2>()).map(|_| ()).unwrap_err().to_string();
+        assert!(message.contains(what), "{to}: {message}");
+    }
+}
