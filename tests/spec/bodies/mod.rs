@@ -12,6 +12,7 @@ mod energy_budget;
 mod equilibrium;
 mod external_bodies;
 mod friction;
+mod linear_theory;
 mod load_breakdown;
 mod many_bodies;
 mod meshes;
