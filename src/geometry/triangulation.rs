@@ -38,7 +38,7 @@ fn bridge(points: &[Position], ring: &[u32], hole: &[u32], from: usize, others: 
     let at = |corner: u32| points[corner as usize];
     let start = at(hole[from]);
     let n = ring.len();
-    let faces = |i: usize| {
+    let opens_to_start = |i: usize| {
         let (before, here, after) = (at(ring[(i + n - 1) % n]), at(ring[i]), at(ring[(i + 1) % n]));
         if cross(before, here, after) >= 0.0 {
             cross(here, start, before) > 0.0 && cross(start, here, after) > 0.0
@@ -47,7 +47,7 @@ fn bridge(points: &[Position], ring: &[u32], hole: &[u32], from: usize, others: 
         }
     };
     let distance = |i: usize| (at(ring[i])[0] - start[0]).hypot(at(ring[i])[1] - start[1]);
-    let mut candidates: Vec<usize> = (0..n).filter(|&i| faces(i)).collect();
+    let mut candidates: Vec<usize> = (0..n).filter(|&i| opens_to_start(i)).collect();
     candidates.sort_by(|&i, &j| distance(i).total_cmp(&distance(j)));
     let crosses = |end: Position, a: Position, b: Position| {
         let touches_end = [a, b].iter().any(|p| *p == start || *p == end);

@@ -3,6 +3,7 @@
 use super::{
     Scene,
     context::{Context, FileNote},
+    file_units::require_plausible_units,
     section::{
         analysis::ProbeSeries,
         model::require_depth,
@@ -101,7 +102,7 @@ impl Scene {
         scene.model.require_stable_lattice::<D>(ctx, &model)?;
         require_depth(ctx, &still, &model)?;
         let solids = scene.solids::<D>(ctx, &StillWater::of(&water))?;
-        self.require_plausible_units(ctx, &water, &solids)?;
+        require_plausible_units(ctx, &self.solid, &water, &solids)?;
         let constraints = scene.constraints(&solids)?;
         let domain = scene.domain.as_ref().map(|d| Bounds { min: vector(&d.min), max: vector(&d.max) });
         if let Some(domain) = &domain {

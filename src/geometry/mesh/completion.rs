@@ -42,7 +42,10 @@ pub(super) fn mirror(surface: &mut Surface, axis: usize, notes: &mut Vec<String>
         }
     }
     if moved > 0 {
-        notes.push(format!("{} moved into the plane {name} = 0, by {farthest:.1e} m at most", counted(moved, "corner is", "corners are")));
+        notes.push(format!(
+            "{} moved into the plane {name} = 0, by {farthest:.1e} m at most",
+            counted(moved, "corner is", "corners are")
+        ));
     }
     let bounds = surface.bounds();
     if bounds.min[axis] < 0.0 && bounds.max[axis] > 0.0 {

@@ -272,11 +272,17 @@ fn a_mesh_ball_floats_at_the_draft_of_archimedes() {
 fn a_mesh_in_millimetres_or_less_than_dp_large_is_refused_with_the_probable_unit() {
     let folder = folder("units");
     fs::write(folder.join("m.stl"), text_stl(&FACETS)).unwrap();
-    fs::write(folder.join("mm.stl"), text_stl(&FACETS).replace("0.5", "500").replace("0.25", "250").replace("0.375", "375"))
-        .unwrap();
+    fs::write(
+        folder.join("mm.stl"),
+        text_stl(&FACETS).replace("0.5", "500").replace("0.25", "250").replace("0.375", "375"),
+    )
+    .unwrap();
     let message = refusal("file = \"mm.stl\"", &folder);
     // 500 in water of 1 m: 0.5 m is the nearest size.
-    assert!(message.contains("unit is probably mm, and its size 0.5000 m") && message.contains("scene.toml:8"), "{message}");
+    assert!(
+        message.contains("unit is probably mm, and its size 0.5000 m") && message.contains("scene.toml:8"),
+        "{message}"
+    );
     assert!(mesh("file = \"mm.stl\", unit = \"mm\"", &folder).is_ok());
     let message = refusal("file = \"m.stl\", unit = \"mm\"", &folder);
     assert!(message.contains("less than dp") && message.contains("its size 0.5000 m"), "{message}");
