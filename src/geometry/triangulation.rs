@@ -1,12 +1,18 @@
 //! Triangles of plane polygons with holes, by ear clipping. Every corner of the polygon becomes a corner of a triangle.
 
+/// Largest number of corners of a polygon: the time grows with its square.
+pub(crate) const MOST_CORNERS: usize = 20_000;
+
 /// A position in the plane.
 type Position = [f64; 2];
 
 /// Returns triangles that fill the polygon inside `outer` and outside `holes`. The rings contain indices of `points`.
 /// `outer` runs counter-clockwise and each hole clockwise; so the triangles run counter-clockwise. Returns `None` if the
-/// rings cross.
+/// rings cross or have more than [`MOST_CORNERS`] corners.
 pub(crate) fn triangulate(points: &[Position], outer: &[u32], holes: &[Vec<u32>]) -> Option<Vec<[u32; 3]>> {
+    if outer.len() + holes.iter().map(Vec::len).sum::<usize>() > MOST_CORNERS {
+        return None;
+    }
     let mut ring = outer.to_vec();
     let mut left: Vec<&Vec<u32>> = holes.iter().collect();
     // A hole is joined to the ring through its rightmost corner, the rightmost hole first.

@@ -9,10 +9,20 @@ use super::{
     },
     untagged::LengthUnit,
 };
-use crate::{error::Result, math::Bounds, solid::SolidSpec};
+use crate::{
+    error::Result,
+    math::Bounds,
+    solid::{Role, SolidSpec},
+};
 
-/// Largest plausible size of a solid over the size of the water, –.
-const LARGEST: f64 = 20.0;
+/// Largest plausible size of a fixed solid over the size of the water, –: a bed can be larger than the water.
+const LARGEST_FIXED: f64 = 20.0;
+
+/// The same of a moving solid.
+const LARGEST_MOVING: f64 = 3.0;
+
+/// Penalty of a size that does not fit into the water, above the logarithm of any ratio of sizes.
+const FAR: f64 = 1e3;
 
 /// The units that files have other than metres, with their names, the most frequent first.
 const UNITS: [(LengthUnit, &str); 4] =
@@ -50,19 +60,22 @@ pub(super) fn require_plausible_units<const D: usize>(
         let Some(FileUnit { file, unit }) = file_unit(&config.shape) else { continue };
         let size = solid.shape.bounds().size().max();
         let key = format!("solid.{i}.shape");
-        if unit.is_none() && size > LARGEST * room {
-            // The unit that brings the size closest to that of the water.
-            let off = |unit: LengthUnit| (size * unit.metres() / room).ln().abs();
-            let nearest = UNITS.iter().min_by(|a, b| off(a.0).total_cmp(&off(b.0)));
-            let (unit, name) = nearest.copied().unwrap_or((LengthUnit::Mm, "mm"));
+        let largest = if matches!(solid.role, Role::Fixed) { LARGEST_FIXED } else { LARGEST_MOVING };
+        if unit.is_none() && size > largest * room {
+            // The unit whose size is nearest to that of the water, if possible among those that fit into the water.
+            let sizes = UNITS.map(|(unit, name)| (name, size * unit.metres()));
+            let off = |(_, size): &(&str, f64)| (size / room).ln().abs() + if *size < room { 0.0 } else { FAR };
+            let nearest = sizes.iter().copied().min_by(|a, b| off(a).total_cmp(&off(b)));
+            let (name, probable) = nearest.unwrap_or(sizes[0]);
             let what = format!(
-                "{file} makes solid \"{}\" {size:.4} m large, in water {room:.4} m large: its unit is probably {name}, \
-                 and its size {:.4} m",
-                solid.name,
-                size * unit.metres()
+                "{file} makes solid \"{}\" {size:.4} m large, in water {room:.4} m large: its unit is probably {name}, and \
+                 its size {probable:.4} m",
+                solid.name
             );
-            let help =
-                format!("write  unit = \"{name}\"  beside the file's name, or  unit = \"m\"  if the size is right");
+            let others = sizes.map(|(name, size)| format!("{name} {size:.4} m")).join(", ");
+            let help = format!(
+                "write  unit = \"{name}\"  beside the file's name, or  unit = \"m\"  if the size is right. By unit: {others}"
+            );
             return Err(ctx.error_with_help(&key, what, help));
         }
         if size < ctx.dp {

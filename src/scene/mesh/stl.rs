@@ -118,6 +118,8 @@ fn parse_text(path: &Path, bytes: &[u8]) -> Result<MeshFile> {
                     }
                 },
                 "endfacet" => {}
+                // An extension of some programs.
+                "color" => break,
                 _ => return Err(cut(line, damaged(path, format!("line {line}: \"{word}\" is no word of STL")))),
             }
         }

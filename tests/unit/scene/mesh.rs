@@ -204,6 +204,9 @@ fn obj_files_of_every_style_define_the_same_solid() {
     let coloured =
         text.replace("0.05\nv", "0.05 0.5 0.5 1.0\nv").replace("f 1 3", "g a b\no c\ns 1\nusemtl x\nl 1 2\np 3\nf 1 3");
     plain("obj", coloured.as_bytes(), 0.008);
+    // Facets before their corners.
+    let (corners, sides) = text.split_at(text.find('f').unwrap());
+    plain("obj", format!("{sides}{corners}").as_bytes(), 0.008);
     let error = |from: &str, to: &str| refusal("obj", text.replacen(from, to, 1).as_bytes(), Completion::default());
     assert_parts(&error("f 1 3 4 2", "f 1 3 4 9"), &["line 9", "no corner 9", "only 8"]);
     assert_parts(&error("f 1 3 4 2", "f 1 3"), &["line 9", "three corners or more"]);
