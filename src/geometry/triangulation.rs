@@ -1,12 +1,18 @@
 //! Triangles of plane polygons with holes, by ear clipping. Every corner of the polygon becomes a corner of a triangle.
 
+/// Largest number of corners of a polygon: the time grows with its square.
+pub(crate) const MOST_CORNERS: usize = 20_000;
+
 /// A position in the plane.
 type Position = [f64; 2];
 
 /// Returns triangles that fill the polygon inside `outer` and outside `holes`. The rings contain indices of `points`.
 /// `outer` runs counter-clockwise and each hole clockwise; so the triangles run counter-clockwise. Returns `None` if the
-/// rings cross.
+/// rings cross or have more than [`MOST_CORNERS`] corners.
 pub(crate) fn triangulate(points: &[Position], outer: &[u32], holes: &[Vec<u32>]) -> Option<Vec<[u32; 3]>> {
+    if outer.len() + holes.iter().map(Vec::len).sum::<usize>() > MOST_CORNERS {
+        return None;
+    }
     let mut ring = outer.to_vec();
     let mut left: Vec<&Vec<u32>> = holes.iter().collect();
     // A hole is joined to the ring through its rightmost corner, the rightmost hole first.
@@ -38,7 +44,7 @@ fn bridge(points: &[Position], ring: &[u32], hole: &[u32], from: usize, others: 
     let at = |corner: u32| points[corner as usize];
     let start = at(hole[from]);
     let n = ring.len();
-    let faces = |i: usize| {
+    let opens_to_start = |i: usize| {
         let (before, here, after) = (at(ring[(i + n - 1) % n]), at(ring[i]), at(ring[(i + 1) % n]));
         if cross(before, here, after) >= 0.0 {
             cross(here, start, before) > 0.0 && cross(start, here, after) > 0.0
@@ -47,7 +53,7 @@ fn bridge(points: &[Position], ring: &[u32], hole: &[u32], from: usize, others: 
         }
     };
     let distance = |i: usize| (at(ring[i])[0] - start[0]).hypot(at(ring[i])[1] - start[1]);
-    let mut candidates: Vec<usize> = (0..n).filter(|&i| faces(i)).collect();
+    let mut candidates: Vec<usize> = (0..n).filter(|&i| opens_to_start(i)).collect();
     candidates.sort_by(|&i, &j| distance(i).total_cmp(&distance(j)));
     let crosses = |end: Position, a: Position, b: Position| {
         let touches_end = [a, b].iter().any(|p| *p == start || *p == end);

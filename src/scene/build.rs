@@ -4,6 +4,7 @@ use super::{
     Scene,
     afloat::placed_solids,
     context::{Context, FileNote},
+    file_units::require_plausible_units,
     section::{
         analysis::ProbeSeries,
         gravity,
@@ -104,7 +105,7 @@ impl Scene {
         require_depth(ctx, &still, &model)?;
         let mut placed = placed_solids::<D>(&scene, ctx, &water, true)?;
         let solids = &placed.specs;
-        self.require_plausible_units(ctx, &water, solids)?;
+        require_plausible_units(ctx, &self.solid, &water, solids)?;
         let constraints = scene.constraints(ctx, solids, still.level)?;
         let domain = scene.domain.as_ref().map(|d| Bounds { min: vector(&d.min), max: vector(&d.max) });
         if let Some(domain) = &domain {

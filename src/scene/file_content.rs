@@ -11,7 +11,7 @@ pub(crate) struct Text {
 }
 
 /// Beginnings of foreign files, with the name of the format. Letters are compared without case.
-const BEGINNINGS: [(&[u8], &str); 22] = [
+const BEGINNINGS: [(&[u8], &str); 21] = [
     (b"pk\x03\x04", "a zip archive, as are .3mf and .usdz"),
     (b"\x1f\x8b", "a file compressed by gzip"),
     (b"7z\xbc\xaf", "a 7-Zip archive"),
@@ -29,8 +29,7 @@ const BEGINNINGS: [(&[u8], &str); 22] = [
     (b"# vtk datafile", "a VTK file"),
     (b"$meshformat", "a Gmsh mesh"),
     (b"ac10", "a DWG drawing"),
-    (b"3dm", "a Rhino model"),
-    (b"rhino", "a Rhino model"),
+    (b"3d geometry file format", "a Rhino model"),
     (b"{", "JSON, such as an error of a server"),
     (b"<?xml", "XML"),
     (b"<collada", "a COLLADA model"),
@@ -44,6 +43,11 @@ pub(crate) fn check(path: &Path, bytes: &[u8], wanted: &str) -> Result<()> {
     let refuse = |what: &str, help: String| {
         Err(Error::scene(format!("{} cannot be read: it is not {wanted} but {what}", path.display())).help(help))
     };
+    // The header of binary STL may contain any text.
+    let count = bytes.get(80..84).and_then(|count| count.try_into().ok()).map(u32::from_le_bytes);
+    if wanted == "STL" && count.is_some_and(|count| bytes.len() as u64 == 84 + 50 * u64::from(count)) {
+        return Ok(());
+    }
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let begun = bytes.iter().position(|b| !b.is_ascii_whitespace()).unwrap_or(bytes.len());
     let start = bytes[begun..].iter().take(512).map(u8::to_ascii_lowercase).collect::<Vec<_>>();
@@ -63,7 +67,7 @@ pub(crate) fn check(path: &Path, bytes: &[u8], wanted: &str) -> Result<()> {
         );
     }
     if wanted == "SVG" {
-        return match BEGINNINGS.iter().take(20).find(|(begin, _)| start.starts_with(begin)) {
+        return match BEGINNINGS.iter().find(|(begin, _)| begin[0] != b'<' && start.starts_with(begin)) {
             Some((_, name)) => refuse(name, "give a plain SVG file".into()),
             None => Ok(()),
         };

@@ -6,7 +6,7 @@ use super::{
 };
 use crate::{
     error::{Error, Result},
-    geometry::triangulation::triangulate,
+    geometry::triangulation::{MOST_CORNERS, triangulate},
     math::{Matrix, Vector},
 };
 
@@ -124,7 +124,7 @@ pub(super) fn cap(surface: &mut Surface, axis: usize, notes: &mut Vec<String>) -
     let flat: Vec<[f64; 2]> = surface.points.iter().map(|p| [p[first], p[second]]).collect();
     for (height, rings) in planes {
         let facets = fill(&flat, rings).ok_or_else(|| {
-            Error::scene(format!("the open edges of the mesh in the plane {name} = {height:.4} m cross each other"))
+            Error::scene(format!("the open edges of the mesh in the plane {name} = {height:.4} m cross each other, or have more than {MOST_CORNERS} corners"))
                 .help("close them in the program that made the mesh")
         })?;
         surface.parts.extend(facets.iter().map(|_| 0));

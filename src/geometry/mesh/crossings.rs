@@ -74,32 +74,33 @@ impl Crossings {
 pub(super) fn check(mesh: &Mesh, tolerance: f64) -> Result<Option<String>> {
     let found = mesh.tree.find_crossings(mesh);
     let Some((mut depth, a, b)) = found.deepest else { return Ok(None) };
-    let mut bound = "";
+    let mut by = String::new();
     if depth <= tolerance {
         match buried_depth(mesh, &found) {
             Some(buried) => depth = depth.max(buried),
-            None => (depth, bound) = (f64::INFINITY, "many facets"),
+            None => {
+                depth = f64::INFINITY;
+                by = format!("by more than {tolerance:.1e} m");
+            }
         }
+    }
+    if by.is_empty() {
+        by = format!("by {depth:.1e} m at most");
     }
     let places = if found.count == 1 { "1 place".to_string() } else { format!("{} places", found.count) };
     if depth <= tolerance {
-        return Ok(Some(format!(
-            "the surface passes through itself at {places}, by {depth:.1e} m at most; this is tolerated"
-        )));
+        return Ok(Some(format!("the surface passes through itself at {places}, {by}; this is tolerated")));
     }
     let middle = |f: usize| format_position(&(mesh.facet_corners(f).iter().sum::<Vector<3>>() / 3.0));
     let (first, second) = (middle(a), middle(b));
-    let by = if bound.is_empty() { format!("{depth:.1e} m") } else { bound.to_string() };
+    let limit = if tolerance > 0.0 { format!("; {tolerance:.1e} m is tolerated here") } else { String::new() };
     let what = match found.overlapping {
-        0 => format!(
-            "the mesh passes through itself at {places}: its facets about {first} and {second} m cross, by {by} at most"
-        ),
-        n => format!(
-            "parts of the mesh share volume, which counts twice: at {places} facets cross or, {n} times, cover the same \
-             area, the first about {first} and {second} m, by {by} at most"
+        0 => format!("the mesh passes through itself at {places}, {by}: its facets about {first} and {second} m cross"),
+        _ => format!(
+            "parts of the mesh share volume, which counts twice: facets cross or cover the same area at {places}, {by}, \
+             as about {first} and {second} m"
         ),
     };
-    let limit = if tolerance > 0.0 { format!("; {tolerance:.1e} m is tolerated here") } else { String::new() };
     let help = format!("unite its parts (a \"boolean union\") in the program that made it: volume counts once{limit}");
     Err(Error::scene(what).help(help))
 }

@@ -115,14 +115,14 @@ impl Surface {
             return exact;
         }
         let (mut near, count) = self.join(tolerance, false);
-        let mut told = Vec::new();
+        let mut changes = Vec::new();
         if count > 0 {
-            told.push(format!(
+            changes.push(format!(
                 "{} joined to others within {tolerance:.1e} m, which is {JOINED:.0e} of the size",
                 counted(count, "corner is", "corners are")
             ));
         }
-        told.extend(near.remove_doubled_facets());
+        changes.extend(near.remove_doubled_facets());
         if !near.is_closed() {
             // Parts that touch along edges are closed only if each keeps its corners.
             let (apart, count) = self.join(tolerance, true);
@@ -136,7 +136,7 @@ impl Surface {
                 return apart;
             }
         }
-        notes.extend(told);
+        notes.extend(changes);
         near
     }
 

@@ -4,7 +4,11 @@
 use std::path::Path;
 
 use super::{MeshFile, coordinate, damaged, text};
-use crate::{error::Result, geometry::triangulation::triangulate, math::Vector};
+use crate::{
+    error::Result,
+    geometry::triangulation::{MOST_CORNERS, triangulate},
+    math::Vector,
+};
 
 /// Keywords without effect on the surface.
 const UNUSED: [&str; 24] = [
@@ -41,7 +45,8 @@ const CURVED: [&str; 5] = ["surf", "curv", "curv2", "cstype", "deg"];
 pub(super) fn parse(path: &Path, bytes: &[u8]) -> Result<MeshFile> {
     let (text, notes) = text(path, bytes)?;
     let mut file = MeshFile { notes, ..MeshFile::default() };
-    let mut face: Vec<u32> = Vec::new();
+    // Corners of the facets, from 0, and line and number of corners of each facet. Corners may follow their facets.
+    let (mut corners, mut faces): (Vec<i64>, Vec<(usize, usize)>) = (Vec::new(), Vec::new());
     let mut lines = text.lines().enumerate().map(|(i, line)| (i + 1, line));
     while let Some((number, line)) = lines.next() {
         // A backslash at its end continues the line.
@@ -65,16 +70,17 @@ pub(super) fn parse(path: &Path, bytes: &[u8]) -> Result<MeshFile> {
                 file.surface.points.push(point);
             }
             Some("f" | "fo") => {
-                face.clear();
+                let before = corners.len();
                 for word in words {
-                    face.push(index(path, number, word, file.surface.points.len())?);
+                    corners.push(index(path, number, word, file.surface.points.len())?);
                 }
-                if face.len() < 3 {
+                if corners.len() > before + MOST_CORNERS {
+                    return Err(damaged(path, format!("line {number}: a facet of more than {MOST_CORNERS} corners")));
+                }
+                if corners.len() < before + 3 {
                     return Err(damaged(path, format!("line {number}: a facet has three corners or more")));
                 }
-                for facet in triangles(&file.surface.points, &face) {
-                    file.push_indices(path, facet, 0)?;
-                }
+                faces.push((number, corners.len() - before));
             }
             Some(word) if CURVED.contains(&word) => {
                 let why = format!("line {number}: \"{word}\" describes a curved surface, which is not read");
@@ -87,19 +93,34 @@ pub(super) fn parse(path: &Path, bytes: &[u8]) -> Result<MeshFile> {
             }
         }
     }
+    let count = file.surface.points.len();
+    let mut rest = &corners[..];
+    for (line, size) in faces {
+        let (face, after) = rest.split_at(size);
+        rest = after;
+        if let Some(missing) = face.iter().find(|corner| !(0..count as i64).contains(*corner)) {
+            let why = format!("line {line}: there is no corner {}, only {count}", missing + 1);
+            return Err(damaged(path, why));
+        }
+        let face: Vec<u32> = face.iter().map(|&corner| corner as u32).collect();
+        for facet in triangles(&file.surface.points, &face) {
+            file.push_indices(path, facet, 0)?;
+        }
+    }
     file.surface.parts = connected_parts(file.surface.points.len(), &file.surface.facets);
     Ok(file)
 }
 
-/// Returns the number, from 0, of the corner that `word` names among the `count` corners before it.
-fn index(path: &Path, line: usize, word: &str, count: usize) -> Result<u32> {
+/// Returns the number, from 0, of the corner that `word` names; negative numbers count back from the `count` corners
+/// before the line.
+fn index(path: &Path, line: usize, word: &str, count: usize) -> Result<i64> {
     let number: Option<i64> = word.split('/').next().and_then(|number| number.parse().ok());
-    let number = number.ok_or_else(|| damaged(path, format!("line {line}: \"{word}\" is no corner")))?;
-    let absolute = if number < 0 { count as i64 + number } else { number - 1 };
-    if !(0..count as i64).contains(&absolute) {
-        return Err(damaged(path, format!("line {line}: there is no corner {number} before this line, only {count}")));
+    match number {
+        Some(number) if number > 0 => Ok(number - 1),
+        Some(number) if number < 0 && number >= -(count as i64) => Ok(count as i64 + number),
+        Some(number) => Err(damaged(path, format!("line {line}: there is no corner {number}"))),
+        None => Err(damaged(path, format!("line {line}: \"{word}\" is no corner"))),
     }
-    Ok(absolute as u32)
 }
 
 /// Returns the triangles of a polygon: those around its first corner if it is convex, otherwise ears.

@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use super::{MeshFile, coordinate, damaged, text};
-use crate::error::Result;
+use crate::error::{Error, Result};
 
 /// Bytes before the facets of a binary solid: 80 of a header, and their number.
 const HEADER: usize = 84;
@@ -77,6 +77,11 @@ fn parse_text(path: &Path, bytes: &[u8]) -> Result<MeshFile> {
     let mut file = MeshFile { notes, ..MeshFile::default() };
     let (mut solids, mut ended) = (0, false);
     let mut corners: Vec<[f64; 3]> = Vec::new();
+    let last = text.lines().count();
+    let cut = |line: usize, error: Error| match line == last {
+        true => damaged(path, format!("it is cut short: it ends within line {line}")),
+        false => error,
+    };
     for (line, text) in text.lines().enumerate().map(|(i, text)| (i + 1, text)) {
         let mut words = text.split_ascii_whitespace();
         while let Some(word) = words.next() {
@@ -99,7 +104,7 @@ fn parse_text(path: &Path, bytes: &[u8]) -> Result<MeshFile> {
                     let _ = words.next();
                 }
                 "vertex" => {
-                    let mut next = || coordinate(path, line, words.next());
+                    let mut next = || coordinate(path, line, words.next()).map_err(|e| cut(line, e));
                     corners.push([next()?, next()?, next()?]);
                 }
                 "endloop" => match corners[..] {
@@ -113,7 +118,9 @@ fn parse_text(path: &Path, bytes: &[u8]) -> Result<MeshFile> {
                     }
                 },
                 "endfacet" => {}
-                _ => return Err(damaged(path, format!("line {line}: \"{word}\" is no word of STL"))),
+                // An extension of some programs.
+                "color" => break,
+                _ => return Err(cut(line, damaged(path, format!("line {line}: \"{word}\" is no word of STL")))),
             }
         }
     }

@@ -278,7 +278,7 @@ fn a_mesh_in_millimetres_or_less_than_dp_large_is_refused_with_the_probable_unit
     )
     .unwrap();
     let message = refusal("file = \"mm.stl\"", &folder);
-    // 500 in water of 1 m: 0.5 m is the nearest size.
+    // 500 in water of 1 m: 0.5 m is the largest size that fits.
     assert!(
         message.contains("unit is probably mm, and its size 0.5000 m") && message.contains("scene.toml:8"),
         "{message}"
