@@ -91,11 +91,32 @@ impl<const D: usize> Hollow<D> {
             low = low.min(end);
             high = high.max(end + along[D - 1].max(0.0) * column.length);
         }
+        let mut level = 0.5 * (low + high);
         for _ in 0..50 {
-            let middle = 0.5 * (low + high);
-            if self.volume_and_moment_below(pose, middle).0 < volume { low = middle } else { high = middle }
+            let excess = self.volume_and_moment_below(pose, level).0 - volume;
+            if excess.abs() <= 1e-14 * volume {
+                break;
+            }
+            if excess < 0.0 {
+                low = level
+            } else {
+                high = level
+            }
+            // Newton's method, with the area of the surface, and bisection where it leaves the bounds.
+            let step = level - excess / self.surface_area(pose, level);
+            level = if low < step && step < high { step } else { 0.5 * (low + high) };
         }
-        0.5 * (low + high)
+        level
+    }
+
+    /// Returns the area (m²; m in 2-D) of the horizontal plane at `level` (m) in the hollow at `pose`.
+    fn surface_area(&self, pose: &Pose<D>, level: f64) -> f64 {
+        let along = (pose.rotation * self.along)[D - 1].max(1e-9);
+        let cut = self.columns.iter().filter(|column| {
+            let low = pose.point(&column.low)[D - 1];
+            low < level && level < low + along * column.length
+        });
+        cut.map(|column| column.area / along).sum()
     }
 
     /// Returns the height (m) of the rim at `pose`; infinity if the hollow is closed.

@@ -7,7 +7,7 @@ use crate::{
         format::{coordinates, three_digits, two_digits_down},
     },
     scene::world_bounds,
-    solid::Role,
+    solid::{Role, statics::JointGroups},
 };
 
 /// Solids nearer than this (dp) are in touch: contact is the engine's.
@@ -19,7 +19,7 @@ const FACING: [f64; 2] = [-0.8, -0.99];
 
 /// What was found between solids.
 pub(crate) struct Gaps {
-    /// Which solids touch another, by their skins too.
+    /// Which solids touch another to which no joints tie them, by their skins too.
     pub touching: Vec<bool>,
 }
 
@@ -35,6 +35,8 @@ impl<const D: usize> PreflightContext<'_, D> {
     pub(super) fn gaps(&self, findings: &mut Vec<Finding>) -> Gaps {
         let n = self.solids().len();
         let mut touching = vec![false; n];
+        let specs: Vec<_> = self.solids().iter().map(|solid| &solid.spec).collect();
+        let tied = JointGroups::of(&specs, self.system.constraints()).jointed;
         let moves = |i: usize| !matches!(self.solids()[i].spec.role, Role::Fixed);
         for i in 0..n {
             for j in 0..i {
@@ -47,6 +49,8 @@ impl<const D: usize> PreflightContext<'_, D> {
                         (*gap, touch) = (facing, touch || nearest < within);
                     }
                 }
+                // Bodies that joints tie together do not carry one another by contact.
+                touch &= tied[i] != tied[j];
                 touching[i] |= touch;
                 touching[j] |= touch;
                 let narrowest = found.into_iter().flatten().min_by(|a, b| a.width.total_cmp(&b.width));

@@ -4,7 +4,10 @@ use super::{Finding, PreflightContext};
 use crate::{
     geometry::hollow::{Enclosure, Hollow, Place, may_enclose},
     math::{Bounds, Vector, format::three_digits},
-    solid::{Role, Solid, hydrostatics::Hull},
+    solid::{
+        Role, Solid,
+        hydrostatics::{Ballast, Hull},
+    },
 };
 
 /// Share of a hollow's volume below the still level that water may take while the hollow counts as dry.
@@ -50,7 +53,8 @@ pub(super) fn hull<'a, const D: usize>(context: &'a PreflightContext<D>, i: usiz
         } else if hollow.rim_height(pose) > level {
             // Half a row is the error of a count.
             let as_outside = volume_below(level - 0.6 * dp) < water && water < volume_below(level + 0.6 * dp);
-            hull.ballast.push((hollow, if as_outside { volume_below(level) } else { water }));
+            let water = if as_outside { volume_below(level) } else { water };
+            hull.ballast.push((hollow, Ballast::Volume(water)));
         }
     }
     hull

@@ -18,13 +18,10 @@ use crate::{
     math::Pose,
     solid::{
         Role, SolidSpec,
-        hydrostatics::Hull,
+        hydrostatics::{Ballast, Hull},
         tie_loads::{StartState, TieLoads},
     },
 };
-
-/// Most trials of the hollows that water fills at an equilibrium.
-const MOST_TRIALS: usize = 200;
 
 /// The solids of a scene, in their places.
 pub(super) struct PlacedSolids<const D: usize> {
@@ -133,17 +130,16 @@ impl<const D: usize> PlacedSolids<D> {
         let spec = &self.specs[i];
         let hollows = self.enclosures[i].as_ref().map_or(&[][..], |enclosure| &enclosure.hollows);
         let mut hull = Hull { dry: hollows.iter().collect(), ..Hull::new(&spec.shape) };
-        for _ in 0..MOST_TRIALS {
+        // Each pass returns, or takes a hollow out of the dry ones.
+        loop {
             let rise = hull.equilibrium_height(&spec.pose, mass, rho0, level);
             match &rise {
                 Ok(rise) => {
                     let mut pose = spec.pose;
                     pose.position[D - 1] += rise;
                     let next = self.hull_at(i, &pose, level, water);
-                    let same = hull.dry.len() <= next.dry.len()
-                        && hull.ballast.len() == next.ballast.len()
-                        && hull.ballast.iter().zip(&next.ballast).all(|(a, b)| (a.1 - b.1).abs() < 1e-12 * a.1);
-                    if same {
+                    let filled = |own: &Hollow<D>| next.dry.iter().all(|hollow| !std::ptr::eq(*hollow, own));
+                    if !hull.dry.iter().any(|hollow| filled(hollow)) {
                         return Ok(*rise);
                     }
                     // A hollow that fills in one place stays full.
@@ -160,7 +156,6 @@ impl<const D: usize> PlacedSolids<D> {
                 }
             }
         }
-        hull.equilibrium_height(&spec.pose, mass, rho0, level)
     }
 
     /// Returns solid number `i` at `pose` in `water`, whose still level outside is `level` (m), with its hollows.
@@ -171,7 +166,7 @@ impl<const D: usize> PlacedSolids<D> {
                 None => hull.dry.push(hollow),
                 // Water as high as outside carries nothing.
                 Some(own) if own == level => (),
-                Some(own) => hull.ballast.push((hollow, hollow.volume_and_moment_below(pose, own).0)),
+                Some(own) => hull.ballast.push((hollow, Ballast::Level(own))),
             }
         }
         hull

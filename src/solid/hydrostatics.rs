@@ -7,14 +7,33 @@ use crate::{
     solid::FreeBody,
 };
 
+/// The water in a hollow.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Ballast {
+    /// Of this volume, m³ (m² in 2-D), at any pose.
+    Volume(f64),
+    /// Up to this height, m.
+    Level(f64),
+}
+
+impl Ballast {
+    /// Volume (m³; m² in 2-D) of the water in `hollow` at `pose`, and its first moment.
+    fn volume_and_moment<const D: usize>(self, hollow: &Hollow<D>, pose: &Pose<D>) -> (f64, Vector<D>) {
+        match self {
+            Self::Volume(volume) => (volume, hollow.volume_and_moment_below(pose, hollow.level_of(pose, volume)).1),
+            Self::Level(level) => hollow.volume_and_moment_below(pose, level),
+        }
+    }
+}
+
 /// The volume with which a solid displaces water: its material, its hollows that are dry, and those with water of their
 /// own, less that water.
 pub(crate) struct Hull<'a, const D: usize> {
     pub(crate) shape: &'a Shape<D>,
     /// The hollows without water.
     pub(crate) dry: Vec<&'a Hollow<D>>,
-    /// The hollows with water of their own, with its volume, m³ (m² in 2-D).
-    pub(crate) ballast: Vec<(&'a Hollow<D>, f64)>,
+    /// The hollows with water of their own.
+    pub(crate) ballast: Vec<(&'a Hollow<D>, Ballast)>,
 }
 
 impl<'a, const D: usize> Hull<'a, D> {
@@ -36,7 +55,8 @@ impl<'a, const D: usize> Hull<'a, D> {
             (all, first, any) = (all + volume, first + moment, true);
         }
         for (hollow, water) in self.ballast.iter().filter(|(hollow, _)| hollow.rim_height(pose) >= level - slack) {
-            (all, first) = (all - water, first - hollow.volume_and_moment_below(pose, hollow.level_of(pose, *water)).1);
+            let (volume, moment) = water.volume_and_moment(hollow, pose);
+            (all, first) = (all - volume, first - moment);
         }
         if any && all != 0.0 { (all, first / all) } else { (all, centroid) }
     }
@@ -49,7 +69,7 @@ impl<'a, const D: usize> Hull<'a, D> {
     /// Volume (m³; m² in 2-D) of the displaced water, with hollows dry even if their rim lies below the level.
     pub(crate) fn volume_if_dry(&self, pose: &Pose<D>, level: f64) -> f64 {
         let hollows: f64 = self.hollows().map(|hollow| hollow.volume_and_moment_below(pose, level).0).sum();
-        let ballast: f64 = self.ballast.iter().map(|(_, water)| water).sum();
+        let ballast: f64 = self.ballast.iter().map(|(hollow, water)| water.volume_and_moment(hollow, pose).0).sum();
         self.shape.submerged_volume(pose, level).0 + hollows - ballast
     }
 

@@ -393,12 +393,12 @@ impl<'a, const D: usize> StaticSystem<'a, D> {
         if self.held[self.group[i]] {
             return Support::Held;
         }
-        let on_bottom = |j: usize| {
-            let lowest = self.bodies[j].hull.extent(&self.pose(j))[0];
-            let displaced = self.water.rho0 * self.bodies[j].hull.volume_if_dry(&self.pose(j), level);
-            lowest <= self.bodies[j].bottom + 1e-6 * self.size(j) && displaced < (1.0 - 1e-6) * self.bodies[j].body.mass
-        };
-        if self.group_of(i).any(on_bottom) {
+        let reaches =
+            |j: usize| self.bodies[j].hull.extent(&self.pose(j))[0] <= self.bodies[j].bottom + 1e-6 * self.size(j);
+        let displaced = |j: usize| self.water.rho0 * self.bodies[j].hull.volume_if_dry(&self.pose(j), level);
+        let (mass, carried) =
+            self.group_of(i).fold((0.0, 0.0), |sum, j| (sum.0 + self.bodies[j].body.mass, sum.1 + displaced(j)));
+        if carried < (1.0 - 1e-6) * mass && self.group_of(i).any(reaches) {
             let open = self.bodies[i].hull.rim_height(&self.bodies[i].pose).is_finite();
             return if open { Support::Floods } else { Support::Bottom };
         }

@@ -41,6 +41,7 @@ fn the_space_in_an_open_barge_is_exact_at_every_level() {
             let error = 0.5 * dp * dp;
             assert!((volume - 0.8 * level).abs() < error, "dp {dp}, level {level}: {volume}");
             let centre = first / volume;
+            assert!((hollow.level_of(&pose, volume) - level).abs() < 1e-9);
             assert!((centre[0] - 2.5).abs() < 1e-3 && (centre[1] - 0.5 * level).abs() < 0.02 * dp, "{centre}");
         }
     }
