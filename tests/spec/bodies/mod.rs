@@ -17,3 +17,4 @@ mod many_bodies;
 mod meshes;
 mod natural_periods;
 mod trim;
+mod walls;

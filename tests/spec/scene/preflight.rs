@@ -150,7 +150,7 @@ fn a_valid_scene_has_no_findings() {
 type Fault =
     (&'static str, &'static [(&'static str, &'static str)], &'static str, &'static [(&'static str, &'static str)]);
 
-const FAULTS: [Fault; 27] = [
+const FAULTS: [Fault; 28] = [
     ("slow_sound", &[("model.c0_factor", "5")], "c0 = 20 ", &[("model.c0", "20")]),
     // A plate with a single row of boundary particles moves water like a thick one: 0.4 m × 2π/s.
     (
@@ -196,6 +196,12 @@ const FAULTS: [Fault; 27] = [
         "thin_body",
         &[("solid.box.shape.box.size", "[0.2, 0.01]")],
         "0.034 m",
+        &[("solid.box.shape.box.size", "[0.2, 0.034]")],
+    ),
+    (
+        "thin_part",
+        &[("solid.box.shape.box.size", "[0.2, 0.004]")],
+        "make it dp thick",
         &[("solid.box.shape.box.size", "[0.2, 0.034]")],
     ),
     (
