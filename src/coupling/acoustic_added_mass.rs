@@ -22,7 +22,7 @@ use nalgebra::{SMatrix, SVector};
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    geometry::Shape,
+    geometry::{Shape, thin::thin_place},
     math::{Bivector, Matrix, Vector},
     solid::{FreeBody, Kinematics, Load, Role, Solid},
     sph::FluidProperties,
@@ -293,10 +293,17 @@ pub fn stiffest_frequency<const D: usize>(shape: &Shape<D>, body: &FreeBody<D>, 
     let spring = medium.rho0 * medium.c0 * medium.c0 * medium.dp.powi(D as i32 - 2);
     let (mut along, mut about) = (Vector::<D>::zeros(), [0.0; 3]);
     for point in shape.boundary_points(medium.dp, 1) {
-        let normal = shape.outward_normal(&point.r, 0.05 * medium.dp);
-        along += normal.component_mul(&normal) * spring;
+        let mut normal = shape.outward_normal(&point.r, 0.05 * medium.dp);
+        let mut stiffness = spring;
+        // A particle in the middle of a part about one dp thick has water on both faces.
+        if normal.norm() < 0.5
+            && let Some(place) = thin_place(shape, &point.r, 1.5 * medium.dp, 0.05 * medium.dp)
+        {
+            (normal, stiffness) = (place.normal, 2.0 * spring);
+        }
+        along += normal.component_mul(&normal) * stiffness;
         for (sum, arm) in about.iter_mut().zip(Bivector::torque(&(point.r - body.centre), &normal).axial()) {
-            *sum += arm * arm * spring;
+            *sum += arm * arm * stiffness;
         }
     }
     let inertia = |i: usize| if D == 2 { body.inertia[(0, 0)] } else { body.inertia[(i, i)] };

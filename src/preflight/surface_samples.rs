@@ -1,7 +1,7 @@
 //! The faces of a solid, seen at the places of its outermost boundary particles.
 
 use crate::{
-    geometry::Shape,
+    geometry::{Shape, thin::thin_place},
     math::Vector,
     solid::{Role, Solid},
 };
@@ -46,6 +46,12 @@ fn nearest_samples<const D: usize>(shape: &Shape<D>, r: &Vector<D>, dp: f64) -> 
         let n = shape.outward_normal(&r, 0.05 * dp);
         SurfaceSample { x: r - n * shape.signed_distance(&r), n }
     };
+    // A mesh has the normal of one face even midway between two.
+    let place = thin_place(shape, r, dp, 1e-3 * dp).filter(|place| (place.middle - r).norm() < 0.01 * dp);
+    if let Some(place) = place {
+        let other = |n: Vector<D>| SurfaceSample { x: place.middle + n * (0.5 * place.thickness), n };
+        return vec![other(place.normal), other(-place.normal)];
+    }
     let own = face(*r);
     if own.n.norm() > 0.5 {
         return vec![own];

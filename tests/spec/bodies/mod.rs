@@ -20,4 +20,5 @@ mod meshes;
 mod natural_periods;
 mod shapes;
 mod trim;
+mod walls;
 mod wind;

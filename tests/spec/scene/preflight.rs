@@ -214,6 +214,12 @@ const FAULTS: [Fault; 28] = [
         &[("solid.box.shape.box.size", "[0.2, 0.034]")],
     ),
     (
+        "thin_part",
+        &[("solid.box.shape.box.size", "[0.2, 0.004]")],
+        "make it dp thick",
+        &[("solid.box.shape.box.size", "[0.2, 0.034]")],
+    ),
+    (
         "slender_body",
         &[("solid.box.shape.box.size", "[0.2, 0.05]")],
         "dp = 0.0073",
