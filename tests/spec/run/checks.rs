@@ -123,7 +123,7 @@ fn empty_fields_of_a_table_are_gaps_and_invalid_tables_are_refused() -> std::io:
     let reference = folder.join("reference.csv");
     let plan = |names: [&str; 2]| by_table("box.gap_m", names, 0.0, bound(0.0));
     assert_eq!(judge(&plan(["t", "z"]), &folder).passed, Some(true));
-    let missing = ReferenceCheck::new(&plan(["t_s", "z"]), &folder).err();
+    let missing = ReferenceCheck::new(&plan(["x_m", "z"]), &folder).err();
     assert_eq!(missing.map(|e| e.kind), Some(ErrorKind::Scene));
     fs::write(&reference, "t,z\n1,5\n2,six\n")?;
     let word = ReferenceCheck::new(&plan(["t", "z"]), &folder).err();

@@ -164,7 +164,7 @@ fn a_run_and_an_inspection_note_the_layout_of_a_table_and_its_units() -> pontoon
     ] {
         assert!(text.contains(part), "{part}: {text}");
     }
-    let sets = [("until", "0.02")].map(|(key, value)| (key.to_string(), value.to_string()));
+    let sets = [("until", "0.25")].map(|(key, value)| (key.to_string(), value.to_string()));
     let options = RunOptions { out: Some(folder.join("out")), overrides: sets.to_vec(), threads: Some(1) };
     let notes = run::run(&folder.join("scene.toml"), &options, &mut |_: &Progress| true)?.manifest.notes;
     assert!(notes.len() == 1 && notes[0].contains("separator semicolon"), "{notes:?}");
