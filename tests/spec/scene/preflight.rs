@@ -165,7 +165,7 @@ fn a_body_in_too_viscous_water_is_found_with_the_alpha_that_helps() {
 type Fault =
     (&'static str, &'static [(&'static str, &'static str)], &'static str, &'static [(&'static str, &'static str)]);
 
-const FAULTS: [Fault; 28] = [
+const FAULTS: [Fault; 29] = [
     ("slow_sound", &[("model.c0_factor", "5")], "c0 = 20 ", &[("model.c0", "20")]),
     // A plate with a single row of boundary particles moves water like a thick one: 0.4 m × 2π/s.
     (
