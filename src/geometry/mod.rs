@@ -16,7 +16,6 @@ mod offset;
 pub(crate) mod overlap;
 mod packing;
 mod shell;
-#[cfg_attr(not(feature = "dim3"), expect(dead_code, reason = "the solids are 3-D"))]
 pub(crate) mod solids_of_revolution;
 mod submerged_volume;
 
