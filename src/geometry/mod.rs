@@ -18,7 +18,6 @@ pub(crate) mod overlap;
 mod packing;
 mod projected_area;
 mod shell;
-#[cfg_attr(not(feature = "dim3"), expect(dead_code, reason = "the solids are 3-D"))]
 pub(crate) mod solids_of_revolution;
 mod submerged_volume;
 pub(crate) mod thin;

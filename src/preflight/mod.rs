@@ -205,7 +205,7 @@ pub fn preflight<const D: usize>(
     look.check_probes(&sound, &mut findings);
     lifetimes::check(&look, &mut findings);
     let (waves, absorbers) = (look.generated_waves(&mut findings), look.absorbers());
-    let flows = look.body_flows(&waves, &mut findings);
+    let flows = reynolds::body_flows(&look, &waves, &mut findings);
     findings.sort_by_key(|f| f.severity);
     Preflight { size, sound, step, waves, absorbers, bodies, flows, findings }
 }

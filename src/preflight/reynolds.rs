@@ -36,54 +36,65 @@ pub struct BodyFlow {
     pub reynolds: Option<f64>,
 }
 
-impl<const D: usize> PreflightContext<'_, D> {
-    /// Returns the flow about each moving body, and adds findings where viscosity governs it.
-    pub(super) fn body_flows(&self, waves: &[GeneratedWave], findings: &mut Vec<Finding>) -> Vec<BodyFlow> {
-        let model = self.system.model();
-        let viscosity_m2ps = model.viscosity.effective(model.c0, model.h, D);
-        let flows: Vec<BodyFlow> =
-            self.solids().iter().enumerate().filter_map(|(i, s)| self.body_flow(i, s, waves, viscosity_m2ps)).collect();
-        for flow in &flows {
-            let Some(reynolds) = flow.reynolds.filter(|re| *re < LEAST) else { continue };
-            // A laminar viscosity is the scene's own.
-            let Viscosity::Artificial(law) = model.viscosity else { continue };
-            let what = format!(
-                "\"{}\" moves at {} m/s in water whose effective viscosity is {} m²/s: its Reynolds number is {}, and viscosity \
-                 slows it",
-                flow.name,
-                three_digits(flow.speed_mps),
-                three_digits(flow.viscosity_m2ps),
-                three_digits(reynolds)
-            );
-            let alpha = two_digits_down(law.alpha * reynolds / LEAST);
-            let mend = format!(
-                "{LEAST} needs  viscosity = {{ artificial = {{ alpha = {alpha} }} }}  in [model], or a smaller dp"
-            );
-            findings.push(Finding::warning("viscous_body", what, mend));
-        }
-        flows
+/// Returns the flow about each moving body, and adds findings where viscosity governs it.
+pub(super) fn body_flows<const D: usize>(
+    context: &PreflightContext<D>,
+    waves: &[GeneratedWave],
+    findings: &mut Vec<Finding>,
+) -> Vec<BodyFlow> {
+    let model = context.system.model();
+    let viscosity_m2ps = model.viscosity.effective(model.c0, model.h, D);
+    let flows: Vec<BodyFlow> = context
+        .solids()
+        .iter()
+        .enumerate()
+        .filter_map(|(i, s)| body_flow(context, i, s, waves, viscosity_m2ps))
+        .collect();
+    for flow in &flows {
+        let Some(reynolds) = flow.reynolds.filter(|re| *re < LEAST) else { continue };
+        // A laminar viscosity is the scene's own.
+        let Viscosity::Artificial(law) = model.viscosity else { continue };
+        let what = format!(
+            "\"{}\" moves at {} m/s in water whose effective viscosity is {} m²/s: its Reynolds number is {}, and viscosity \
+             slows it",
+            flow.name,
+            three_digits(flow.speed_mps),
+            three_digits(flow.viscosity_m2ps),
+            three_digits(reynolds)
+        );
+        let alpha = two_digits_down(law.alpha * reynolds / LEAST);
+        let mend =
+            format!("{LEAST} needs  viscosity = {{ artificial = {{ alpha = {alpha} }} }}  in [model], or a smaller dp");
+        findings.push(Finding::warning("viscous_body", what, mend));
     }
+    flows
+}
 
-    fn body_flow(&self, i: usize, solid: &Solid<D>, waves: &[GeneratedWave], nu: f64) -> Option<BodyFlow> {
-        let volume = solid.spec.shape.volume_properties().volume;
-        let size_m = volume.powf(1.0 / D as f64);
-        let (speed_mps, speed_from) = match &solid.spec.role {
-            Role::Fixed => return None,
-            Role::Driven(_) => (self.driven_speed(i), "motion"),
-            Role::Free(body) => {
-                let ratio = body.mass / (self.system.model().rho0 * volume);
-                let orbital = waves.iter().filter_map(|w| Some(std::f64::consts::PI * w.height_m / w.period_s?));
-                let speeds = [
-                    (((1.0 - ratio).abs() * self.g * size_m).sqrt(), "buoyancy"),
-                    (solid.kinematics.velocity.norm(), "start"),
-                    (orbital.fold(0.0, f64::max), "waves"),
-                ];
-                speeds.into_iter().fold((0.0, "buoyancy"), |most, x| if x.0 > most.0 { x } else { most })
-            }
-        };
-        let known = speed_mps > 0.0 && size_m.is_finite();
-        let reynolds = (nu > 0.0).then(|| speed_mps * size_m / nu);
-        let name = solid.spec.name.clone();
-        known.then_some(BodyFlow { name, speed_mps, speed_from, size_m, viscosity_m2ps: nu, reynolds })
-    }
+fn body_flow<const D: usize>(
+    context: &PreflightContext<D>,
+    i: usize,
+    solid: &Solid<D>,
+    waves: &[GeneratedWave],
+    nu: f64,
+) -> Option<BodyFlow> {
+    let volume = solid.spec.shape.volume_properties().volume;
+    let size_m = volume.powf(1.0 / D as f64);
+    let (speed_mps, speed_from) = match &solid.spec.role {
+        Role::Fixed => return None,
+        Role::Driven(_) => (context.driven_speed(i), "motion"),
+        Role::Free(body) => {
+            let ratio = body.mass / (context.system.model().rho0 * volume);
+            let orbital = waves.iter().filter_map(|w| Some(std::f64::consts::PI * w.height_m / w.period_s?));
+            let speeds = [
+                (((1.0 - ratio).abs() * context.g * size_m).sqrt(), "buoyancy"),
+                (solid.kinematics.velocity.norm(), "start"),
+                (orbital.fold(0.0, f64::max), "waves"),
+            ];
+            speeds.into_iter().fold((0.0, "buoyancy"), |most, x| if x.0 > most.0 { x } else { most })
+        }
+    };
+    let known = speed_mps > 0.0 && size_m.is_finite();
+    let reynolds = (nu > 0.0).then(|| speed_mps * size_m / nu);
+    let name = solid.spec.name.clone();
+    known.then_some(BodyFlow { name, speed_mps, speed_from, size_m, viscosity_m2ps: nu, reynolds })
 }

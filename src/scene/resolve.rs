@@ -103,14 +103,15 @@ impl Scene {
 
     /// Returns the values of water that the scene does not name.
     fn usual_model(&self) -> Model {
-        let usual = Model::water(self.dimension, self.dp, 1.0);
+        // Lengths are in dp: h over dp is exact.
+        let usual = Model::water(self.dimension, 1.0, 1.0);
         let weightless = self.context().gravity.is_some_and(|gravity| gravity.strongest == 0.0);
         if weightless || self.solid.iter().all(|solid| solid.free.is_none()) {
             return usual;
         }
         // Water that cannot be built has no depth; its construction reports the error.
         match self.still_water() {
-            Ok(still) => usual.deep_water(still.depth),
+            Ok(still) => usual.deep_water(still.depth / self.dp),
             Err(_) => usual,
         }
     }

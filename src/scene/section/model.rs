@@ -133,7 +133,7 @@ impl ModelConfig {
 
     /// Fills in the other defaults; `usual` are the values of water.
     pub(crate) fn fill(&mut self, ctx: &Context, defaults: &mut Defaults, usual: &Model) {
-        let deep = *usual != Model::water(ctx.dimension, ctx.dp, 1.0);
+        let deep = *usual != Model::water(ctx.dimension, 1.0, 1.0);
         let wendland = "no pairing of particles and less noise than the cubic spline, at the same cost";
         defaults.fill("model.kernel", &mut self.kernel, usual.kernel, wendland);
         let why = "each pair by its own places alone; \"corrected\" where waves travel";

@@ -152,7 +152,7 @@ fn a_body_in_too_viscous_water_is_found_with_the_alpha_that_helps() {
     let warning = found.findings.iter().find(|f| f.topic == "viscous_body").expect("a finding");
     let alpha = warning.mend.split("alpha = ").nth(1).and_then(|rest| rest.split(' ').next()).expect("a value");
     let mended = report(&[("model.viscosity.artificial.alpha", alpha)]);
-    // The box has the higher or the lower Reynolds number of the moving bodies; one warning at least disappears.
+    // The value is that of one body; a body of a lower Reynolds number may keep its warning.
     let count = |p: &pontoon::preflight::Preflight| p.findings.iter().filter(|f| f.topic == "viscous_body").count();
     assert!(count(&mended) < count(&found), "{:#?}", mended.flows);
     for flow in &found.flows {
