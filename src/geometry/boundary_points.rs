@@ -14,9 +14,6 @@ use crate::math::{Pose, Vector};
 /// Least distance between two particles of the same solid, dp.
 pub(super) const MIN_SPACING: f64 = 0.7;
 
-/// Thickness of a polygon's part below which it has a single layer, dp: as a box, round(thickness/dp) cells.
-const MIDDLE: f64 = 1.5;
-
 impl<const D: usize> Shape<D> {
     /// Returns the boundary particles in `layers` layers, with a spacing of about `dp` (m).
     ///
@@ -35,22 +32,22 @@ impl<const D: usize> Shape<D> {
             Shape::Cylinder { length, radius, axis } => return cylinder_skin(*length, *radius, *axis, dp, layers),
             Shape::Ball { radius } => capsule_skin(0.0, *radius, D - 1, dp, layers),
             Shape::Capsule { length, radius, axis } => capsule_skin(*length, *radius, *axis, dp, layers),
-            Shape::Polygon { points } => self.with_thin_parts(polygon_points(points, dp, layers), MIDDLE * dp, dp),
+            Shape::Polygon { points } => self.with_thin_parts(polygon_points(points, dp, layers), dp),
             Shape::Polyline { points, thickness } => polyline_points(points, *thickness, dp, layers),
-            Shape::Mesh { .. } => self.with_thin_parts(points_by_distance(self, dp, layers), dp, dp),
+            Shape::Mesh { .. } => self.with_thin_parts(points_by_distance(self, dp, layers), dp),
             Shape::Compound(parts) => return compound_skin(parts, dp, layers),
         };
         thinned(points, MIN_SPACING * dp)
     }
 
-    /// Returns the particles with those in the middle of parts thinner than `limit` (m), which replace all others there.
-    fn with_thin_parts(&self, mut points: Vec<BoundaryPoint<D>>, limit: f64, dp: f64) -> Vec<BoundaryPoint<D>> {
-        if !has_thin_parts(self, limit, dp) {
+    /// Returns the particles with those in the middle of parts thinner than `dp` (m), which replace all others there.
+    fn with_thin_parts(&self, mut points: Vec<BoundaryPoint<D>>, dp: f64) -> Vec<BoundaryPoint<D>> {
+        if !has_thin_parts(self, dp, dp) {
             return points;
         }
-        let in_thick = |p: &&BoundaryPoint<D>| thin_place(self, &p.r, limit, 1e-3 * dp).is_none();
+        let in_thick = |p: &&BoundaryPoint<D>| thin_place(self, &p.r, dp, 1e-3 * dp).is_none();
         let thick: Vec<Vector<D>> = points.iter().filter(in_thick).map(|p| p.r).collect();
-        let middle = middle_points(self, &thick, limit, dp);
+        let middle = middle_points(self, &thick, dp, dp);
         if !middle.is_empty() {
             points.retain(|p| in_thick(&p));
             points.extend(middle.into_iter().map(|r| BoundaryPoint { r, layer: 0 }));
