@@ -226,6 +226,7 @@ impl Scene {
         let water = self.water_bodies::<D>(ctx)?;
         let model = self.model.build(ctx, &self.time, &StillWaterLevel::of(&water))?;
         let solids = placed_solids::<D>(self, ctx, &water, false)?.specs;
+        require_plausible_units(ctx, &self.solid, &water, &solids)?;
         require_affordable(ctx, &water, &solids)?;
         let (fluid, boundary) = estimated_counts(ctx, &water, &solids);
         let dt = (model.cfl * model.h / model.c0).min(model.dt_max);
