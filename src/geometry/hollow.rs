@@ -242,14 +242,14 @@ impl<const D: usize> Search<'_, D> {
     /// Visits the free neighbours of a cell that no wall parts from it.
     fn for_each_neighbour(&self, index: usize, mut visit: impl FnMut(usize)) {
         let (at, mut stride) = (self.cell_at(index), 1);
-        for i in 0..D {
-            if at[i] > 0 && self.are_joined(index, index - stride) {
+        for (place, count) in at.into_iter().zip(self.count) {
+            if place > 0 && self.are_joined(index, index - stride) {
                 visit(index - stride);
             }
-            if at[i] + 1 < self.count[i] && self.are_joined(index, index + stride) {
+            if place + 1 < count && self.are_joined(index, index + stride) {
                 visit(index + stride);
             }
-            stride *= self.count[i];
+            stride *= count;
         }
     }
 
@@ -284,12 +284,12 @@ impl<const D: usize> Search<'_, D> {
         // Whole numbers as keys: cells at the same height up to round-off come in the order of their index.
         let key = |height: f64| (height / self.cell * 1e6).round() as i64;
         let mut queue = BinaryHeap::new();
-        for index in 0..n {
+        for (index, spill) in spill.iter_mut().enumerate() {
             let at = self.cell_at(index);
             if (0..D).any(|i| at[i] == 0 || at[i] + 1 == self.count[i]) && self.is_free(index) {
                 // Water outside is there up to its level.
-                spill[index] = self.height(index);
-                queue.push(Reverse((key(spill[index]), index as u32)));
+                *spill = self.height(index);
+                queue.push(Reverse((key(*spill), index as u32)));
             }
         }
         while let Some(Reverse((_, index))) = queue.pop() {

@@ -70,13 +70,16 @@ impl MeshFile {
     }
 }
 
+/// A reader of the bytes of a file; the path is for messages.
+type Parser = fn(&Path, &[u8]) -> Result<MeshFile>;
+
 /// Reads the solid in the file at `path`, and notes about its content.
 ///
 /// # Errors
 /// `File` if the file cannot be read; `Scene` if the file is neither STL nor OBJ, too large, damaged, or not a solid.
 pub(crate) fn read(path: &Path, options: &MeshOptions) -> Result<(Mesh, Vec<FileNote>)> {
     let kind = path.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
-    let (parse, wanted): (fn(&Path, &[u8]) -> Result<MeshFile>, _) = match kind.as_str() {
+    let (parse, wanted): (Parser, _) = match kind.as_str() {
         "stl" => (stl::parse, "STL"),
         "obj" => (obj::parse, "OBJ"),
         _ => {

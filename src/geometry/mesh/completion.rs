@@ -160,7 +160,7 @@ fn fill(flat: &[[f64; 2]], rings: Vec<Vec<u32>>) -> Option<Vec<[u32; 3]>> {
         ring
     };
     let mut facets = Vec::new();
-    for i in (0..rings.len()).filter(|&i| around[i].len() % 2 == 0) {
+    for i in (0..rings.len()).filter(|&i| around[i].len().is_multiple_of(2)) {
         let own = |j: usize| around[j].len() == around[i].len() + 1 && around[j].contains(&i);
         let holes: Vec<Vec<u32>> = (0..rings.len()).filter(|&j| own(j)).map(|j| turned(&rings[j], false)).collect();
         let triangles = triangulate(flat, &turned(&rings[i], true), &holes)?;

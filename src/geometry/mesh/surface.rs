@@ -199,9 +199,8 @@ impl Surface {
         }
         order.sort_unstable();
         let even = |facet: &[u32; 3]| {
-            facet[0] < facet[1] && facet[1] < facet[2]
-                || facet[1] < facet[2] && facet[2] < facet[0]
-                || facet[2] < facet[0] && facet[0] < facet[1]
+            // Of three different numbers in a cycle, one or two are less than the next.
+            (0..3).filter(|i| facet[*i] < facet[(i + 1) % 3]).count() == 2
         };
         let (mut equal, mut opposite) = (0, 0);
         let mut removed = vec![false; self.facets.len()];

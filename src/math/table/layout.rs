@@ -288,8 +288,7 @@ impl<'a> Rows<'a> {
         let numeric = |cells: &[&str]| cells.iter().any(|cell| is_number(cell));
         let starts = |cells: &[&str]| {
             let open = |cell: &&str| is_number(cell) || cell::is_missing(cell);
-            cells.first().is_some_and(|cell| is_number(cell))
-                || (numeric(cells) && cells.iter().all(|cell| open(&cell)))
+            cells.first().is_some_and(|cell| is_number(cell)) || (numeric(cells) && cells.iter().all(open))
         };
         // The most frequent number of cells; the first of several.
         let counts: Vec<usize> = all.iter().filter(|cells| starts(cells)).map(Vec::len).collect();
@@ -336,7 +335,7 @@ fn form(content: &[Line], named: Option<Separator>) -> (Separator, Decimal) {
     let numbers = |cells: &[&str], decimal: Decimal| {
         let known = |cell: &&str| cell::number(cell, decimal).is_some() || cell::is_missing(cell);
         let count = cells.iter().filter(|cell| cell::number(cell, decimal).is_some()).count();
-        cells.len() > 1 && count > 0 && cells.iter().all(|cell| known(&cell))
+        cells.len() > 1 && count > 0 && cells.iter().all(known)
     };
     let begins = |cells: &[&str], decimal: Decimal| cells.len() > 1 && cell::number(cells[0], decimal).is_some();
     best(numbers).or_else(|| best(begins)).unwrap_or_else(|| {

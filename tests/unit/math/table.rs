@@ -209,7 +209,7 @@ fn numbers_with_several_readings_and_other_cells_are_refused_with_the_reason() {
 
 #[test]
 fn units_come_from_the_row_of_units_or_the_name() -> Result<()> {
-    let unit = |text: &str, column: &str| Ok::<_, Error>(TestFile::new("unit", text).open()?.unit(column)?);
+    let unit = |text: &str, column: &str| TestFile::new("unit", text).open()?.unit(column);
     let some = |unit: &str| Some(unit.to_string());
     assert_eq!(unit("t_s,x_mm\n0,1\n1,2\n", "x_mm")?, some("mm"));
     assert_eq!(unit("t_s,x [mm]\n0,1\n1,2\n", "x [mm]")?, some("mm"));

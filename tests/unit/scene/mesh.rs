@@ -47,7 +47,10 @@ fn binary(header: &str, count: usize, facets: &[[[f64; 3]; 3]]) -> Vec<u8> {
     bytes
 }
 
-fn obj(solids: &[(Vec<[f64; 3]>, Vec<[usize; 4]>)]) -> String {
+/// Corners and four-sided facets.
+type Quads = (Vec<[f64; 3]>, Vec<[usize; 4]>);
+
+fn obj(solids: &[Quads]) -> String {
     let (mut text, mut first) = (String::new(), 1);
     for (points, sides) in solids {
         points.iter().for_each(|[x, y, z]| text += &format!("v {x} {y} {z}\n"));
@@ -219,7 +222,7 @@ fn facets_of_many_corners_are_filled_although_they_are_concave() {
     // A star prism 0.1 m high: ten corners at radius 0.2 and 0.08 m; area 5 R r sin 36°.
     let corner = |i: u32| {
         let (y, x) = (PI * f64::from(i) / 5.0).sin_cos();
-        let radius = if i % 2 == 0 { 0.2 } else { 0.08 };
+        let radius = if i.is_multiple_of(2) { 0.2 } else { 0.08 };
         (radius * x, radius * y)
     };
     let ring = |z: f64| (0..10).map(move |i| (corner(i), z)).map(|((x, y), z)| format!("v {x} {y} {z}\n"));
