@@ -100,6 +100,8 @@ impl Scene {
         let ctx = &scene.context();
         let water = scene.water_bodies::<D>(ctx)?;
         let still = StillWaterLevel::of(&water);
+        let gravity_law =
+            scene.gravity.as_ref().map(|config| gravity::build(ctx, config)).transpose()?.unwrap_or_default();
         let model = scene.model.build(ctx, &scene.time, &still)?;
         scene.model.require_stable_lattice::<D>(ctx, &model)?;
         require_depth(ctx, &still, &model)?;
@@ -161,8 +163,6 @@ impl Scene {
             placed.specs[i].dry.get_or_insert(false);
         });
         let solids = placed.specs;
-        let gravity_law =
-            scene.gravity.as_ref().map(|config| gravity::build(ctx, config)).transpose()?.unwrap_or_default();
         let setup = Setup {
             model,
             gravity_law,

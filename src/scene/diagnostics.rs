@@ -231,8 +231,11 @@ pub(super) fn explain(message: &str, key: &str) -> (Error, String) {
         // The example must have the same parent: the velocity of water differs from the velocity key of a probe.
         let near = nearest_name(word, known.iter().copied()).and_then(|near| example(&format!("{parent}.{near}")));
         // The example of the section would repeat the lines that the scene has.
-        let remove = || format!("remove  {word}: a scene has no such key here");
-        let guess = Some(near.unwrap_or_else(remove));
+        let other = || match nearest_name(word, known.iter().copied()) {
+            Some(near) => format!("write  {near}  in place of  {word}"),
+            None => format!("remove  {word}: a scene has no such key here"),
+        };
+        let guess = Some(near.unwrap_or_else(other));
         let known = format!("known here: {}", list(known));
         return (with(error, [known].into_iter().chain(guess).collect()), shown);
     }

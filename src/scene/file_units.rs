@@ -46,6 +46,11 @@ fn file_unit(shape: &ShapeConfig) -> Option<FileUnit<'_>> {
     }
 }
 
+/// Returns whether a file describes the shape, or a part of it.
+pub(super) fn is_from_file(shape: &ShapeConfig) -> bool {
+    file_unit(shape).is_some()
+}
+
 /// Refuses a solid from a file that is far larger than the water although the scene does not give the unit, or smaller
 /// than dp. `configs` describe the `solids`.
 pub(super) fn require_plausible_units<const D: usize>(

@@ -17,10 +17,6 @@ use crate::{
     sph::boundary::{DynamicBoundary, Slip, SupportCoverage, WallExtrapolation, no_slip_velocity},
 };
 
-/// Largest [`SupportCoverage::share`] of a boundary particle that has water on one face only, –. A thin plate with water
-/// on both faces has about 2: its particles see the mean of two pressures, which they do not take at once.
-const ONE_FACE: f64 = 1.3;
-
 /// The boundary particles of all solids, one solid after the other.
 pub(crate) struct Boundary<const D: usize> {
     pub(crate) particles: Particles<D>,
@@ -32,8 +28,8 @@ pub(crate) struct Boundary<const D: usize> {
     depths: Option<Vec<f64>>,
     /// Outward normals in the frames of their solids; `None` unless water sticks to the face.
     normals: Option<Vec<Vector<D>>>,
-    /// Densities to which they relax; `None` unless walls relax.
-    target_density: Option<Vec<DensityTarget>>,
+    /// Target density (kg/m³) and the fraction applied when it lies above the current one; `None` unless walls relax.
+    target_density: Option<Vec<(f64, f64)>>,
     /// Velocities (m/s) with which they act on the water; `None` where those are their own.
     pub(super) extrapolated_velocity: Option<Vec<Vector<D>>>,
     /// Beside which of them water is not shifted; `None` unless water is shifted.
@@ -43,17 +39,6 @@ pub(crate) struct Boundary<const D: usize> {
     pub(super) local_bounds: Vec<Bounds<D>>,
     /// Poses of the solids when the neighbour lists were built; `None` if they must be built anew.
     pub(super) poses_at_rebuild: Option<Vec<Pose<D>>>,
-}
-
-/// The density to which a boundary particle relaxes.
-#[derive(Clone, Copy)]
-struct DensityTarget {
-    /// kg/m³.
-    density: f64,
-    /// Fraction of an increase that is applied, –.
-    rise: f64,
-    /// Whether the particle takes a lower density without relaxation.
-    falls_at_once: bool,
 }
 
 impl<const D: usize> Boundary<D> {
@@ -150,10 +135,10 @@ impl<const D: usize> Boundary<D> {
     }
 
     /// Sets the target densities of the boundary particles near water.
-    fn set_targets(&mut self, neighbours: &NeighbourLists<D>, targets: Vec<DensityTarget>, rho0: f64) {
+    fn set_targets(&mut self, neighbours: &NeighbourLists<D>, targets: Vec<(f64, f64)>, rho0: f64) {
         let count = self.particles.len();
         let all = self.target_density.get_or_insert_default();
-        all.resize(count, DensityTarget { density: rho0, rise: 0.0, falls_at_once: false });
+        all.resize(count, (rho0, 0.0));
         for (&i, target) in neighbours.boundary_near_fluid().iter().zip(targets) {
             all[i as usize] = target;
         }
@@ -212,14 +197,9 @@ impl<const D: usize> System<D> {
             let bare = rho(k, i, particles.rho[i]);
             particles.rho[i] = match target_density.as_ref().and_then(|targets| targets.get(i)) {
                 None => DynamicBoundary.limited_density(bare, rho0),
-                Some(target) => {
-                    let own = DynamicBoundary.limited_density(bare, target.density.min(rho0));
-                    let difference = target.density - own;
-                    match difference > 0.0 {
-                        true => own + difference * (relaxation * target.rise),
-                        false if target.falls_at_once => target.density,
-                        false => own + difference * relaxation,
-                    }
+                Some(&(target, fraction)) => {
+                    let own = DynamicBoundary.limited_density(bare, target.min(rho0));
+                    own + (target - own) * if target > own { relaxation * fraction } else { relaxation }
                 }
             };
         }
@@ -253,14 +233,11 @@ impl<const D: usize> System<D> {
         let (medium, Boundary { particles, depths, coverage, .. }) = (&self.properties, &self.boundary);
         let depths = depths.as_deref().unwrap_or_default();
         let target = |(&i, fit): (&u32, &WallExtrapolation<f64, D>)| {
-            let (i, solid) = (i as usize, self.owner(i as usize));
-            let pull = medium.gravity - solid.acceleration_at(&particles.r[i]);
+            let i = i as usize;
+            let pull = medium.gravity - self.owner(i).acceleration_at(&particles.r[i]);
             let pressure = fit.pressure(&pull, &medium.gravity, depths[i]);
             let density = medium.rho0 * (1.0 + self.equation_of_state.compression(pressure));
-            let rise = coverage.fraction(fit.weight_sum, depths[i]);
-            let moves = !matches!(solid.spec.role, Role::Fixed);
-            let falls_at_once = moves && coverage.share(fit.weight_sum, depths[i]) < ONE_FACE;
-            DensityTarget { density, rise, falls_at_once }
+            (density, coverage.fraction(fit.weight_sum, depths[i]))
         };
         let wet = self.neighbours.boundary_near_fluid();
         let targets = wet.par_iter().zip(fits).with_min_len(PARTICLES_PER_TASK).map(target).collect();

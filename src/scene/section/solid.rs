@@ -15,6 +15,7 @@ use crate::{
     math::{Bivector, Matrix, NumberOrArray, Pose, Vector},
     scene::{
         context::{Context, Defaults, quoted_list, set_keys},
+        file_units,
         untagged::DraftChoice,
     },
     solid::{DEFAULT_CONTACT_SKIN, DEFAULT_FRICTION, DEFAULT_RESTITUTION, FreeBody, Role, SolidSpec},
@@ -304,7 +305,11 @@ impl SolidConfig {
         };
         let blamed = if spec.has_valid_contact_skin() { key.to_string() } else { format!("{key}.contact_skin") };
         spec.check().map_err(|e| ctx.with_location(e, &blamed))?;
-        verify_weight(ctx, key, &spec)?;
+        // A file in another unit has its own error.
+        let unresolved = file_units::is_from_file(&self.shape) && spec.shape.bounds().size().max() < ctx.dp;
+        if !unresolved {
+            verify_weight(ctx, key, &spec)?;
+        }
         verify_thickness(ctx, key, &spec)?;
         Ok(spec)
     }

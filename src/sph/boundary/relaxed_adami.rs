@@ -5,9 +5,6 @@
 //!   dρ_w/dt = continuity + (ρ(P_w) − ρ_w)/τ,   τ = 10 h/c₀.
 //!
 //! An impact meets the dynamic wall; water at rest or carried along has the pressure of continued water, and leaves no gap.
-//! The particles of moving solids take a lower density at once: what they kept of a higher one would damp the motion of a
-//! body by half as much again as the waves that it radiates.
-//!
 //! P_w has a lower limit, so that the face exerts no suction: P_w ≥ min(0, ρ₀ g·n' d), with d the depth along n' from the
 //! water. Pressure may always decrease; an increase is scaled by the
 //! [`SupportCoverage`], since spray and thin films would otherwise gain energy.
@@ -119,17 +116,10 @@ impl SupportCoverage {
     /// The factor (0 to 1) of an increase of pressure at a boundary particle `depth` (m) below the face whose extrapolation has
     /// `weight`: 0 beside spray, a fifth in a film of one row, 1 where water is all around.
     pub fn fraction(&self, weight: f64, depth: f64) -> f64 {
-        let share = self.share(weight, depth);
-        let t = ((share - COVERAGE_MIN) / (COVERAGE_FULL - COVERAGE_MIN)).clamp(0.0, 1.0);
-        t * t * (3.0 - 2.0 * t)
-    }
-
-    /// `weight` over the weight of a boundary particle `depth` (m) below a flat face under water, –: 1 where water is all
-    /// around the face, about 2 in a thin plate with water on both faces.
-    pub fn share(&self, weight: f64, depth: f64) -> f64 {
         let place = (depth / self.step).clamp(0.0, DEPTHS as f64 - 1e-9);
         let (k, rest) = (place as usize, place.fract());
         let full = self.full[k] + (self.full[k + 1] - self.full[k]) * rest;
-        weight / full.max(1e-6)
+        let t = ((weight / full.max(1e-6) - COVERAGE_MIN) / (COVERAGE_FULL - COVERAGE_MIN)).clamp(0.0, 1.0);
+        t * t * (3.0 - 2.0 * t)
     }
 }

@@ -123,7 +123,7 @@ fn mesh_files_without_a_closed_solid_are_refused_with_the_reason() {
     assert!(mesh("file = \"inside_out.stl\"", &folder).is_ok());
     assert!(mesh("file = \"inside_out.stl\", flip = true", &folder).is_ok());
     assert_refused("file = \"open.stl\", thickness = -0.1", &["thickness"]);
-    assert_refused("file = \"open.stl\", mirror = \"w\"", &["mirror", "\"x\""]);
+    assert_refused("file = \"open.stl\", mirror = \"w\"", &["mirror", "known: x, y, z"]);
     assert_refused("file = \"mesh.ply\"", &["neither .stl nor .obj"]);
     assert_refused("file = \"cut.stl\"", &["cut.stl cannot be read"]);
     assert_refused("file = \"too_many.stl\"", &["too_many.stl cannot be read"]);

@@ -67,7 +67,7 @@ fn the_roll_period_of_a_box_of_twenty_rows_agrees_with_twice_the_resolution() ->
         turned[(1, 0)].atan2(turned[(0, 0)])
     };
     let found = zero_crossings(&scene(0.005, [1.2, 0.3], &body), 4, heel)?;
-    // The crossings span one and a half periods; with dp = 2.5 mm a period is 0.765 s. The bound is that of the project; linear theory, coupled with sway, has 0.791 s.
+    // The crossings span one and a half periods; with dp = 2.5 mm a period is 0.765 s. The bound is that of the project; ten rows have 0.664 s.
     let period = (found[3] - found[0]) / 1.5;
     assert!((period / 0.765 - 1.0).abs() < 0.05, "the period is {period} s");
     Ok(())

@@ -130,7 +130,7 @@ fn a_closed_wall_keeps_water_inside_and_outside() {
             "dimension = 2\ndp = 0.02\nuntil = 3.0\n\
              [[water]]\nfill = {{ box = {{ min = [0.0, 0.0], max = [1.2, 0.4] }} }}\n\
              [[solid]]\nname = \"basin\"\nfixed = true\nshape = {{ tank = {{ size = [1.2, 0.6] }} }}\n\
-             [[solid]]\nname = \"drum\"\nfixed = true\nshape = {{ polyline = {ring} }}\nat = {{ x = 0.6, y = 0.4 }}\n"
+             [[solid]]\nname = \"drum\"\nfixed = true\nshape = {{ polyline = {ring} }}\nat = {{ x = 0.6, y = 0.4 }}\ndry = false\n"
         );
         let mut sim: Simulation<2> = scene_simulation(&text).expect("a sound scene");
         let inside = |sim: &Simulation<2>| {

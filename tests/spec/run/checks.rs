@@ -304,7 +304,10 @@ fn invalid_check_keys_are_refused_with_a_remedy() {
         ("formula = \"0\"\nalign = { crossing = -5.0 }", ["crossing must be a positive number", "align = {"]),
         ("formula = \"0\"\nalign = { start = 0.0 }", ["start must be a positive number", "align = {"]),
         ("formula = \"0\"\nbound = { aligned_N = 0.1 }", ["nothing is aligned", "align = \"best\""]),
-        ("formula = \"0\"\nbound = { of = 0.1 }", ["unknown key \"of\"; did you mean \"off\"?", "bound = {"]),
+        (
+            "formula = \"0\"\nbound = { of = 0.1 }",
+            ["unknown key \"of\"; did you mean \"off\"?", "write  off  in place of  of"],
+        ),
         ("formula = \"0\"\nbound = { off = -0.1 }", ["the largest that passes", "check.0.bound.off"]),
     ] {
         let message = error_message(keys);
