@@ -102,13 +102,17 @@ fn a_run_with_events_continues_with_the_same_bits_before_and_after_them() -> Res
         run_to(&mut whole, time);
         states.push(whole.save()?);
     }
-    let last = whole.save()?;
+    let bits = |sim: &Simulation<2>| {
+        let water = sim.system().fluid();
+        let solids: Vec<_> = sim.system().solids().iter().map(|solid| solid.kinematics).collect();
+        (water.r.to_vec(), water.v.to_vec(), water.rho.to_vec(), solids)
+    };
     for (k, state) in states.iter().enumerate() {
         let mut again = make();
         again.restore(state)?;
         stops[k + 1..].iter().for_each(|time| run_to(&mut again, *time));
         assert_eq!(again.events(), whole.events());
-        assert!(again.save()? == last, "the states differ");
+        assert!(bits(&again) == bits(&whole), "water and solids differ");
     }
     let texts: Vec<String> = whole.events().iter().map(ToString::to_string).collect();
     let begins = [
