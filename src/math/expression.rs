@@ -82,6 +82,11 @@ impl Formula {
         Self { root: Node::Number(x) }
     }
 
+    /// Whether the formula is without `t`.
+    pub(crate) fn is_constant(&self) -> bool {
+        self.root.is_constant()
+    }
+
     /// Value and rate (1/s) at time `t` (s). Not finite where the formula is not, as 1/t at 0.
     pub fn value_and_rate(&self, t: f64) -> (f64, f64) {
         self.root.evaluate(&[t])
@@ -117,6 +122,15 @@ impl<const D: usize> ScalarField<D> {
 }
 
 impl Node {
+    fn is_constant(&self) -> bool {
+        match self {
+            Self::Number(_) => true,
+            Self::Variable(_) => false,
+            Self::Negate(x) | Self::Call(_, x) => x.is_constant(),
+            Self::Binary(_, x, y) => x.is_constant() && y.is_constant(),
+        }
+    }
+
     fn evaluate(&self, t: &[f64]) -> (f64, f64) {
         match self {
             Self::Number(x) => (*x, 0.0),

@@ -25,7 +25,8 @@ use crate::{
     scene::world_bounds,
     solid::{
         FreeBody, Role, Solid, SolidSpec,
-        statics::{JointGroups, StaticBody, StaticSystem, Support, WaterAtRest},
+        joint_groups::JointGroups,
+        statics::{StaticBody, StaticSystem, Support, WaterAtRest},
     },
 };
 
@@ -240,7 +241,7 @@ impl<const D: usize> PreflightContext<'_, D> {
             Tilt { axis, gm_m, period_s }
         };
         let (x, y) = (vec![1.0, 0.0, 0.0], vec![0.0, 1.0, 0.0]);
-        let locked = |axis: &[f64]| statics.is_tilt_locked(number, axis, &self.system.constraints().at_start());
+        let locked = |axis: &[f64]| statics.is_tilt_locked(number, axis);
         if D == 2 {
             return if locked(&[1.0]) { Vec::new() } else { vec![tilt(vec![1.0], gm(&[1.0]))] };
         }

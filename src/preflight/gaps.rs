@@ -7,7 +7,7 @@ use crate::{
         format::{coordinates, three_digits, two_digits_down},
     },
     scene::world_bounds,
-    solid::{Role, statics::JointGroups},
+    solid::{Role, joint_groups::JointGroups},
 };
 
 /// Solids nearer than this (dp) are in touch: contact is the engine's.
@@ -36,7 +36,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         let n = self.solids().len();
         let mut touching = vec![false; n];
         let specs: Vec<_> = self.solids().iter().map(|solid| &solid.spec).collect();
-        let tied = JointGroups::of(&specs, self.system.constraints()).jointed;
+        let tied = JointGroups::of(&specs, &self.system.constraints().at_start()).jointed;
         let moves = |i: usize| !matches!(self.solids()[i].spec.role, Role::Fixed);
         for i in 0..n {
             for j in 0..i {

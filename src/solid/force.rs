@@ -69,19 +69,11 @@ impl<const D: usize> ForceSpec<D> {
         Self { rotates_with_solid: true, ..self }
     }
 
-    /// Its force (N) and torque (N m) at the start, if they do not change with time.
+    /// Its force (N) and torque (N m), if they do not change with time.
     pub(super) fn steady_load(&self) -> Option<(Vector<D>, Bivector<D>)> {
-        const TIMES: [f64; 6] = [0.013, 0.29, 1.7, 7.1, 53.0, 941.0];
-        let value = |law: &TimeFunction, t: f64| law.value_and_rate(t).0;
-        let steady = |law: &TimeFunction| TIMES.iter().all(|t| value(law, *t) == value(law, 0.0));
-        if !self.force.iter().chain(&self.torque).all(steady) {
-            return None;
-        }
-        let turns: Vec<f64> = self.torque.iter().map(|law| value(law, 0.0)).collect();
-        Some((
-            Vector::from_fn(|i, _| self.force.get(i).map_or(0.0, |law| value(law, 0.0))),
-            Bivector::from_axial(&turns),
-        ))
+        let steady = |laws: &[TimeFunction]| laws.iter().map(TimeFunction::steady_value).collect::<Option<Vec<f64>>>();
+        let (force, turns) = (steady(&self.force)?, steady(&self.torque)?);
+        Some((Vector::from_fn(|i, _| force.get(i).copied().unwrap_or(0.0)), Bivector::from_axial(&turns)))
     }
 
     /// The same load with this lifetime.

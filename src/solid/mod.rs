@@ -6,6 +6,7 @@ pub(crate) mod constraint;
 pub(crate) mod containment;
 pub(crate) mod force;
 pub mod hydrostatics;
+pub(crate) mod joint_groups;
 mod load;
 pub(crate) mod prescribed_motion;
 pub(crate) mod rapier;

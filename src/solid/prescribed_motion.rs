@@ -43,6 +43,16 @@ impl TimeFunction {
         Self::Formula(Formula::constant(x))
     }
 
+    /// The value of a law that does not change with time.
+    pub(crate) fn steady_value(&self) -> Option<f64> {
+        let steady = match self {
+            Self::Table(series) => series.values().windows(2).all(|pair| pair[0] == pair[1]),
+            Self::Formula(formula) => formula.is_constant(),
+            Self::Wave(_) => false,
+        };
+        steady.then(|| self.value_and_rate(0.0).0)
+    }
+
     /// Value (m or rad) and its rate (m/s or rad/s) at time `t` (s).
     pub fn value_and_rate(&self, t: f64) -> (f64, f64) {
         match self {

@@ -5,7 +5,14 @@
 //! Newton's method finds the rises at which buoyancy, weight, lines and forces balance. A rope is a stiff spring that
 //! bears tension only, as is the bottom of the water.
 
-use super::{Constraints, FreeBody, LineEnd, Role, SolidSpec, constraint::lines::start_length, hydrostatics::Hull};
+use nalgebra::{DMatrix, DVector};
+
+use super::{
+    Constraints, FreeBody, JointSpec, LineEnd, SolidSpec,
+    constraint::lines::start_length,
+    hydrostatics::Hull,
+    joint_groups::{JointGroups, merge},
+};
 use crate::math::{Bivector, Bounds, Pose, Vector};
 
 /// Stiffness of a taut rope and of the bottom over that of the largest waterplane.
@@ -85,55 +92,12 @@ pub(crate) struct StaticSystem<'a, const D: usize> {
     assembly: Vec<usize>,
     /// Whether a joint or a lock holds each group.
     held: Vec<bool>,
+    joints: Vec<JointSpec<D>>,
     lines: Vec<Line<D>>,
     forces: Vec<SteadyForce<D>>,
     water: WaterAtRest,
     /// Rise of each group from the start to rest, m.
     rise: Vec<f64>,
-}
-
-/// The bodies that joints tie together, as numbers that they share.
-pub(crate) struct JointGroups {
-    /// Of each solid: a number that solids share which rise together.
-    pub(crate) rising: Vec<usize>,
-    /// Of each solid: a number that solids share between which there are joints.
-    pub(crate) jointed: Vec<usize>,
-    /// Whether a joint to a solid that is not free, or a lock, holds the height of each solid.
-    pub(crate) held: Vec<bool>,
-}
-
-impl JointGroups {
-    /// The groups of `solids`. A number is that of the first solid of its group.
-    pub(crate) fn of<const D: usize>(solids: &[&SolidSpec<D>], constraints: &Constraints<D>) -> Self {
-        let n = solids.len();
-        let free = |i: usize| matches!(solids[i].role, Role::Free(_));
-        let (mut rising, mut jointed): (Vec<usize>, Vec<usize>) = ((0..n).collect(), (0..n).collect());
-        let locked = |i: usize| matches!(&solids[i].role, Role::Free(body) if body.locked_translations[D - 1]);
-        let mut held: Vec<bool> = (0..n).map(locked).collect();
-        for joint in &constraints.joints {
-            let rises_alone = joint.frees_translation(&up());
-            match joint.between {
-                [Some(a), Some(b)] if free(a) && free(b) => {
-                    merge(&mut jointed, a, b);
-                    if !rises_alone {
-                        merge(&mut rising, a, b);
-                    }
-                }
-                ends => ends.into_iter().flatten().filter(|i| free(*i)).for_each(|i| held[i] |= !rises_alone),
-            }
-        }
-        for i in 0..n {
-            let own = (0..n).any(|j| rising[j] == rising[i] && held[j]);
-            held[i] |= own;
-        }
-        Self { rising, jointed, held }
-    }
-}
-
-/// Unites the groups of `a` and `b`.
-fn merge(group: &mut [usize], a: usize, b: usize) {
-    let (first, other) = (group[a].min(group[b]), group[a].max(group[b]));
-    group.iter_mut().filter(|number| **number == other).for_each(|number| *number = first);
 }
 
 /// The upward unit vector.
@@ -197,7 +161,8 @@ impl<'a, const D: usize> StaticSystem<'a, D> {
         };
         let forces = constraints.forces.iter().filter_map(force).collect();
         let (rise, held) = (vec![0.0; solids.len()], groups.held);
-        let mut made = Self { bodies, group, assembly, held, lines, forces, water, rise };
+        let joints = constraints.joints.clone();
+        let mut made = Self { bodies, group, assembly, held, joints, lines, forces, water, rise };
         made.find_rest();
         made
     }
@@ -302,7 +267,9 @@ impl<'a, const D: usize> StaticSystem<'a, D> {
             }
             slope.iter_mut().flatten().for_each(|x| *x = -*x);
             (0..groups.len()).for_each(|k| slope[k][k] = slope[k][k].max(least));
-            let mut step = solve_linear(slope, force);
+            // With `least` on its diagonal the matrix has an inverse.
+            let matrix = DMatrix::from_fn(groups.len(), groups.len(), |k, l| slope[k][l]);
+            let Some(mut step) = matrix.lu().solve(&DVector::from_vec(force)) else { break };
             let longest = step.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
             if longest < 1e-13 * size {
                 break;
@@ -348,11 +315,11 @@ impl<'a, const D: usize> StaticSystem<'a, D> {
 
     /// Returns whether a lock of a body, or a joint to a solid that is not free, holds the assembly of body `i` against
     /// tilts about this axis.
-    pub(crate) fn is_tilt_locked(&self, i: usize, axis: &[f64], constraints: &Constraints<D>) -> bool {
+    pub(crate) fn is_tilt_locked(&self, i: usize, axis: &[f64]) -> bool {
         let locked = |j: usize| (0..axis.len()).all(|k| axis[k] == 0.0 || self.bodies[j].body.locked_rotations[k]);
         let number = |solid: usize| self.bodies.iter().position(|body| body.solid == solid);
         let member = |end: Option<usize>| end.and_then(number).map(|j| self.assembly[j]);
-        let grounded = constraints.joints.iter().any(|joint| {
+        let grounded = self.joints.iter().any(|joint| {
             let ends = joint.between.map(member);
             ends.contains(&Some(self.assembly[i])) && ends.contains(&None) && !joint.frees_rotation(axis)
         });
@@ -551,27 +518,6 @@ fn tension_towards<const D: usize>(line: &Line<D>, at: &Vector<D>, end: &Vector<
 fn plan_area<const D: usize>(hull: &Hull<D>, pose: &Pose<D>) -> f64 {
     let Bounds { min, max } = hull.shape.bounds_at(pose);
     (0..D - 1).map(|i| max[i] - min[i]).product()
-}
-
-/// Solves `matrix` x = `right` by elimination with pivots.
-fn solve_linear(mut matrix: Vec<Vec<f64>>, mut right: Vec<f64>) -> Vec<f64> {
-    let n = right.len();
-    for k in 0..n {
-        let pivot = (k..n).max_by(|a, b| matrix[*a][k].abs().total_cmp(&matrix[*b][k].abs())).unwrap_or(k);
-        matrix.swap(k, pivot);
-        right.swap(k, pivot);
-        for i in k + 1..n {
-            let factor = matrix[i][k] / matrix[k][k];
-            let (above, below) = matrix.split_at_mut(i);
-            below[0][k..].iter_mut().zip(&above[k][k..]).for_each(|(x, pivot)| *x -= factor * pivot);
-            right[i] -= factor * right[k];
-        }
-    }
-    for k in (0..n).rev() {
-        let known: f64 = (k + 1..n).map(|j| matrix[k][j] * right[j]).sum();
-        right[k] = (right[k] - known) / matrix[k][k];
-    }
-    right
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@
 use super::{
     Constraints, Role, SolidSpec,
     constraint::lines::{LineEnd, start_length},
-    statics::JointGroups,
+    joint_groups::JointGroups,
 };
 use crate::error::Error;
 

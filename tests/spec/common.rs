@@ -79,6 +79,14 @@ where
     }
 }
 
+/// Runs until time `until` (s).
+pub fn run_to<const D: usize>(sim: &mut Simulation<D>, until: f64) -> Result<()> {
+    while sim.time() < until {
+        sim.step_to(until)?;
+    }
+    Ok(())
+}
+
 /// Runs until time `until` (s) and returns the time means, from `from` (s) on, of the values that `sample` returns.
 pub fn time_mean<const D: usize, const N: usize>(
     sim: &mut Simulation<D>,

@@ -104,10 +104,11 @@ impl RapierJoints {
         }
     }
 
-    /// Sets the length limit of each rope for a step of `dt` (s).
+    /// Sets the length limit of each connected rope for a step of `dt` (s).
     pub(super) fn update_rope_limits(&self, world: &mut PhysicsWorld, dt: f64) {
         for (handle, longest) in &self.ropes {
-            let Some(rope) = world.impulse_joints.get_mut(*handle, false) else { continue };
+            let rope = world.impulse_joints.get_mut(*handle, false).filter(|rope| rope.data.is_enabled());
+            let Some(rope) = rope else { continue };
             let end = |body: RigidBodyHandle, frame: &Frame| {
                 let body = &world.bodies[body];
                 let x = *body.position() * frame.translation;

@@ -2,7 +2,7 @@
 
 use pontoon::error::Result;
 
-use crate::common;
+use crate::common::{self, run_to};
 
 fn scene(depth: f64, density: f64, extra: &str) -> String {
     format!(
@@ -19,9 +19,7 @@ fn a_disc_in_deep_water_starts_with_the_acceleration_of_potential_flow() -> Resu
     for density in [900.0, 1100.0] {
         let mut sim = common::scene_simulation::<2>(&scene(3.0, density, ""))?;
         let start = sim.system().solids()[1].kinematics.pose.position[1];
-        while sim.time() < 0.3 {
-            sim.step_to(0.3)?;
-        }
+        run_to(&mut sim, 0.3)?;
         let rise = sim.system().solids()[1].kinematics.pose.position[1] - start;
         let found = 2.0 * rise / (sim.time() * sim.time());
         // Images of the dipole in the walls, 2 m apart: C_a = 2/(1 − π²/3 (0.125/2)²) − 1 (Lamb 1932, §64).

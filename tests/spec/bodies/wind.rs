@@ -4,7 +4,7 @@ use std::path::Path;
 
 use pontoon::{Result, scene::Scene};
 
-use crate::common::scene_simulation;
+use crate::common::{run_to, scene_simulation};
 
 const SCENE: &str = r#"
 dimension = 2
@@ -30,9 +30,7 @@ on = ["float"]
 fn the_wind_of_a_scene_acts_on_the_dry_half_of_a_float() -> Result<()> {
     let mut sim = scene_simulation::<2>(SCENE)?;
     sim.enable_load_breakdown();
-    while sim.time() < 0.05 {
-        sim.step_to(0.05)?;
-    }
+    run_to(&mut sim, 0.05)?;
     let wind = 10.0 * (1.0 - 0.5 * sim.dt() / 0.05);
     let expected = 0.5 * 1.225 * 1.2 * 0.1 * wind * wind;
     let load = sim.load_breakdown(1).unwrap().forces;

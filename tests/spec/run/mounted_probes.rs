@@ -8,7 +8,7 @@ use pontoon::{
     scene::Scene,
 };
 
-use crate::common::scene_simulation;
+use crate::common::{run_to, scene_simulation};
 
 /// A tank that goes with its water at 0.5 m/s.
 const GOING: &str = r#"
@@ -28,9 +28,7 @@ fn probes_on_a_tank_that_goes_with_its_water_measure_still_water() -> Result<()>
     let gauge = ElevationProbe::on_solid(sim.system(), "tank", &[0.3])?;
     let pressure = PressureProbe::on_solid(sim.system(), "tank", &[0.2, 0.05])?;
     let velocity = VelocityProbe::on_solid(sim.system(), "tank", &[0.2, 0.1])?;
-    while sim.time() < 0.4 {
-        sim.step_to(0.4)?;
-    }
+    run_to(&mut sim, 0.4)?;
     let [level, eta] = gauge.sample(&sim)[..] else { panic!("two columns") };
     // Water at rest keeps its level within a twentieth of dp.
     assert!((level - 0.2).abs() < 0.01 && eta.abs() < 1e-3, "level {level}, eta {eta}");

@@ -7,7 +7,7 @@ use pontoon::{
     simulation::Simulation,
 };
 
-use crate::common::{TestFolder, scene_simulation};
+use crate::common::{TestFolder, run_to, scene_simulation};
 
 /// A tank of 0.4 m with water 0.2 m deep; `GRAVITY` and `TANK` are replaced.
 const TANK: &str = r#"
@@ -26,23 +26,17 @@ fn scene(gravity: &str, motion: &str) -> String {
     TANK.replace("GRAVITY", gravity).replace("MOTION", motion)
 }
 
-fn run_to(sim: &mut Simulation<2>, until: f64) {
-    while sim.time() < until {
-        sim.step_to(until).unwrap();
-    }
-}
-
 #[test]
 fn a_surface_inclines_by_the_ratio_of_accelerations() -> Result<()> {
     // A horizontal acceleration grows smoothly over nearly three periods of the tank (0.75 s) to a fifth of gravity.
     let text = scene("gravity = [\"1.962*(1-cos(pi*min(t/2,1)))/2\", -9.81]", "fixed = true");
     let mut sim = scene_simulation::<2>(&text)?;
     let gauges = [0.05, 0.35].map(|x| ElevationProbe::new(sim.system(), &[x]).unwrap());
-    run_to(&mut sim, 2.0);
+    run_to(&mut sim, 2.0)?;
     let (mut sum, mut count) = (0.0, 0.0);
     while sim.time() < 3.5 {
         let next = sim.time() + 0.025;
-        run_to(&mut sim, next);
+        run_to(&mut sim, next)?;
         let [low, high] = [0, 1].map(|i| gauges[i].sample(&sim)[0]);
         (sum, count) = (sum + (high - low) / 0.3, count + 1.0);
     }
@@ -66,8 +60,8 @@ fn sloshing_under_swinging_gravity_is_that_of_a_driven_tank() -> Result<()> {
     let (mut most, mut off) = (0.0_f64, 0.0_f64);
     for i in 1..=80 {
         let t = 0.025 * f64::from(i);
-        run_to(&mut still, t);
-        run_to(&mut driven, t);
+        run_to(&mut still, t)?;
+        run_to(&mut driven, t)?;
         let (a, b) = (gauge.sample(&still)[1], moving.sample(&driven)[1]);
         (most, off) = (most.max(a.abs()), off.max((a - b).abs()));
     }
@@ -89,13 +83,13 @@ fn the_energy_budget_closes_under_swinging_gravity_and_a_restart_keeps_the_bits(
     };
     let mut sim = make();
     let probe = EnergyBudgetProbe::new(sim.system());
-    run_to(&mut sim, 0.3);
+    run_to(&mut sim, 0.3)?;
     let state = sim.save()?;
-    run_to(&mut sim, 1.0);
+    run_to(&mut sim, 1.0)?;
     let mut again = make();
     again.restore(&state)?;
     assert_eq!(again.system().gravity()[0], 2.0 * (9.0 * 0.3_f64).sin());
-    run_to(&mut again, 1.0);
+    run_to(&mut again, 1.0)?;
     assert!(sim.save()? == again.save()?, "the states differ");
     let row = probe.sample(&sim);
     let turnover = sim.energy_budget().unwrap().entries().iter().map(|(_, energy)| energy.abs()).sum::<f64>();

@@ -105,3 +105,13 @@ fn a_motion_without_direction_is_refused() {
     assert!(second.to_string().contains("motion 2: the law of motion gives"), "{second}");
     assert!(PrescribedMotion::<2>::chain([]).check().is_err());
 }
+
+#[test]
+fn a_law_is_steady_only_if_it_never_changes() {
+    assert_eq!(formula("2*9.81").steady_value(), Some(2.0 * 9.81));
+    // A pulse between 20.0 and 20.1 s.
+    assert_eq!(formula("5*max(0, min(t - 20, 20.1 - t))").steady_value(), None);
+    let table = |values: [f64; 3]| TimeFunction::Table(TimeSeries::new([0.0, 1.0, 2.0], values).unwrap());
+    assert_eq!(table([3.0; 3]).steady_value(), Some(3.0));
+    assert_eq!(table([3.0, 3.0, 4.0]).steady_value(), None);
+}
