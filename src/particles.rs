@@ -36,6 +36,14 @@ impl<const D: usize> Particles<D> {
         ParticlesView { r: &self.r[..n], v: &self.v[..n], rho: &self.rho[..n], id: &self.id[..n] }
     }
 
+    /// Makes room for `more` particles, and no more than that.
+    pub(crate) fn reserve_exact(&mut self, more: usize) {
+        self.r.reserve_exact(more);
+        self.v.reserve_exact(more);
+        self.rho.reserve_exact(more);
+        self.id.reserve_exact(more);
+    }
+
     /// Adds a particle at rest at `r` (m) of density `rho` (kg/m³); its id is its number.
     pub fn push(&mut self, r: Vector<D>, rho: f64) {
         self.id.push(self.r.len() as u32);

@@ -6,7 +6,12 @@ mod external_bodies;
 mod rollback;
 mod constraints;
 
-use std::time::{Duration, Instant};
+use std::{
+    borrow::Cow,
+    io::{self, Write},
+    path::Path,
+    time::{Duration, Instant},
+};
 
 pub use crate::coupling::{BodyStep, EnergyBudget, LoadBreakdown};
 pub use crate::system::{Escape, ParticleLimits, RemovedParticle, Setup};
@@ -17,10 +22,10 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 pub use add_remove::AddedSolid;
-use rollback::RollbackControl;
+use rollback::{RollbackControl, StoredState};
 
 use crate::{
-    coupling::{Accounting, AcousticAddedMass, AddedMassState, Bodies, Hook, Interval},
+    coupling::{Accounting, AccountingState, AcousticAddedMass, AddedMassState, Bodies, Hook, Interval},
     error::{Error, ErrorCode, ErrorKind, Fault, Result},
     interaction::PairLoop,
     math::{Bivector, Vector},
@@ -65,18 +70,18 @@ struct Clock {
     steps: u64,
 }
 
-/// The state of a simulation in a checkpoint.
+/// The state of a simulation in a checkpoint; what is large is borrowed where it is written.
 #[derive(Serialize, Deserialize)]
-struct SimulationState<const D: usize> {
-    system: SystemState<D>,
-    stepper: Stepper<D>,
+struct SimulationState<'a, const D: usize> {
+    system: SystemState<'a, D>,
+    stepper: Cow<'a, Stepper<D>>,
     clock: Clock,
     engine: Option<Vec<u8>>,
     added_masses: Vec<AddedMassState>,
     constraints: AssemblyState<D>,
-    rollbacks: Vec<Rollback>,
-    removed: Vec<(f64, RemovedParticle<D>)>,
-    accounting: Option<Accounting<D>>,
+    rollbacks: Cow<'a, [Rollback]>,
+    removed: Cow<'a, [(f64, RemovedParticle<D>)]>,
+    accounting: Option<AccountingState<D>>,
     /// Numbers of the solids that have been removed.
     removed_solids: Vec<u32>,
 }
@@ -156,11 +161,19 @@ impl<const D: usize> Simulation<D> {
         let start = Instant::now();
         if self.needs_rollback_state() {
             self.rollback.drop_oldest_state();
-            self.rollback.store(self.clock.steps, self.clock.time, self.save()?);
+            let state = self.rollback_state()?;
+            self.rollback.store(self.clock.steps, self.clock.time, state);
         }
         let outcome = self.advance(end, hook).or_else(|error| self.roll_back(error));
         self.stepping += start.elapsed();
         outcome
+    }
+
+    /// The present state: in the folder for such states, or in memory if there is none or it cannot be written to.
+    fn rollback_state(&self) -> Result<StoredState> {
+        let write = |out: &mut dyn Write| self.write_state(self.rollback.log.len(), out);
+        let stored = self.rollback.folder.as_ref().and_then(|folder| StoredState::in_folder(folder, write).ok());
+        stored.map_or_else(|| self.save().map(StoredState::Memory), Ok)
     }
 
     /// Rolls back to a good state after the alarm `error`, or returns it if there is none.
@@ -183,6 +196,11 @@ impl<const D: usize> Simulation<D> {
     pub fn without_rollback(mut self) -> Self {
         self.rollback = RollbackControl::disabled();
         self
+    }
+
+    /// Stores the states for a rollback in `folder` from now on, in files without a name, and not in memory.
+    pub(crate) fn store_rollback_states_in(&mut self, folder: &Path) {
+        self.rollback.folder = Some(folder.to_owned());
     }
 
     /// Whether the next step first stores the state for a rollback.
@@ -362,30 +380,38 @@ impl<const D: usize> Simulation<D> {
     /// # Errors
     /// `Restart` if the engine's state cannot be written.
     pub fn save(&self) -> Result<Vec<u8>> {
-        self.save_with_rollbacks(self.rollback.log.len())
+        let cannot = |e: &dyn std::fmt::Display| {
+            Error::new(ErrorKind::Restart, format!("cannot write the state: {e}"))
+        };
+        let state = self.state(self.rollback.log.len())?;
+        let length = postcard::experimental::serialized_size(&state).map_err(|e| cannot(&e))?;
+        postcard::to_extend(&state, Vec::with_capacity(length)).map_err(|e| cannot(&e))
     }
 
-    /// As [`Simulation::save`], with the first `times` rollbacks only.
-    pub(crate) fn save_with_rollbacks(&self, times: usize) -> Result<Vec<u8>> {
-        let engine = self.bodies.engine().map(|e| e.save()).transpose()?;
-        let (system, stepper, clock) = (self.system.save(), self.stepper.clone(), self.clock);
-        let rescued = self.rollback.log[..times].to_vec();
-        let (added_masses, rig) = (self.bodies.added_mass_state(), self.bodies.constraints().save());
-        let lost = self.removed.clone();
-        let (accounting, gone) = (self.bodies.accounting.as_ref().map(Accounting::state), self.removed_solids());
-        let kept = SimulationState {
-            system,
-            stepper,
-            clock,
-            engine,
-            added_masses,
-            constraints: rig,
-            rollbacks: rescued,
-            removed: lost,
-            accounting,
-            removed_solids: gone,
-        };
-        postcard::to_stdvec(&kept).map_err(|e| Error::new(ErrorKind::Restart, format!("cannot write the state: {e}")))
+    /// Writes the state of [`Simulation::save`] with the first `rollbacks` rollbacks only.
+    pub(crate) fn write_state(&self, rollbacks: usize, out: &mut dyn Write) -> io::Result<()> {
+        let state = self.state(rollbacks).map_err(|e| io::Error::other(e.message))?;
+        match postcard::to_io(&state, &mut *out) {
+            Ok(_) => Ok(()),
+            // The writer tells what postcard leaves out.
+            Err(e) => out.flush().and(Err(io::Error::other(e))),
+        }
+    }
+
+    /// The state with the first `rollbacks` rollbacks.
+    fn state(&self, rollbacks: usize) -> Result<SimulationState<'_, D>> {
+        Ok(SimulationState {
+            system: self.system.save(),
+            stepper: Cow::Borrowed(&self.stepper),
+            clock: self.clock,
+            engine: self.bodies.engine().map(|e| e.save()).transpose()?,
+            added_masses: self.bodies.added_mass_state(),
+            constraints: self.bodies.constraints().save(),
+            rollbacks: Cow::Borrowed(&self.rollback.log[..rollbacks]),
+            removed: Cow::Borrowed(&self.removed),
+            accounting: self.bodies.accounting.as_ref().map(Accounting::state),
+            removed_solids: self.removed_solids(),
+        })
     }
 
     /// Numbers of the solids that have been removed.
@@ -394,7 +420,7 @@ impl<const D: usize> Simulation<D> {
         solids.filter(|(_, solid)| solid.boundary.is_empty()).map(|(i, _)| i as u32).collect()
     }
 
-    fn read(bytes: &[u8]) -> Result<SimulationState<D>> {
+    fn read(bytes: &[u8]) -> Result<SimulationState<'static, D>> {
         postcard::from_bytes(bytes)
             .map_err(|e| Error::new(ErrorKind::Restart, format!("the checkpoint's state is damaged: {e}")))
     }
@@ -444,9 +470,10 @@ impl<const D: usize> Simulation<D> {
         if let (Some(accounting), Some(state)) = (&mut self.bodies.accounting, kept.accounting) {
             accounting.restore(state);
         }
-        (self.stepper, self.clock, self.removed) = (kept.stepper, kept.clock, kept.removed);
+        (self.stepper, self.clock) = (kept.stepper.into_owned(), kept.clock);
+        self.removed = kept.removed.into_owned();
         self.system.set_gravity_at(self.clock.time);
-        self.rollback.restart(kept.rollbacks);
+        self.rollback.restart(kept.rollbacks.into_owned());
         Ok(())
     }
 }

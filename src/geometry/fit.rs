@@ -198,12 +198,9 @@ pub(super) fn pack_around_obstacles<const D: usize>(
             _ => (),
         }
     }
-    let mut points: Vec<_> = movable.iter().map(|&i| water[i]).collect();
     // Temporary points continue the water beyond its regions, so that the water does not spread out of them.
-    points.extend(moving);
-    let all_movable = points.len();
-    points.extend(held);
-    points.extend(still);
+    let all_movable = movable.len() + moving.len();
+    let mut points: Vec<_> = movable.iter().map(|&i| water[i]).chain(moving).chain(held).chain(still).collect();
     let near = Bounds::around(&points).grown(packing::SUPPORT_RADIUS_DP * dp);
     for o in &*obstacles {
         let skin = o.shape.boundary_points(dp, LAYERS);

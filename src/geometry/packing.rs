@@ -60,7 +60,9 @@ pub(super) fn spread_points<const D: usize>(
     let (mut lists, mut travelled) = (Vec::new(), f64::INFINITY);
     for _ in 0..pace.passes {
         if 2.0 * travelled >= pace.margin * dp {
-            lists = List::all(points, movable, (SUPPORT_RADIUS_DP + pace.margin) * dp);
+            // The old lists go first: lists are most of the memory here.
+            lists.clear();
+            List::append_all(&mut lists, points, movable, (SUPPORT_RADIUS_DP + pace.margin) * dp);
             travelled = 0.0;
         }
         let chunks = lists.par_iter().zip(next.par_chunks_mut(CHUNK)).zip(room.par_chunks_mut(CHUNK)).enumerate();
@@ -113,25 +115,24 @@ fn drift<const D: usize>(
 }
 
 /// Neighbour lists of a chunk of points; each list includes the point itself.
-#[derive(Default)]
 struct List {
-    end: Vec<u32>,
-    index: Vec<u32>,
+    end: Box<[u32]>,
+    index: Box<[u32]>,
 }
 
 impl List {
-    /// Returns the neighbour lists of the first `movable` of `points`, with all points within `reach` (m).
-    fn all<const D: usize>(points: &[Vector<D>], movable: usize, reach: f64) -> Vec<Self> {
+    /// Appends to `lists` the neighbour lists of the first `movable` of `points`, with all points within `reach` (m).
+    fn append_all<const D: usize>(lists: &mut Vec<Self>, points: &[Vector<D>], movable: usize, reach: f64) {
         let cells = PointCells::new(points, reach);
-        let list = |points: &[Vector<D>]| {
-            let (mut list, mut row) = (Self::default(), Vec::new());
-            for at in points {
-                cells.append_within(at, reach, &mut row, &mut list.index);
-                list.end.push(list.index.len() as u32);
-            }
-            list
+        let list = |(row, index): &mut (Vec<f64>, Vec<u32>), points: &[Vector<D>]| {
+            index.clear();
+            let end = points.iter().map(|at| {
+                cells.append_within(at, reach, row, index);
+                index.len() as u32
+            });
+            Self { end: end.collect(), index: index.as_slice().into() }
         };
-        points[..movable].par_chunks(CHUNK).map(list).collect()
+        lists.par_extend(points[..movable].par_chunks(CHUNK).map_init(Default::default, list));
     }
 
     /// Returns the indices of the neighbours of the `k`-th point.

@@ -8,7 +8,7 @@ use super::{
 };
 use crate::{
     math::simd::{self, LANES, LaneRow, Level, Simd, SimdTask, f32x8, i32x8},
-    neighbours::{ParticleListChunk, Slab},
+    neighbours::{ListPart, ParticleListChunk, Slab},
     sph::{Num, boundary::WallExtrapolation, kernel::Kernel},
 };
 
@@ -101,22 +101,24 @@ impl<K: Kernel, const FLOW: bool, const D: usize> SimdTask for BoundarySlabTask<
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
         let Self { kernel, packed, slab, sums } = self;
-        let Slab { first, middle, end, spans, index } = slab;
+        let Slab { first, middle, end, .. } = slab;
         let (rows, zero) = (row_count(D, FLOW), f32x8::splat(simd, 0.0));
         sums.fill(LaneRow::default());
         for c in *first..*end {
             for l in 0..LANES {
-                let [start, skin, end] = spans[(c - first) * LANES + l];
                 let is_water = c < *middle;
-                let others = &index[if is_water { skin } else { start } as usize..end as usize];
                 let PackedCluster { x, v, s } = &packed.clusters[c];
                 let all = |x: f32| f32x8::splat(simd, x);
                 let (p, volume) = (all(s[2][l]), all(s[3][l]));
                 let moves: [f32x8<S>; D] = std::array::from_fn(|k| all(v[k][l]));
                 let mine: [i32x8<S>; D] = std::array::from_fn(|k| i32x8::splat(simd, x[k][l]));
                 let mut sum = WallExtrapolation::filled_with(zero);
-                for &j in others {
-                    let PackedCluster { x, v, s } = &packed.clusters[j as usize];
+                let others = |ListPart { base, water, boundary }| {
+                    let entries: &[u16] = if is_water { boundary } else { water };
+                    entries.iter().map(move |&entry| base + usize::from(entry))
+                };
+                for place in slab.list((c - first) * LANES + l).flat_map(others) {
+                    let PackedCluster { x, v, s } = &packed.clusters[first + place];
                     let mut r = [zero; D];
                     for k in 0..D {
                         r[k] = f32x8::float_from(mine[k] - simd::load_integers(simd, &x[k]));
@@ -128,7 +130,7 @@ impl<K: Kernel, const FLOW: bool, const D: usize> SimdTask for BoundarySlabTask<
                     let w = kernel.w(r2);
                     if is_water {
                         // One water particle beside eight boundary particles, which receive its contribution.
-                        let theirs = &mut sums[(j as usize - first) * rows..][..rows];
+                        let theirs = &mut sums[place * rows..][..rows];
                         let mut fit = WallExtrapolation::filled_with(zero);
                         for_each_row(&mut fit, FLOW, |row, x| *x = simd::load(simd, &theirs[row].0));
                         fit.add(w, p, volume, r.map(|x| -x));

@@ -21,7 +21,7 @@ use super::{
 use crate::{
     math::Vector,
     math::simd::{self, LANES, LaneRow, Level, Simd, SimdTask, f32x8, i32x8},
-    neighbours::{Clusters, PairLists, Slab},
+    neighbours::{Clusters, ListPart, PairLists, Slab},
     particles::PARTICLES_PER_TASK,
     sph::{AuxiliarySums, FluidProperties, Pair, PairSide, Term, Units, boundary::WallExtrapolation, kernel::Kernel},
 };
@@ -258,7 +258,7 @@ impl<K: Kernel, T: Term<D>, W: Term<D>, const D: usize> SimdTask for SlabTask<'_
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> f32 {
         let Self { laws, packed, slab, sums } = self;
-        let Slab { first, middle, end, spans, index } = slab;
+        let Slab { first, middle, end, .. } = slab;
         let needs = const { RequiredSums::of_terms::<(T, W), D>() };
         let given = SlabInput {
             simd,
@@ -275,16 +275,21 @@ impl<K: Kernel, T: Term<D>, W: Term<D>, const D: usize> SimdTask for SlabTask<'_
         let mut closing = given.zero;
         for c in *first..*end {
             for l in 0..LANES {
-                let [start, skin, end] = spans[(c - first) * LANES + l];
-                let (start, skin, end) = (start as usize, skin as usize, end as usize);
-                if start == end {
+                let slot = (c - first) * LANES + l;
+                if slab.is_unpaired(slot) {
                     continue;
                 }
-                // First pairs of water particles; a boundary particle is paired with water only, by the wall terms.
-                let skin = if c < *middle { skin } else { start };
                 let (one, mut sum) = (given.particle_in_lane(c, l), Accumulators::filled_with(given.zero));
-                given.add_pairs(&laws.fluid, &one, &index[start..skin], sums, &mut sum, &mut closing);
-                given.add_pairs(&laws.wall, &one, &index[skin..end], sums, &mut sum, &mut closing);
+                let is_water = c < *middle;
+                // First pairs of water particles; a boundary particle is paired with water only, by the wall terms.
+                for ListPart { base, water, .. } in slab.list(slot) {
+                    let water = if is_water { water } else { &[] };
+                    given.add_pairs(&laws.fluid, &one, (base, water), sums, &mut sum, &mut closing);
+                }
+                for ListPart { base, water, boundary } in slab.list(slot) {
+                    let others = if is_water { boundary } else { water };
+                    given.add_pairs(&laws.wall, &one, (base, others), sums, &mut sum, &mut closing);
+                }
                 let mine = &mut sums[(c - first) * needs.sum_rows(D)..][..needs.sum_rows(D)];
                 sum.for_each_row(needs, needs, |row, sum| mine[row].0[l] += simd::sum_lanes(*sum));
             }
@@ -351,14 +356,14 @@ impl<S: Simd, K: Kernel, const D: usize> SlabInput<'_, S, K, D> {
         side
     }
 
-    /// Pairs `one` with `others` by the terms `law`: adds their contribution to `sum` and its contribution to their `sums`. Its own
+    /// Pairs `one` with the clusters `others`, counted from `base` in the slab, by the terms `law`: adds their contribution to `sum` and its contribution to their `sums`. Its own
     /// cluster is paired lane by lane, so there its contribution is discarded into the last rows.
     #[inline(always)]
     fn add_pairs<L: Term<D>>(
         &self,
         law: &L,
         one: &BroadcastParticle<S, D>,
-        others: &[u32],
+        (base, others): (usize, &[u16]),
         sums: &mut [LaneRow],
         sum: &mut Accumulators<f32x8<S>, D>,
         closing: &mut f32x8<S>,
@@ -366,8 +371,9 @@ impl<S: Simd, K: Kernel, const D: usize> SlabInput<'_, S, K, D> {
         let (simd, zero, own) = (self.simd, self.zero, const { RequiredSums::of_terms::<L, D>() });
         let rows = self.needs.sum_rows(D);
         let nowhere = sums.len() - rows;
-        for &j in others {
-            let j = j as usize;
+        for &entry in others {
+            let place = base + usize::from(entry);
+            let j = self.first + place;
             let PackedCluster { x, v, s } = &self.clusters[j];
             let (mut r_ab, mut v_ab, mut force) = ([zero; D], [zero; D], [zero; D]);
             for k in 0..D {
@@ -402,7 +408,7 @@ impl<S: Simd, K: Kernel, const D: usize> SlabInput<'_, S, K, D> {
             let near = r2.simd_lt(self.reach2).select(ab.velocity_along_r.abs() * ab.inv_r2, zero);
             *closing = SimdBase::max(*closing, near);
 
-            let at = if j == one.cluster { nowhere } else { (j - self.first) * rows };
+            let at = if j == one.cluster { nowhere } else { place * rows };
             let theirs = &mut sums[at..][..rows];
             let mut b = Accumulators::filled_with(zero);
             b.for_each_row(own, self.needs, |row, b| *b = load(&theirs[row].0));

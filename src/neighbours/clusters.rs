@@ -36,10 +36,45 @@ pub struct Slab {
     pub middle: usize,
     /// End of the slab's clusters.
     pub end: usize,
-    /// For each slot of the slab: first entry in `index`, start of the clusters of boundary particles, end.
-    pub spans: Vec<[u32; 3]>,
-    /// Clusters with which there are pairs.
-    pub index: Vec<u32>,
+    /// Parts of each list: one, unless the slab and the next have more clusters than an entry can number.
+    pub(super) parts: usize,
+    /// For each part of the list of each slot: first entry in `index`, first entry of a cluster of boundary particles. The next
+    /// one's first entry is the end.
+    pub(super) spans: Vec<[u32; 2]>,
+    /// Clusters with which there are pairs, counted from the slab's first cluster and the start of the part.
+    pub(super) index: Vec<u16>,
+}
+
+/// Clusters that the entries of one part of a list can number.
+pub(super) const PART: usize = 1 << 16;
+
+/// A part of the list of a slot.
+pub struct ListPart<'a> {
+    /// Number, in the slab, of the cluster of an entry 0.
+    pub base: usize,
+    /// Clusters of water.
+    pub water: &'a [u16],
+    /// Clusters of boundary particles.
+    pub boundary: &'a [u16],
+}
+
+impl Slab {
+    /// The list of a slot of this slab, in parts.
+    #[inline(always)]
+    pub fn list(&self, slot: usize) -> impl Iterator<Item = ListPart<'_>> {
+        (0..self.parts).map(move |part| {
+            let at = slot * self.parts + part;
+            let [start, middle] = self.spans[at].map(|k| k as usize);
+            let end = self.spans[at + 1][0] as usize;
+            ListPart { base: part * PART, water: &self.index[start..middle], boundary: &self.index[middle..end] }
+        })
+    }
+
+    /// Whether a slot of this slab has no list.
+    #[inline(always)]
+    pub(crate) fn is_unpaired(&self, slot: usize) -> bool {
+        self.spans[slot * self.parts][0] == self.spans[(slot + 1) * self.parts][0]
+    }
 }
 
 /// All clusters.
@@ -77,7 +112,7 @@ impl Clusters {
 
     /// Memory of the clusters and their lists, B.
     pub(super) fn memory_bytes(&self) -> usize {
-        let slab = |slab: &Slab| 12 * slab.spans.len() + 4 * slab.index.len();
+        let slab = |slab: &Slab| 8 * slab.spans.len() + 2 * slab.index.len();
         4 * (self.source.len() + self.fluid_slots.len() + self.boundary_slots.len())
             + self.slabs.iter().map(slab).sum::<usize>()
     }

@@ -10,7 +10,7 @@ mod grid;
 mod lists;
 mod search;
 
-pub use clusters::{Clusters, PAD};
+pub use clusters::{Clusters, ListPart, PAD};
 pub(crate) use clusters::{Slab, fill_positions, occupied_lanes};
 pub(crate) use grid::CellGrid;
 pub use lists::CHUNK;
@@ -52,10 +52,10 @@ pub struct NeighbourLists<const D: usize> {
     pair_lists: PairLists,
     /// Boundary particles with water within the lists' reach, in ascending order.
     boundary_near_fluid: Vec<u32>,
-    /// Positions of water and skin at the last build, m.
-    positions_at_build: (Vec<Vector<D>>, Vec<Vector<D>>),
-    /// The same in grids, for queries at a point; built at the first query.
-    grids: OnceLock<(CellGrid<D>, CellGrid<D>)>,
+    /// Positions of the water at the last build, m.
+    positions_at_build: Vec<Vector<D>>,
+    /// The positions of water and boundary particles at the last build in grids, for queries at a point; made at the first query.
+    grids: [OnceLock<CellGrid<D>>; 2],
 }
 
 impl<const D: usize> NeighbourLists<D> {
@@ -71,8 +71,8 @@ impl<const D: usize> NeighbourLists<D> {
             dp,
             pair_lists: pairs,
             boundary_near_fluid: Vec::new(),
-            positions_at_build: (Vec::new(), Vec::new()),
-            grids: OnceLock::new(),
+            positions_at_build: Vec::new(),
+            grids: Default::default(),
         }
     }
 
@@ -106,11 +106,10 @@ impl<const D: usize> NeighbourLists<D> {
 
     /// Builds the lists for these positions of water and boundary particles.
     pub fn build(&mut self, water: &[Vector<D>], skin: &[Vector<D>]) {
-        self.positions_at_build.0.clear();
-        self.positions_at_build.0.extend_from_slice(water);
-        self.positions_at_build.1.clear();
-        self.positions_at_build.1.extend_from_slice(skin);
-        self.grids = OnceLock::new();
+        self.grids = Default::default();
+        self.positions_at_build.clear();
+        self.positions_at_build.reserve_exact(water.len());
+        self.positions_at_build.extend_from_slice(water);
         let look = self.list_radius();
         let columns = Columns::new(water, WIDTH * self.dp, look);
         let water_sorted = columns.sort(water, &all_indices(water.len()));
@@ -134,7 +133,7 @@ impl<const D: usize> NeighbourLists<D> {
 
     /// The positions of the water for which the lists were made, m.
     pub(crate) fn positions_at_build(&self) -> &[Vector<D>] {
-        &self.positions_at_build.0
+        &self.positions_at_build
     }
 
     /// The pairs.
@@ -152,7 +151,7 @@ impl<const D: usize> NeighbourLists<D> {
         match &self.pair_lists {
             PairLists::Lists(lists) => {
                 lists.memory_bytes()
-                    + (self.positions_at_build.0.len() + self.boundary_near_fluid.len()) * 8 * (2 * D + 6)
+                    + (self.positions_at_build.len() + self.boundary_near_fluid.len()) * 8 * (2 * D + 6)
             }
             // Eight particles packed in single precision: places, velocities, four numbers; and two rows of sums.
             PairLists::Clusters(clusters, _) => {
@@ -163,30 +162,32 @@ impl<const D: usize> NeighbourLists<D> {
 
     /// Calls `visit` with the index of every water particle that may be within the support of `x`.
     pub(crate) fn visit_fluid_around(&self, x: &Vector<D>, visit: &mut dyn FnMut(usize)) {
-        self.visit_around(&self.grids().0, x, visit);
+        self.visit_around(self.fluid_grid(), x, visit);
     }
 
     /// The indices of every water particle that may be within `bounds` (m), in order.
     pub(crate) fn fluid_within(&self, bounds: &Bounds<D>) -> Vec<usize> {
         let mut these = Vec::new();
         let bounds = bounds.grown(self.margin());
-        self.grids().0.visit_rows(&bounds, |row| these.extend(row.iter().map(|&i| i as usize)));
+        self.fluid_grid().visit_rows(&bounds, |row| these.extend(row.iter().map(|&i| i as usize)));
         these.sort_unstable();
         these
     }
 
-    /// Calls `visit` with the index of every boundary particle that may be within the support of `x`.
-    pub(crate) fn visit_boundary_around(&self, x: &Vector<D>, visit: &mut dyn FnMut(usize)) {
-        self.visit_around(&self.grids().1, x, visit);
+    /// Calls `visit` with the index of every boundary particle that may be within the support of `x`. `at_build` says where they
+    /// were (m) at the last build.
+    pub(crate) fn visit_boundary_around(
+        &self,
+        at_build: impl FnOnce() -> Vec<Vector<D>>,
+        x: &Vector<D>,
+        visit: &mut dyn FnMut(usize),
+    ) {
+        let grid = self.grids[1].get_or_init(|| CellGrid::new(&at_build(), self.list_radius()));
+        self.visit_around(grid, x, visit);
     }
 
-    fn grids(&self) -> &(CellGrid<D>, CellGrid<D>) {
-        self.grids.get_or_init(|| {
-            (
-                CellGrid::new(&self.positions_at_build.0, self.list_radius()),
-                CellGrid::new(&self.positions_at_build.1, self.list_radius()),
-            )
-        })
+    fn fluid_grid(&self) -> &CellGrid<D> {
+        self.grids[0].get_or_init(|| CellGrid::new(&self.positions_at_build, self.list_radius()))
     }
 
     fn visit_around(&self, grid: &CellGrid<D>, x: &Vector<D>, visit: &mut dyn FnMut(usize)) {

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use fearless_simd::{SimdBase, SimdCvtFloat, SimdMask};
 
 use super::{
-    clusters::{ClusterExtent, PAD, Ranges, Slab},
+    clusters::{ClusterExtent, PAD, PART, Ranges, Slab},
     columns::Columns,
 };
 use crate::math::simd::{self, LANES, Level, Simd, SimdTask, f32x8, i32x8};
@@ -80,39 +80,51 @@ impl<const D: usize> SimdTask for OfSlab<'_, '_, D> {
         let mut touched = vec![0u8; last - first];
         let (mut later, mut used) = (Vec::new(), 0);
         slab.spans.clear();
+        slab.parts = (last - first).div_ceil(PART).max(1);
         for c in first..end {
             later.clear();
             let middle = search.candidates(s, c, &mut later);
+            let kinds = [&later[..middle], &later[middle..]];
             for l in 0..LANES {
-                let start = used as u32;
-                if search.source[c * LANES + l] == PAD {
-                    slab.spans.push([start; 3]);
-                    continue;
-                }
+                let (start, pad) = (used, search.source[c * LANES + l] == PAD);
                 let most = used + later.len() + 1;
                 if slab.index.len() < most {
                     // Lists are the larger part of the memory: an eighth to spare, not as much again.
                     slab.index.reserve_exact(most + most / 8 - slab.index.len());
                     slab.index.resize(most + most / 8, 0);
                 }
-                if c < middle_of_slab {
-                    slab.index[used] = c as u32;
-                    used += 1;
-                }
                 let at: [i32x8<S>; D] = std::array::from_fn(|k| i32x8::splat(simd, search.x[c][k][l]));
-                let met = search.meet(simd, &at, &later[..middle], &mut slab.index[used..], |_, _| {});
-                let water = used + met;
-                let met = search.meet(simd, &at, &later[middle..], &mut slab.index[water..], |j, lanes| {
-                    touched[j as usize - first] |= lanes;
-                });
-                used = water + met;
-                touched[c - first] |= u8::from(used > start as usize) << l;
-                slab.spans.push([start, water as u32, used as u32]);
+                for base in (0..slab.parts).map(|part| first + part * PART) {
+                    let [water, skin] = kinds.map(|clusters| if pad { &[][..] } else { part_from(base, clusters) });
+                    let begin = used;
+                    if !pad && c < middle_of_slab && (base..base + PART).contains(&c) {
+                        slab.index[used] = (c - base) as u16;
+                        used += 1;
+                    }
+                    used += search.meet(simd, &at, base, water, &mut slab.index[used..], |_, _| {});
+                    slab.spans.push([begin as u32, used as u32]);
+                    used += search.meet(simd, &at, base, skin, &mut slab.index[used..], |j, lanes| {
+                        touched[j as usize - first] |= lanes;
+                    });
+                }
+                touched[c - first] |= u8::from(used > start) << l;
             }
         }
+        slab.spans.push([used as u32; 2]);
         slab.index.truncate(used);
         touched
     }
+}
+
+/// Those of the ascending `clusters` that entries of the part from cluster `base` on can number.
+#[inline(always)]
+fn part_from(base: usize, clusters: &[u32]) -> &[u32] {
+    let within = |clusters: &[u32]| clusters.last().is_none_or(|&j| (j as usize) < base + PART);
+    if clusters.first().is_none_or(|&j| j as usize >= base) && within(clusters) {
+        return clusters;
+    }
+    let start = clusters.partition_point(|&j| (j as usize) < base);
+    &clusters[start..clusters.partition_point(|&j| (j as usize) < base + PART)]
 }
 
 impl<const D: usize> Search<'_, D> {
@@ -161,15 +173,16 @@ impl<const D: usize> Search<'_, D> {
         }
     }
 
-    /// Writes to `list` those of `clusters` that have a particle within reach of `at`, and says to `note` which
-    /// lanes; returns how many.
+    /// Writes to `list` those of `clusters`, counted from `base`, that have a particle within reach of `at`, and says to `note`
+    /// which lanes; returns how many.
     #[inline(always)]
     fn meet<S: Simd>(
         &self,
         simd: S,
         at: &[i32x8<S>; D],
+        base: usize,
         clusters: &[u32],
-        list: &mut [u32],
+        list: &mut [u16],
         mut note: impl FnMut(u32, u8),
     ) -> usize {
         let reach2 = f32x8::splat(simd, self.reach2);
@@ -182,7 +195,7 @@ impl<const D: usize> Search<'_, D> {
                 r2 += d * d;
             }
             let near = r2.simd_lt(reach2).to_bitmask() as u8;
-            list[met] = j;
+            list[met] = (j as usize - base) as u16;
             met += usize::from(near != 0);
             note(j, near);
         }

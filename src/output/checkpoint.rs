@@ -10,7 +10,7 @@
 
 use std::{
     fs,
-    io::{self, Read, Write},
+    io::{self, BufWriter, Read, Seek, SeekFrom, Write},
     path::Path,
 };
 
@@ -29,7 +29,13 @@ pub(crate) const PREVIOUS: &str = "checkpoint.previous.bin";
 pub(crate) const PART: &str = "checkpoint.bin.part";
 
 const MAGIC: &[u8; 8] = b"PONTOON\n";
-const FORMAT: u32 = 6;
+const FORMAT: u32 = 7;
+
+/// Length of what precedes the packed data: magic word, format, two lengths and the hash.
+const HEADER: usize = 8 + 4 + 16 + 8;
+
+/// Bytes that gather before they are packed.
+const BUFFER: usize = 1 << 16;
 
 /// Largest ratio of the decompressed size to the file size. The identifiers of the particles do not compress well, and
 /// keep the ratio of a valid checkpoint below 200.
@@ -91,17 +97,22 @@ impl Checkpoint {
         }
     }
 
-    /// Writes the checkpoint to `folder` as [`LAST`]. The former last checkpoint becomes [`PREVIOUS`] if `good` is
-    /// true. Otherwise it is replaced, because an invalid checkpoint must not replace a valid checkpoint.
+    /// Writes the checkpoint to `folder` as [`LAST`], with the bytes of the simulation that `state` writes. The former last
+    /// checkpoint becomes [`PREVIOUS`] if `good` is true. Otherwise it is replaced, because an invalid checkpoint must not
+    /// replace a valid checkpoint.
     ///
     /// # Errors
     /// `File` if the checkpoint cannot be written; the former checkpoints remain.
-    pub(crate) fn write(&self, folder: &Path, good: bool) -> Result<()> {
+    pub(crate) fn write(
+        &self,
+        folder: &Path,
+        good: bool,
+        state: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+    ) -> Result<()> {
         let (last, previous) = (folder.join(LAST), folder.join(PREVIOUS));
-        let bytes = self.to_bytes()?;
         // The file is on the disk under its temporary name before the others are renamed: from here on, two complete
         // checkpoints exist.
-        write_partial(&last, |file| file.write_all(&bytes).and_then(|()| file.sync_all()))?;
+        write_partial(&last, |file| self.pack(file, state).and_then(|()| file.sync_all()))?;
         if good {
             match fs::rename(&last, &previous) {
                 Err(why) if why.kind() != io::ErrorKind::NotFound => {
@@ -116,26 +127,26 @@ impl Checkpoint {
         Ok(())
     }
 
-    /// Returns the checkpoint in its file format.
-    ///
-    /// # Errors
-    /// `Restart` if the checkpoint cannot be serialised or compressed.
-    pub(crate) fn to_bytes(&self) -> Result<Vec<u8>> {
-        let cannot = |why: &dyn std::fmt::Display| {
-            Error::new(ErrorKind::Restart, format!("the checkpoint cannot be packed: {why}"))
-        };
-        let known = postcard::to_stdvec(self).map_err(|why| cannot(&why))?;
-        let pack = || -> io::Result<Vec<u8>> {
-            // Higher compression levels take longer, and hardly reduce the size of flow data.
-            let mut packed = zstd::Encoder::new(Vec::new(), 1)?;
-            packed.write_all(&known)?;
-            packed.write_all(&self.state)?;
-            packed.finish()
-        };
-        let packed = pack().map_err(|why| cannot(&why))?;
-        let lengths = [(known.len() + self.state.len()) as u64, packed.len() as u64].map(u64::to_le_bytes).concat();
-        let sum = fnv1a_continue(fnv1a(&lengths), &packed).to_le_bytes();
-        Ok([MAGIC, &FORMAT.to_le_bytes()[..], &lengths, &sum, &packed].concat())
+    /// Writes the checkpoint in its file format, packed piece by piece: no copy of it is in memory.
+    fn pack<W: Write + Seek>(
+        &self,
+        file: &mut W,
+        state: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+    ) -> io::Result<()> {
+        let known = postcard::to_stdvec(self).map_err(io::Error::other)?;
+        file.write_all(&[0; HEADER])?;
+        // Higher compression levels take longer, and hardly reduce the size of flow data.
+        let encoder = zstd::Encoder::new(Hashed::new(file), 1)?;
+        let mut plain = Hashed::new(BufWriter::with_capacity(BUFFER, encoder));
+        plain.write_all(&known)?;
+        state(&mut plain)?;
+        let unfolded = plain.length;
+        let encoder = plain.inner.into_inner().map_err(io::IntoInnerError::into_error)?;
+        let Hashed { inner: file, length, hash } = encoder.finish()?;
+        let lengths = [unfolded, length].map(u64::to_le_bytes).concat();
+        let sum = fnv1a_continue(hash, &lengths).to_le_bytes();
+        file.seek(SeekFrom::Start(0))?;
+        file.write_all(&[MAGIC, &FORMAT.to_le_bytes()[..], &lengths, &sum].concat())
     }
 
     /// Reads the checkpoint at `path`.
@@ -193,7 +204,7 @@ impl Checkpoint {
             return Err(short());
         }
         let sound = packed.len() as u64 == length
-            && fnv1a_continue(fnv1a(lengths), packed) == u64::from_le_bytes(*sum)
+            && fnv1a_continue(fnv1a(packed), lengths) == u64::from_le_bytes(*sum)
             && unfolded <= MAX_EXPANSION.saturating_mul(length);
         if !sound {
             return Err(damaged());
@@ -205,6 +216,7 @@ impl Checkpoint {
             return Err(damaged());
         }
         let (mut found, state) = postcard::take_from_bytes::<Self>(&payload).map_err(|_| damaged())?;
+        let known = payload.len() - state.len();
         if found.version != env!("CARGO_PKG_VERSION") {
             let what = format!("written by pontoon {}, this is {}", found.version, env!("CARGO_PKG_VERSION"));
             return Err(restart_error(
@@ -213,8 +225,35 @@ impl Checkpoint {
                 &format!("{OTHER}: another may not go on to the same bits"),
             ));
         }
-        found.state = state.to_vec();
+        payload.drain(..known);
+        found.state = payload;
         Ok(found)
+    }
+}
+
+/// Writes on to `inner`, and takes length and FNV-1a hash of what it writes.
+struct Hashed<W> {
+    inner: W,
+    length: u64,
+    hash: u64,
+}
+
+impl<W: Write> Hashed<W> {
+    fn new(inner: W) -> Self {
+        Self { inner, length: 0, hash: fnv1a(&[]) }
+    }
+}
+
+impl<W: Write> Write for Hashed<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let written = self.inner.write(bytes)?;
+        self.length += written as u64;
+        self.hash = fnv1a_continue(self.hash, &bytes[..written]);
+        Ok(written)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.inner.flush()
     }
 }
 

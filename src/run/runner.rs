@@ -85,6 +85,7 @@ where
             // Before any table is cut back: a state of no use leaves all as it was.
             sim.restore(&std::mem::take(&mut checkpoint.state))?;
         }
+        sim.store_rollback_states_in(&folder);
         let outputs = Outputs::new(&plan, probes, &folder, resumed.then_some(&checkpoint.outputs))?;
         if resumed {
             run_folder::remove_failure_report(&folder)?;
@@ -213,9 +214,8 @@ impl<const D: usize> Runner<D> {
         // knows of no alarm yet: it is met again, or another guard is set.
         self.last_checkpoint_valid = false;
         self.outputs.sync()?;
-        let state = self.sim.save_with_rollbacks(known)?;
-        self.write_checkpoint(state.clone(), extent.clone())?;
-        self.write_checkpoint(state, extent.clone())?;
+        self.write_checkpoint(known, extent.clone())?;
+        self.write_checkpoint(known, extent.clone())?;
         self.outputs.roll_back_to(&extent)
     }
 
@@ -232,14 +232,15 @@ impl<const D: usize> Runner<D> {
     /// Writes the checkpoint, of outputs that are on the disk.
     fn save_checkpoint(&mut self) -> Result<()> {
         self.outputs.sync()?;
-        self.write_checkpoint(self.sim.save()?, self.outputs.positions())
+        self.write_checkpoint(self.sim.rollbacks().len(), self.outputs.positions())
     }
 
-    /// Writes the checkpoint with the present `state` of the simulation and the positions `outputs`.
-    fn write_checkpoint(&mut self, state: Vec<u8>, outputs: OutputPositions) -> Result<()> {
+    /// Writes the checkpoint with the present state of the simulation, of which only the first `rollbacks` rollbacks, and with the
+    /// positions `outputs`.
+    fn write_checkpoint(&mut self, rollbacks: usize, outputs: OutputPositions) -> Result<()> {
         let (time, wall, cpu) = (self.sim.time(), self.wall_seconds(), self.cpu_seconds());
-        let now = Checkpoint { state, time, wall_seconds: wall, cpu_seconds: cpu, outputs, ..self.checkpoint.clone() };
-        now.write(&self.folder, self.last_checkpoint_valid)?;
+        let now = Checkpoint { time, wall_seconds: wall, cpu_seconds: cpu, outputs, ..self.checkpoint.clone() };
+        now.write(&self.folder, self.last_checkpoint_valid, |out| self.sim.write_state(rollbacks, out))?;
         (self.last_checkpoint_valid, self.last_checkpoint.0) = (true, Instant::now());
         Ok(())
     }

@@ -1,9 +1,14 @@
-//! What a simulation does when a guard sounds its first alarm: it goes back to a good state that it has in memory and takes
+//! What a simulation does when a guard sounds its first alarm: it goes back to a good state that it has stored and takes
 //! half the step for a while. If the alarm returns meanwhile, the run stops with the report of that.
 //!
 //! A run without an alarm is not changed by a bit: the states are only kept.
 
-use std::fmt;
+use std::{
+    fmt,
+    fs::{self, File},
+    io::{self, BufWriter, Read as _, Seek as _, Write},
+    path::{Path, PathBuf},
+};
 
 use serde::{Deserialize, Serialize};
 
@@ -15,6 +20,9 @@ const AGE: u64 = 100;
 
 /// Times that a run is rescued; a run that needs more is not computed but nursed.
 const MOST: usize = 3;
+
+/// Name of the file of a state while it is made.
+const FILE: &str = "rollback.part";
 
 /// One time that a run was rescued.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -36,12 +44,50 @@ impl fmt::Display for Rollback {
     }
 }
 
+/// Bytes that gather before they are written.
+const BUFFER: usize = 1 << 16;
+
+/// The bytes of a stored state.
+pub(super) enum StoredState {
+    /// In memory.
+    Memory(Vec<u8>),
+    /// In a file without a name, which goes with its handle, also if the program is killed.
+    File(File),
+}
+
+impl StoredState {
+    /// Stores in `folder` the state that `write` writes.
+    pub(super) fn in_folder(folder: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<Self> {
+        let path = folder.join(FILE);
+        let file = File::options().read(true).write(true).create(true).truncate(true).open(&path)?;
+        fs::remove_file(&path)?;
+        let mut out = BufWriter::with_capacity(BUFFER, file);
+        write(&mut out)?;
+        Ok(Self::File(out.into_inner().map_err(io::IntoInnerError::into_error)?))
+    }
+
+    /// The bytes.
+    fn into_bytes(self) -> io::Result<Vec<u8>> {
+        match self {
+            Self::Memory(bytes) => Ok(bytes),
+            Self::File(mut file) => {
+                let mut bytes = Vec::new();
+                file.rewind()?;
+                file.read_to_end(&mut bytes)?;
+                Ok(bytes)
+            }
+        }
+    }
+}
+
 /// The states kept, and what came of them.
 #[derive(Default)]
 pub(super) struct RollbackControl {
     off: bool,
+    /// Where the states are stored; in memory if there is no folder.
+    pub(super) folder: Option<PathBuf>,
     /// The last two states, the older first: step, time, bytes.
-    states: Vec<(u64, f64, Vec<u8>)>,
+    states: Vec<(u64, f64, StoredState)>,
     /// What happened so far.
     pub(super) log: Vec<Rollback>,
 }
@@ -74,13 +120,13 @@ impl RollbackControl {
         }
     }
 
-    /// Keeps the state `bytes` of `steps` steps and `time` (s).
-    pub(super) fn store(&mut self, steps: u64, time: f64, mut bytes: Vec<u8>) {
-        bytes.shrink_to_fit();
-        self.states.push((steps, time, bytes));
+    /// Keeps the `state` of `steps` steps and `time` (s).
+    pub(super) fn store(&mut self, steps: u64, time: f64, state: StoredState) {
+        self.states.push((steps, time, state));
     }
 
-    /// The state to go back to after an `alarm` at `time` (s), `steps` steps into the run; none if that is no use.
+    /// The state to go back to after an `alarm` at `time` (s), `steps` steps into the run; none if that is no use, or if its file
+    /// cannot be read.
     pub(super) fn state_before(&mut self, alarm: &str, steps: u64, time: f64) -> Option<Vec<u8>> {
         let again = self.log.last().is_some_and(|last| time <= last.halved_until);
         if again || self.log.len() >= MOST {
@@ -88,7 +134,8 @@ impl RollbackControl {
         }
         let old = self.states.iter().rposition(|(at, ..)| at + AGE <= steps).unwrap_or(0);
         self.states.truncate(old + 1);
-        let (_, back_to, bytes) = self.states.pop()?;
+        let (_, back_to, state) = self.states.pop()?;
+        let bytes = state.into_bytes().ok()?;
         // As long again beyond the alarm as the way back.
         let halved_until = time + (time - back_to);
         self.log.push(Rollback { alarm: alarm.into(), at: time, back_to, halved_until });

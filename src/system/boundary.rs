@@ -11,7 +11,6 @@ use crate::{
     error::{Error, Result},
     math::{Bounds, Pose, Vector},
     model::{Model, Walls},
-    neighbours::NeighbourLists,
     particles::{PARTICLES_PER_TASK, Particles},
     solid::{Kinematics, Role, Solid, SolidSpec, boundary_motion},
     sph::boundary::{DynamicBoundary, Slip, SupportCoverage, WallExtrapolation, no_slip_velocity},
@@ -20,16 +19,16 @@ use crate::{
 /// The boundary particles of all solids, one solid after the other.
 pub(crate) struct Boundary<const D: usize> {
     pub(crate) particles: Particles<D>,
-    /// Positions in the frames of their solids, m.
-    local_positions: Vec<Vector<D>>,
+    /// Positions in the frame of each solid, m; none of a fixed solid, whose particles stay where they are.
+    local_positions: Vec<Vec<Vector<D>>>,
     /// Share of the kernel's support that water fills, Σ V_f W, of each one near water, –; `None` unless a body needs it.
     pub(crate) wetness: Option<Vec<f64>>,
     /// Depths below the face, m; `None` unless the density relaxes to the water's pressure or water sticks to the face.
     depths: Option<Vec<f64>>,
     /// Outward normals in the frames of their solids; `None` unless water sticks to the face.
     normals: Option<Vec<Vector<D>>>,
-    /// Target density (kg/m³) and the fraction applied when it lies above the current one; `None` unless walls relax.
-    target_density: Option<Vec<(f64, f64)>>,
+    /// Target densities of those that had water near them in the last pass, in ascending order; `None` unless walls relax.
+    target_density: Option<Vec<TargetDensity>>,
     /// Velocities (m/s) with which they act on the water; `None` where those are their own.
     pub(super) extrapolated_velocity: Option<Vec<Vector<D>>>,
     /// Beside which of them water is not shifted; `None` unless water is shifted.
@@ -39,6 +38,17 @@ pub(crate) struct Boundary<const D: usize> {
     pub(super) local_bounds: Vec<Bounds<D>>,
     /// Poses of the solids when the neighbour lists were built; `None` if they must be built anew.
     pub(super) poses_at_rebuild: Option<Vec<Pose<D>>>,
+}
+
+/// The density to which a boundary particle relaxes.
+#[derive(Clone, Copy)]
+struct TargetDensity {
+    /// Index of the boundary particle.
+    particle: u32,
+    /// Target, kg/m³.
+    density: f64,
+    /// Fraction applied when the target lies above the current density, –.
+    fraction: f64,
 }
 
 impl<const D: usize> Boundary<D> {
@@ -81,10 +91,9 @@ impl<const D: usize> Boundary<D> {
             .into_iter()
             .map(|point| point.r)
             .collect::<Vec<_>>();
-        for r in faces.iter().chain(extension.iter().map(|particle| &particle.r)) {
-            self.particles.push(kinematics.pose.point(r), model.rho0);
-            self.local_positions.push(*r);
-        }
+        let local: Vec<Vector<D>> = faces.iter().copied().chain(extension.iter().map(|particle| particle.r)).collect();
+        self.particles.reserve_exact(local.len());
+        local.iter().for_each(|r| self.particles.push(kinematics.pose.point(r), model.rho0));
         faces.extend(extension.iter().map(|particle| particle.behind_face));
         if self.particles.len() == first {
             return Err(Error::scene(format!("solid {:?} is too small for a single boundary particle", spec.name))
@@ -96,7 +105,8 @@ impl<const D: usize> Boundary<D> {
         if let Some(normals) = &mut self.normals {
             normals.par_extend(faces.par_iter().map(|r| spec.shape.outward_normal(r, 0.05 * model.dp)));
         }
-        self.local_bounds.push(Bounds::around(&self.local_positions[first..]));
+        self.local_bounds.push(Bounds::around(&local));
+        self.local_positions.push(if matches!(spec.role, Role::Fixed) { Vec::new() } else { local });
         Ok(first..self.particles.len())
     }
 
@@ -104,43 +114,40 @@ impl<const D: usize> Boundary<D> {
     pub(super) fn remove_range(&mut self, gone: &Range<usize>, solid: usize) {
         let Self { particles: Particles { r, v, rho, id }, local_positions, depths, normals, .. } = self;
         let Self { target_density, extrapolated_velocity, local_bounds, .. } = self;
-        for vectors in [r, v, local_positions].into_iter().chain(normals).chain(extrapolated_velocity) {
+        for vectors in [r, v].into_iter().chain(normals).chain(extrapolated_velocity) {
             remove_range(vectors, gone);
         }
+        local_positions[solid] = Vec::new();
         [rho].into_iter().chain(depths).for_each(|numbers| remove_range(numbers, gone));
-        target_density.iter_mut().for_each(|targets| remove_range(targets, gone));
+        if let Some(targets) = target_density {
+            targets.retain(|target| !gone.contains(&(target.particle as usize)));
+            let later = targets.partition_point(|target| (target.particle as usize) < gone.start);
+            targets[later..].iter_mut().for_each(|target| target.particle -= gone.len() as u32);
+        }
         id.truncate(self.particles.r.len());
         local_bounds[solid] = Bounds { min: Vector::zeros(), max: Vector::zeros() };
     }
 
-    /// The positions `r` (m) of all boundary particles, with those of each solid as at its pose.
-    pub(super) fn positions_at(&self, mut r: Vec<Vector<D>>, poses: &[Pose<D>], solids: &[Solid<D>]) -> Vec<Vector<D>> {
-        for (solid, pose) in solids.iter().zip(poses) {
-            for i in solid.boundary.clone() {
-                r[i] = pose.point(&self.local_positions[i]);
-            }
+    /// The positions (m) of all boundary particles, with the solids at these `poses`.
+    pub(super) fn positions_at(&self, poses: &[Pose<D>], solids: &[Solid<D>]) -> Vec<Vector<D>> {
+        let mut r = self.particles.r.clone();
+        for ((solid, pose), local) in solids.iter().zip(poses).zip(&self.local_positions) {
+            r[solid.boundary.clone()].iter_mut().zip(local).for_each(|(r, local)| *r = pose.point(local));
         }
         r
     }
 
-    /// Places the boundary particles of `solid` where its kinematics say.
-    pub(super) fn place(&mut self, solid: &Solid<D>) {
-        let (range, Particles { r, v, .. }) = (solid.boundary.clone(), &mut self.particles);
-        boundary_motion::place_boundary_particles(
-            &solid.kinematics,
-            &self.local_positions[range.clone()],
-            &mut r[range.clone()],
-            &mut v[range],
-        );
-    }
-
-    /// Sets the target densities of the boundary particles near water.
-    fn set_targets(&mut self, neighbours: &NeighbourLists<D>, targets: Vec<(f64, f64)>, rho0: f64) {
-        let count = self.particles.len();
-        let all = self.target_density.get_or_insert_default();
-        all.resize(count, (rho0, 0.0));
-        for (&i, target) in neighbours.boundary_near_fluid().iter().zip(targets) {
-            all[i as usize] = target;
+    /// Places the boundary particles of solid number `i`, which is `solid`, where its kinematics say.
+    pub(super) fn place(&mut self, i: usize, solid: &Solid<D>) {
+        let local = &self.local_positions[i];
+        if !local.is_empty() {
+            let (range, Particles { r, v, .. }) = (solid.boundary.clone(), &mut self.particles);
+            boundary_motion::place_boundary_particles(
+                &solid.kinematics,
+                local,
+                &mut r[range.clone()],
+                &mut v[range],
+            );
         }
     }
 }
@@ -148,7 +155,7 @@ impl<const D: usize> Boundary<D> {
 impl<const D: usize> System<D> {
     /// Puts the boundary particles of solid `i` where its kinematics say.
     pub(crate) fn place_boundary(&mut self, i: usize) {
-        self.boundary.place(&self.solids[i]);
+        self.boundary.place(i, &self.solids[i]);
     }
 
     /// Finds the boundary particles beside which water is not shifted.
@@ -192,14 +199,17 @@ impl<const D: usize> System<D> {
     /// towards its target. The others stay at ρ₀.
     pub(crate) fn set_boundary_density(&mut self, relaxation: f64, mut rho: impl FnMut(usize, usize, f64) -> f64) {
         let (rho0, Boundary { particles, target_density, .. }) = (self.properties.rho0, &mut self.boundary);
+        let mut targets = target_density.iter().flatten().peekable();
         for (k, &i) in self.neighbours.boundary_near_fluid().iter().enumerate() {
+            while targets.next_if(|target| target.particle < i).is_some() {}
+            let target = targets.next_if(|target| target.particle == i);
             let i = i as usize;
             let bare = rho(k, i, particles.rho[i]);
-            particles.rho[i] = match target_density.as_ref().and_then(|targets| targets.get(i)) {
+            particles.rho[i] = match target {
                 None => DynamicBoundary.limited_density(bare, rho0),
-                Some(&(target, fraction)) => {
-                    let own = DynamicBoundary.limited_density(bare, target.min(rho0));
-                    own + (target - own) * if target > own { relaxation * fraction } else { relaxation }
+                Some(&TargetDensity { density, fraction, .. }) => {
+                    let own = DynamicBoundary.limited_density(bare, density.min(rho0));
+                    own + (density - own) * if density > own { relaxation * fraction } else { relaxation }
                 }
             };
         }
@@ -232,16 +242,16 @@ impl<const D: usize> System<D> {
     fn update_wall_pressure(&mut self, fits: &[WallExtrapolation<f64, D>]) {
         let (medium, Boundary { particles, depths, coverage, .. }) = (&self.properties, &self.boundary);
         let depths = depths.as_deref().unwrap_or_default();
-        let target = |(&i, fit): (&u32, &WallExtrapolation<f64, D>)| {
-            let i = i as usize;
+        let target = |(&particle, fit): (&u32, &WallExtrapolation<f64, D>)| {
+            let i = particle as usize;
             let pull = medium.gravity - self.owner(i).acceleration_at(&particles.r[i]);
             let pressure = fit.pressure(&pull, &medium.gravity, depths[i]);
             let density = medium.rho0 * (1.0 + self.equation_of_state.compression(pressure));
-            (density, coverage.fraction(fit.weight_sum, depths[i]))
+            TargetDensity { particle, density, fraction: coverage.fraction(fit.weight_sum, depths[i]) }
         };
         let wet = self.neighbours.boundary_near_fluid();
         let targets = wet.par_iter().zip(fits).with_min_len(PARTICLES_PER_TASK).map(target).collect();
-        self.boundary.set_targets(&self.neighbours, targets, medium.rho0);
+        self.boundary.target_density = Some(targets);
     }
 
     /// Makes the velocities with which boundary particles act of `fits`, one for each boundary particle near water.

@@ -1,5 +1,7 @@
 //! The state of a system in a checkpoint: enough to continue with the same bits.
 
+use std::borrow::Cow;
+
 use serde::{Deserialize, Serialize};
 
 use super::{Escape, System};
@@ -15,41 +17,47 @@ use crate::{
 /// No boundary particle is so far away, m; a value that is not finite fails the comparison too.
 const FARTHEST: f64 = 1e100;
 
-/// The state of a system in a checkpoint.
+/// The state of a system in a checkpoint; the arrays are borrowed where it is written. Positions and velocities of boundary
+/// particles follow from their solids.
 #[derive(Serialize, Deserialize)]
-pub(crate) struct SystemState<const D: usize> {
-    fluid: Particles<D>,
+pub(crate) struct SystemState<'a, const D: usize> {
+    fluid: Cow<'a, Particles<D>>,
     /// Index of the original of each image; the images are the last of the fluid.
-    images: Vec<u32>,
-    boundary: Particles<D>,
+    images: Cow<'a, [u32]>,
+    /// Number of boundary particles.
+    boundary_count: usize,
+    /// The boundary particles whose density is not ρ₀, in ascending order, with their densities, kg/m³.
+    boundary_density: Vec<(u32, f64)>,
     kinematics: Vec<Kinematics<D>>,
     loads: Vec<Load<D>>,
     accelerations: Vec<(Vector<D>, Bivector<D>)>,
     absorption: Vec<AbsorptionState>,
-    stress: Vec<Matrix<D>>,
-    gradient_correction: Vec<Matrix<D>>,
+    stress: Cow<'a, [Matrix<D>]>,
+    gradient_correction: Cow<'a, [Matrix<D>]>,
     /// Positions of the water and poses of the solids when the neighbour lists were built.
-    at_rebuild: (Vec<Vector<D>>, Vec<Pose<D>>),
+    at_rebuild: (Cow<'a, [Vector<D>]>, Cow<'a, [Pose<D>]>),
     passes: u64,
 }
 
 impl<const D: usize> System<D> {
     /// The state from which [`System::restore`] continues with the same bits.
-    pub(crate) fn save(&self) -> SystemState<D> {
+    pub(crate) fn save(&self) -> SystemState<'_, D> {
         let of_solids = |solid: &Solid<D>| (solid.acceleration, solid.angular_acceleration);
+        let density = (0u32..).zip(&self.boundary.particles.rho).map(|(i, &rho)| (i, rho));
         SystemState {
-            fluid: self.fluid.particles.clone(),
-            images: self.fluid.images.originals.clone(),
-            boundary: self.boundary.particles.clone(),
+            fluid: Cow::Borrowed(&self.fluid.particles),
+            images: Cow::Borrowed(&self.fluid.images.originals),
+            boundary_count: self.boundary.particles.len(),
+            boundary_density: density.filter(|(_, rho)| *rho != self.properties.rho0).collect(),
             kinematics: self.solids.iter().map(|s| s.kinematics).collect(),
             loads: self.solids.iter().map(|s| s.load).collect(),
             accelerations: self.solids.iter().map(of_solids).collect(),
             absorption: self.solids.iter().map(|s| s.absorption).collect(),
-            stress: self.fluid.stress.clone().unwrap_or_default(),
-            gradient_correction: self.fluid.gradient_correction.clone().unwrap_or_default(),
+            stress: Cow::Borrowed(self.fluid.stress.as_deref().unwrap_or_default()),
+            gradient_correction: Cow::Borrowed(self.fluid.gradient_correction.as_deref().unwrap_or_default()),
             at_rebuild: (
-                self.neighbours.positions_at_build().to_vec(),
-                self.boundary.poses_at_rebuild.clone().unwrap_or_default(),
+                Cow::Borrowed(self.neighbours.positions_at_build()),
+                Cow::Borrowed(self.boundary.poses_at_rebuild.as_deref().unwrap_or_default()),
             ),
             passes: self.status.passes,
         }
@@ -66,7 +74,8 @@ impl<const D: usize> System<D> {
         let fewer = self.status.solids_added || self.fluid_domain.limits.escape == Escape::Remove;
         let all = if fewer { real <= self.fluid_domain.initial_count } else { real == self.fluid_domain.initial_count };
         all && state.images.iter().all(|&i| (i as usize) < real)
-            && state.boundary.len() == self.boundary.particles.len()
+            && state.boundary_count == self.boundary.particles.len()
+            && state.boundary_density.iter().all(|&(i, _)| (i as usize) < state.boundary_count)
             && state.kinematics.len() == solids
             && state.loads.len() == solids
             && state.accelerations.len() == solids
@@ -77,7 +86,6 @@ impl<const D: usize> System<D> {
             && state.at_rebuild.0.len() == count
             && state.at_rebuild.1.len() == solids
             && whole(&state.fluid)
-            && whole(&state.boundary)
     }
 
     /// Returns to a saved state of the same scene.
@@ -86,23 +94,31 @@ impl<const D: usize> System<D> {
             return Err(Error::new(ErrorKind::Restart, "the checkpoint holds another number of particles")
                 .help("it belongs to another scene: resume in the folder of its own run"));
         }
-        let (water, poses) = state.at_rebuild;
-        let boundary = self.boundary.positions_at(state.boundary.r.clone(), &poses, &self.solids);
+        let (water, poses) = (state.at_rebuild.0, state.at_rebuild.1.into_owned());
+        let boundary = self.boundary.positions_at(&poses, &self.solids);
         // No run continues with water outside its domain, but images lie beyond periodic sides.
         let around = self.fluid_domain.domain.grown(self.fluid_domain.domain.size().max());
         let near = water.iter().chain(&state.fluid.r).all(|x| around.contains(x));
-        if !near || !boundary.iter().chain(&state.boundary.r).all(|x| x.amax() < FARTHEST) {
+        let now: Vec<Pose<D>> = state.kinematics.iter().map(|kinematics| kinematics.pose).collect();
+        let mut places = boundary.iter().copied().chain(self.boundary.positions_at(&now, &self.solids));
+        if !near || !places.all(|x| x.amax() < FARTHEST) {
             return Err(Error::new(ErrorKind::Restart, "the checkpoint holds a particle that is nowhere"));
         }
-        (self.boundary.particles, self.status.passes) = (state.boundary, state.passes);
-        self.fluid.particles = state.fluid;
-        self.fluid.stress = self.fluid.stress.take().map(|_| state.stress);
-        self.fluid.gradient_correction = self.fluid.gradient_correction.take().map(|_| state.gradient_correction);
-        self.fluid.images.originals = state.images;
+        self.status.passes = state.passes;
+        self.fluid.particles = state.fluid.into_owned();
+        self.fluid.stress = self.fluid.stress.take().map(|_| state.stress.into_owned());
+        self.fluid.gradient_correction =
+            self.fluid.gradient_correction.take().map(|_| state.gradient_correction.into_owned());
+        self.fluid.images.originals = state.images.into_owned();
         self.rates.fluid.resize(self.fluid.particles.len(), PairSums::zero());
         let loads = state.kinematics.into_iter().zip(state.loads);
-        for (solid, (kinematics, load)) in self.solids.iter_mut().zip(loads) {
+        for (i, (solid, (kinematics, load))) in self.solids.iter_mut().zip(loads).enumerate() {
             (solid.kinematics, solid.load) = (kinematics, load);
+            self.boundary.place(i, solid);
+        }
+        self.boundary.particles.rho.fill(self.properties.rho0);
+        for (i, rho) in state.boundary_density {
+            self.boundary.particles.rho[i as usize] = rho;
         }
         for ((solid, rates), yielding) in self.solids.iter_mut().zip(state.accelerations).zip(state.absorption) {
             (solid.acceleration, solid.angular_acceleration) = rates;

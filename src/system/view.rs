@@ -167,8 +167,13 @@ impl<const D: usize> System<D> {
 
     /// Calls `visit` with index, place (m) and kernel value W (1/mᴰ) of each boundary particle whose support holds `x` (m).
     pub fn visit_boundary_near(&self, x: &Vector<D>, visit: &mut dyn FnMut(usize, &Vector<D>, f64)) {
-        self.neighbours
-            .visit_boundary_around(x, &mut |i| self.visit_within_support(&self.boundary.particles.r[i], x, i, visit));
+        let at_rebuild = || match &self.boundary.poses_at_rebuild {
+            Some(poses) => self.boundary.positions_at(poses, &self.solids),
+            None => self.boundary.particles.r.clone(),
+        };
+        self.neighbours.visit_boundary_around(at_rebuild, x, &mut |i| {
+            self.visit_within_support(&self.boundary.particles.r[i], x, i, visit);
+        });
     }
 
     /// Calls `visit` with the index of each boundary particle of solid number `solid` beside water, and the force (N; N/m in 2-D)

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use pontoon::{
     math::Vector,
     model::PairLoopKind,
-    neighbours::{CHUNK, Clusters, NeighbourLists, PAD, PairLists},
+    neighbours::{CHUNK, Clusters, ListPart, NeighbourLists, PAD, PairLists},
 };
 
 use crate::common::Random;
@@ -68,14 +68,16 @@ fn from_clusters(clusters: &Clusters) -> PairCounts {
     for slab in &clusters.slabs {
         for slot in slab.first * 8..slab.end * 8 {
             let (cluster, i) = (slot / 8, clusters.source[slot]);
-            let [start, _, end] = slab.spans[slot - slab.first * 8].map(|k| k as usize);
-            assert!(i != PAD || start == end, "a padding slot has no neighbours");
-            for &c in &slab.index[start..end] {
+            let entries = slab.list(slot - slab.first * 8).flat_map(|ListPart { base, water, boundary }| {
+                water.iter().chain(boundary).map(move |&entry| slab.first + base + usize::from(entry))
+            });
+            for c in entries {
+                assert!(i != PAD, "a padding slot has no neighbours");
                 let is_water = |c: usize| clusters.slabs.iter().any(|s| (s.first..s.middle).contains(&c));
-                for &j in clusters.source[c as usize * 8..c as usize * 8 + 8].iter().filter(|&&j| j != PAD) {
-                    match (is_water(cluster), is_water(c as usize)) {
+                for &j in clusters.source[c * 8..c * 8 + 8].iter().filter(|&&j| j != PAD) {
+                    match (is_water(cluster), is_water(c)) {
                         // Within a cluster each particle lists the other.
-                        (true, true) if c as usize == cluster && j <= i => {}
+                        (true, true) if c == cluster && j <= i => {}
                         (true, true) => *counts.fluid_fluid.entry((i.min(j), i.max(j))).or_default() += 1,
                         (true, false) => *counts.fluid_boundary.entry((i, j)).or_default() += 1,
                         (false, true) => *counts.fluid_boundary.entry((j, i)).or_default() += 1,

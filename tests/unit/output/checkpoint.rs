@@ -22,6 +22,13 @@ fn example() -> Checkpoint {
     }
 }
 
+/// The content of a checkpoint's file.
+fn packed(checkpoint: &Checkpoint) -> io::Result<Vec<u8>> {
+    let mut file = io::Cursor::new(Vec::new());
+    checkpoint.pack(&mut file, |out| out.write_all(&checkpoint.state))?;
+    Ok(file.into_inner())
+}
+
 fn refusal(bytes: &[u8]) -> Option<ErrorKind> {
     Checkpoint::from_bytes(bytes).err().map(|e| e.kind)
 }
@@ -33,9 +40,9 @@ fn the_hash_is_fnv_1a() {
 }
 
 #[test]
-fn a_checkpoint_survives_writing_and_every_damage_is_detected() -> Result<()> {
-    let good = example().to_bytes()?;
-    assert_eq!(Checkpoint::from_bytes(&good)?, example());
+fn a_checkpoint_survives_writing_and_every_damage_is_detected() -> io::Result<()> {
+    let good = packed(&example())?;
+    assert_eq!(Checkpoint::from_bytes(&good).ok(), Some(example()));
     for cut in 0..good.len() {
         let what = Checkpoint::from_bytes(&good[..cut]).err().map(|e| e.message).unwrap_or_default();
         assert!(what.contains("cut short"), "cut at {cut}: {what}");
@@ -48,7 +55,7 @@ fn a_checkpoint_survives_writing_and_every_damage_is_detected() -> Result<()> {
         }
     }
     assert_eq!(refusal(&[&good[..], b"x"].concat()), Some(ErrorKind::Restart), "a byte too many");
-    let other = Checkpoint { version: "0.0.0".into(), ..example() }.to_bytes()?;
+    let other = packed(&Checkpoint { version: "0.0.0".into(), ..example() })?;
     assert!(Checkpoint::from_bytes(&other).is_err_and(|e| e.message.contains("written by pontoon 0.0.0")));
     Ok(())
 }
@@ -56,7 +63,7 @@ fn a_checkpoint_survives_writing_and_every_damage_is_detected() -> Result<()> {
 /// A file with a valid hash over any lengths and payload.
 fn forged(unfolded: u64, packed: &[u8]) -> Vec<u8> {
     let lengths = [unfolded, packed.len() as u64].map(u64::to_le_bytes).concat();
-    let sum = fnv1a_continue(fnv1a(&lengths), packed).to_le_bytes();
+    let sum = fnv1a_continue(fnv1a(packed), &lengths).to_le_bytes();
     [MAGIC, &FORMAT.to_le_bytes()[..], &lengths, &sum, packed].concat()
 }
 
@@ -79,13 +86,14 @@ fn the_last_two_checkpoints_are_kept_and_a_damaged_one_never_replaces_an_intact_
     let folder = std::env::temp_dir().join(format!("pontoon-checkpoint-{}", std::process::id()));
     fs::create_dir_all(&folder).map_err(|e| Error::file(&folder, e))?;
     let at = |time| Checkpoint { time, ..example() };
+    let write = |checkpoint: Checkpoint, good| checkpoint.write(&folder, good, |out| out.write_all(&[1, 2]));
     let time = |name: &str| Checkpoint::read(&folder.join(name)).map(|c| c.time).ok();
-    at(1.0).write(&folder, true)?;
+    write(at(1.0), true)?;
     assert_eq!([time(LAST), time(PREVIOUS)], [Some(1.0), None]);
-    at(2.0).write(&folder, true)?;
+    write(at(2.0), true)?;
     assert_eq!([time(LAST), time(PREVIOUS)], [Some(2.0), Some(1.0)]);
     fs::write(folder.join(LAST), "damaged").map_err(|e| Error::file(&folder, e))?;
-    at(3.0).write(&folder, false)?;
+    write(at(3.0), false)?;
     assert_eq!([time(LAST), time(PREVIOUS)], [Some(3.0), Some(1.0)]);
     let none = Checkpoint::read(&folder.join("none")).err().map(|e| e.message).unwrap_or_default();
     assert!(none.ends_with("there is no checkpoint"), "{none}");
