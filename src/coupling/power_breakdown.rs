@@ -19,12 +19,12 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    interaction::{PairLoop, PairSums},
+    interaction::PairLoop,
     math::Vector,
     model::{Diffusion, Dimension, Model, PressureGradient, Shifting, Viscosity},
     neighbours::CHUNK,
     solid::{Dim, Load},
-    system::System,
+    system::{FluidRates, System},
 };
 
 /// Powers on the water at a force pass, W (W/m in 2-D).
@@ -43,8 +43,6 @@ pub(super) struct PowerMeter<const D: usize> {
     pressure: Box<dyn PairLoop<D>>,
     /// Pair loop with uncorrected gradients, if the model corrects the gradients.
     plain: Option<Box<dyn PairLoop<D>>>,
-    fluid_sums: Vec<PairSums<D>>,
-    boundary_sums: Vec<PairSums<D>>,
 }
 
 impl<const D: usize> PowerMeter<D> {
@@ -57,23 +55,20 @@ impl<const D: usize> PowerMeter<D> {
             Model { viscosity: Viscosity::None, diffusion: Diffusion::None, shifting: Shifting::None, ..model.clone() };
         let plain = Model { gradient: PressureGradient::Plain, ..pressure.clone() };
         let plain = (model.gradient != PressureGradient::Plain).then(|| Dim::<D>::pair_loop(&plain));
-        let (fluid_sums, boundary_sums) = (Vec::new(), Vec::new());
-        Self { pressure: Dim::<D>::pair_loop(&pressure), plain, fluid_sums, boundary_sums }
+        Self { pressure: Dim::<D>::pair_loop(&pressure), plain }
     }
 
     /// Returns the powers at the last force pass, and the loads of the pressure alone on the solids. The state of
     /// `system` must not have changed since that pass.
     pub(super) fn decompose(&mut self, system: &System<D>) -> (PowerBreakdown, Vec<Load<D>>) {
-        let Self { pressure, plain, fluid_sums, boundary_sums } = self;
-        fluid_sums.resize(system.rates.fluid.len(), PairSums::zero());
-        boundary_sums.resize(system.rates.boundary.len(), PairSums::zero());
-        let mut pass = |pair_loop: &mut dyn PairLoop<D>| {
-            let loads = system.rates_of_pair_loop(pair_loop, fluid_sums, boundary_sums);
-            (gains(system, fluid_sums), loads)
+        let Self { pressure, plain } = self;
+        let pass = |pair_loop: &mut dyn PairLoop<D>| {
+            let loads = system.loads_of_pair_loop(pair_loop);
+            (gains(system, system.fluid_rates_of(pair_loop)), loads)
         };
         let (gained, loads) = pass(&mut **pressure);
         let before = plain.as_mut().map(|plain| pass(&mut **plain));
-        let all = gains(system, &system.rates.fluid);
+        let all = gains(system, system.fluid_rates());
         let on_solids = |more: &dyn Fn(usize) -> Load<D>| -> f64 {
             system.solids.iter().enumerate().map(|(i, solid)| more(i).power(&solid.kinematics)).sum()
         };
@@ -91,21 +86,21 @@ impl<const D: usize> PowerMeter<D> {
 /// the solids.
 pub(super) fn total_power<const D: usize>(system: &System<D>) -> f64 {
     let on_solids: f64 = system.solids.iter().map(|solid| solid.load.power(&solid.kinematics)).sum();
-    gains(system, &system.rates.fluid).iter().sum::<f64>() + on_solids
+    gains(system, system.fluid_rates()).iter().sum::<f64>() + on_solids
 }
 
-/// Returns the powers (W) on the motion and on the compression of the water from the rates `sums`, without the weight
+/// Returns the powers (W) on the motion and on the compression of the water by its `rates`, without the weight
 /// of the water. The sums over chunks are added in order.
-fn gains<const D: usize>(system: &System<D>, sums: &[PairSums<D>]) -> [f64; 2] {
+fn gains<const D: usize>(system: &System<D>, rates: FluidRates<'_, D>) -> [f64; 2] {
     let (water, rho0, g) = (system.fluid(), system.properties().rho0, system.gravity());
     let particles = water.v.par_chunks(CHUNK).zip(water.rho.par_chunks(CHUNK));
-    let chunk = |((v, rho), sums): ((&[Vector<D>], &[f64]), &[PairSums<D>])| {
-        v.iter().zip(rho).zip(sums).fold([0.0; 2], |[motion, compression], ((v, rho), s)| {
-            let pressed = system.pressure(*rho) / (rho * rho);
+    let chunk = |(c, (v, rho)): (usize, (&[Vector<D>], &[f64]))| {
+        (c * CHUNK..).zip(v.iter().zip(rho)).fold([0.0; 2], |[motion, compression], (i, (v, rho))| {
+            let (s, pressed) = (rates.of(i), system.pressure(*rho) / (rho * rho));
             [motion + v.dot(&(s.acceleration - g)), compression + pressed * s.compression_rate * rho0]
         })
     };
-    let parts: Vec<[f64; 2]> = particles.zip(sums[..water.len()].par_chunks(CHUNK)).map(chunk).collect();
+    let parts: Vec<[f64; 2]> = particles.enumerate().map(chunk).collect();
     let mass = system.particle_mass();
     parts.iter().fold([0.0; 2], |[a, b], part| [a + part[0] * mass, b + part[1] * mass])
 }

@@ -45,16 +45,6 @@ pub struct PairLoopInput<'a, const D: usize> {
     pub equation_of_state: &'a EquationOfState,
 }
 
-/// Output of a force pass.
-pub struct PairLoopOutput<'a, const D: usize> {
-    /// One for each water particle; gravity included.
-    pub fluid: &'a mut [PairSums<D>],
-    /// One for each wet boundary particle, in the order of [`NeighbourLists::boundary_near_fluid`].
-    pub boundary: &'a mut [PairSums<D>],
-    /// One for each water particle, or none if no law needs it.
-    pub auxiliary: &'a mut [AuxiliarySums<f64, D>],
-}
-
 /// The sums of one particle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PairSums<const D: usize> {
@@ -103,8 +93,18 @@ pub trait PairLoop<const D: usize>: Send + Sync {
         let _ = properties;
     }
 
-    /// Sums over all pairs; the neighbour lists must hold.
-    fn rates(&mut self, input: &PairLoopInput<'_, D>, output: &mut PairLoopOutput<'_, D>) -> StepLimits;
+    /// Sums over all pairs; the neighbour lists must hold. Writes the sums of the boundary particles near water to `boundary`, in
+    /// the order of [`NeighbourLists::boundary_near_fluid`], and keeps those of the water.
+    fn rates(&mut self, input: &PairLoopInput<'_, D>, boundary: &mut [PairSums<D>]) -> StepLimits;
+
+    /// Frees the buffers of a pass, before the neighbour lists are rebuilt; the sums of the last pass go with them.
+    fn free_buffers(&mut self);
+
+    /// The sums of water particle `i`, gravity included, by the last [`PairLoop::rates`], which had these lists.
+    fn fluid_sums(&self, neighbours: &NeighbourLists<D>, i: usize) -> PairSums<D>;
+
+    /// The sums of water particle `i` that only some terms need, by the last [`PairLoop::rates`], which had these lists.
+    fn auxiliary_sums(&self, neighbours: &NeighbourLists<D>, i: usize) -> AuxiliarySums<f64, D>;
 }
 
 /// The pair loop of the terms `inner` between water particles and `wall` between water and solids, with the properties

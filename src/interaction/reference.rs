@@ -6,14 +6,14 @@ use std::time::{Duration, Instant};
 use rayon::prelude::*;
 
 use super::{
-    PairLoop, PairLoopInput, PairLoopOutput, PairSums, StepLimits,
+    PairLoop, PairLoopInput, PairSums, StepLimits,
     accumulators::{Accumulators, RequiredSums},
     boundary_sums::BoundarySums,
     compiled::{CompiledTerms, PairTerms},
 };
 use crate::{
     math::{Matrix, Vector},
-    neighbours::{CHUNK, PairLists, ParticleListChunk},
+    neighbours::{CHUNK, NeighbourLists, PairLists, ParticleListChunk},
     particles::{PARTICLES_PER_TASK, Particles},
     sph::{
         AuxiliarySums, FluidProperties, Pair, PairSide, Term, boundary::WallExtrapolation, kernel::Kernel,
@@ -26,6 +26,10 @@ pub(super) struct ReferencePairLoop<const D: usize> {
     laws: Box<dyn PairTerms<D>>,
     fits: Box<dyn BoundarySums<D>>,
     nodes: [Vec<ReferenceParticle<D>>; 2],
+    /// The sums of the water.
+    fluid: Vec<PairSums<D>>,
+    /// The sums of the water that only some terms need; none if none does.
+    auxiliary: Vec<AuxiliarySums<f64, D>>,
     spent: Duration,
 }
 
@@ -40,7 +44,8 @@ pub(super) struct ReferenceParticle<const D: usize> {
 impl<const D: usize> ReferencePairLoop<D> {
     /// The reference with those terms, in SI.
     pub(super) fn new(laws: Box<dyn PairTerms<D>>, fits: Box<dyn BoundarySums<D>>) -> Self {
-        Self { laws, fits, nodes: [Vec::new(), Vec::new()], spent: Duration::ZERO }
+        let (nodes, fluid, auxiliary) = ([Vec::new(), Vec::new()], Vec::new(), Vec::new());
+        Self { laws, fits, nodes, fluid, auxiliary, spent: Duration::ZERO }
     }
 }
 
@@ -212,7 +217,7 @@ impl<const D: usize> PairLoop<D> for ReferencePairLoop<D> {
         self.laws.set_gravity(&properties.gravity.into());
     }
 
-    fn rates(&mut self, input: &PairLoopInput<'_, D>, output: &mut PairLoopOutput<'_, D>) -> StepLimits {
+    fn rates(&mut self, input: &PairLoopInput<'_, D>, boundary: &mut [PairSums<D>]) -> StepLimits {
         let PairLists::Lists(lists) = input.neighbours.pair_lists() else {
             unreachable!("the oracle has lists of particles")
         };
@@ -236,6 +241,9 @@ impl<const D: usize> PairLoop<D> for ReferencePairLoop<D> {
             &mut self.nodes[1],
         );
         let start = Instant::now();
+        self.fluid.resize(input.fluid.len(), PairSums::zero());
+        let count = if needs.any_auxiliary() { input.fluid.len() } else { 0 };
+        self.auxiliary.resize(count, AuxiliarySums::filled_with(0.0));
         let (laws, nodes) = (&self.laws, [&self.nodes[0][..], &self.nodes[1][..]]);
         let g = input.properties.gravity;
         let one = |c: usize, sums: &mut [PairSums<D>], extra: &mut [AuxiliarySums<f64, D>]| {
@@ -247,21 +255,32 @@ impl<const D: usize> PairLoop<D> for ReferencePairLoop<D> {
             (a2.fold(0.0, f64::max), closing)
         };
         let larger = |a: (f64, f64), b: (f64, f64)| (a.0.max(b.0), a.1.max(b.1));
-        let chunks = output.fluid.par_chunks_mut(CHUNK).enumerate();
-        let (a2, closing) = if output.auxiliary.is_empty() {
+        let chunks = self.fluid.par_chunks_mut(CHUNK).enumerate();
+        let (a2, closing) = if self.auxiliary.is_empty() {
             chunks.map(|(c, sums)| one(c, sums, &mut [])).reduce(|| (0.0, 0.0), larger)
         } else {
-            let both = chunks.zip(output.auxiliary.par_chunks_mut(CHUNK));
+            let both = chunks.zip(self.auxiliary.par_chunks_mut(CHUNK));
             both.map(|((c, sums), extra)| one(c, sums, extra)).reduce(|| (0.0, 0.0), larger)
         };
         let wet = input.neighbours.boundary_near_fluid().par_chunks(CHUNK);
-        output
-            .boundary
+        boundary
             .par_chunks_mut(CHUNK)
             .zip(wet)
             .zip(&lists.boundary)
             .for_each(|((sums, wet), chunk)| laws.sum_boundary(nodes, wet, chunk, sums));
         self.spent += start.elapsed();
         StepLimits { acceleration: a2.sqrt(), approach_rate: closing }
+    }
+
+    fn free_buffers(&mut self) {
+        (self.nodes, self.fluid, self.auxiliary) = ([Vec::new(), Vec::new()], Vec::new(), Vec::new());
+    }
+
+    fn fluid_sums(&self, _: &NeighbourLists<D>, i: usize) -> PairSums<D> {
+        self.fluid[i]
+    }
+
+    fn auxiliary_sums(&self, _: &NeighbourLists<D>, i: usize) -> AuxiliarySums<f64, D> {
+        self.auxiliary[i]
     }
 }

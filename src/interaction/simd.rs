@@ -12,7 +12,7 @@ use fearless_simd::{Select, SimdBase, SimdCvtFloat, SimdFloat};
 use rayon::prelude::*;
 
 use super::{
-    PairLoop, PairLoopInput, PairLoopOutput, PairSums, StepLimits,
+    PairLoop, PairLoopInput, PairSums, StepLimits,
     accumulators::{Accumulators, RequiredSums, for_each_symmetric_entry},
     boundary_sums::{self, BoundarySums},
     compiled::{CompiledTerms, PairTerms},
@@ -21,7 +21,7 @@ use super::{
 use crate::{
     math::Vector,
     math::simd::{self, LANES, LaneRow, Level, Simd, SimdTask, f32x8, i32x8},
-    neighbours::{Clusters, ListPart, PairLists, Slab},
+    neighbours::{Clusters, ListPart, NeighbourLists, PairLists, Slab},
     particles::PARTICLES_PER_TASK,
     sph::{AuxiliarySums, FluidProperties, Pair, PairSide, Term, Units, boundary::WallExtrapolation, kernel::Kernel},
 };
@@ -32,6 +32,8 @@ pub(super) struct SimdPairLoop<const D: usize> {
     fits: Box<dyn BoundarySums<D>>,
     units: Units,
     level: Level,
+    /// Acceleration of gravity in the last pass, m/s².
+    gravity: Vector<D>,
     packed: PackedParticles<D>,
     /// Whether the water is packed for this pass already.
     has_water: bool,
@@ -46,7 +48,8 @@ impl<const D: usize> SimdPairLoop<D> {
     /// The pair loop with those terms, in `units`.
     pub(super) fn new(laws: Box<dyn PairTerms<D>>, fits: Box<dyn BoundarySums<D>>, units: Units, level: Level) -> Self {
         let (packed, sums, at) = (PackedParticles::default(), Vec::new(), Vec::new());
-        Self { laws, fits, units, level, packed, has_water: false, sums, at, spent: Duration::ZERO }
+        let (gravity, spent) = (Vector::zeros(), Duration::ZERO);
+        Self { laws, fits, units, level, gravity, packed, has_water: false, sums, at, spent }
     }
 
     /// Allocates the sums of all slabs, `rows` a cluster; returns the number of rows that each slab writes.
@@ -67,6 +70,7 @@ impl<const D: usize> SimdPairLoop<D> {
         }
         // The first slab has no slab before it: rows of zeros replace it.
         self.at.iter_mut().take_while(|at| at[1] == u32::MAX).for_each(|at| at[1] = offset as u32);
+        self.sums.reserve_exact((offset + rows).saturating_sub(self.sums.len()));
         self.sums.resize(offset + rows, LaneRow::default());
         self.sums[offset..].fill(LaneRow::default());
         lengths
@@ -154,9 +158,7 @@ impl<const D: usize> PairLoop<D> for SimdPairLoop<D> {
         flow: bool,
         extrapolate_to_boundary: &mut [WallExtrapolation<f64, D>],
     ) {
-        let PairLists::Clusters(clusters, _) = input.neighbours.pair_lists() else {
-            unreachable!("lanes have lists of clusters")
-        };
+        let clusters = clusters(input.neighbours);
         self.packed.pack(input, clusters, &self.units, false);
         self.has_water = true;
         let lengths = self.lay_out(clusters, boundary_sums::row_count(D, flow));
@@ -181,30 +183,44 @@ impl<const D: usize> PairLoop<D> for SimdPairLoop<D> {
         self.laws.set_gravity(&properties.in_units(&self.units).gravity.into());
     }
 
-    fn rates(&mut self, input: &PairLoopInput<'_, D>, output: &mut PairLoopOutput<'_, D>) -> StepLimits {
-        let PairLists::Clusters(clusters, _) = input.neighbours.pair_lists() else {
-            unreachable!("lanes have lists of clusters")
-        };
+    fn rates(&mut self, input: &PairLoopInput<'_, D>, boundary: &mut [PairSums<D>]) -> StepLimits {
+        let clusters = clusters(input.neighbours);
         let needs = self.laws.required_sums();
         self.packed.pack(input, clusters, &self.units, std::mem::take(&mut self.has_water));
         if needs.input_rows(D) > 0 {
             self.packed.pack_rows(input, clusters, &self.units, needs);
         }
         let closing = self.sum_pairs(clusters);
-        let g = input.properties.gravity;
-        let water = output.fluid.par_iter_mut().zip(&clusters.fluid_slots).with_min_len(PARTICLES_PER_TASK);
+        self.gravity = input.properties.gravity;
+        let water = clusters.fluid_slots.par_iter().with_min_len(PARTICLES_PER_TASK);
         let a2 = water
-            .map(|(out, &slot)| {
-                *out = self.pair_sums_of(slot);
-                out.acceleration += g;
-                out.acceleration.norm_squared()
-            })
+            .map(|&slot| (self.pair_sums_of(slot).acceleration + self.gravity).norm_squared())
             .reduce(|| 0.0, f64::max);
-        let skin = output.boundary.par_iter_mut().zip(&clusters.boundary_slots).with_min_len(PARTICLES_PER_TASK);
+        let skin = boundary.par_iter_mut().zip(&clusters.boundary_slots).with_min_len(PARTICLES_PER_TASK);
         skin.for_each(|(out, &slot)| *out = self.pair_sums_of(slot));
-        let extra = output.auxiliary.par_iter_mut().zip(&clusters.fluid_slots).with_min_len(PARTICLES_PER_TASK);
-        extra.for_each(|(out, &slot)| *out = self.auxiliary_sums_of(slot, needs));
         StepLimits { acceleration: a2.sqrt(), approach_rate: closing }
+    }
+
+    fn free_buffers(&mut self) {
+        (self.packed, self.sums, self.at) = (PackedParticles::default(), Vec::new(), Vec::new());
+    }
+
+    fn fluid_sums(&self, neighbours: &NeighbourLists<D>, i: usize) -> PairSums<D> {
+        let mut sums = self.pair_sums_of(clusters(neighbours).fluid_slots[i]);
+        sums.acceleration += self.gravity;
+        sums
+    }
+
+    fn auxiliary_sums(&self, neighbours: &NeighbourLists<D>, i: usize) -> AuxiliarySums<f64, D> {
+        self.auxiliary_sums_of(clusters(neighbours).fluid_slots[i], self.laws.required_sums())
+    }
+}
+
+/// The lists of clusters.
+fn clusters<const D: usize>(neighbours: &NeighbourLists<D>) -> &Clusters {
+    match neighbours.pair_lists() {
+        PairLists::Clusters(clusters, _) => clusters,
+        PairLists::Lists(_) => unreachable!("lanes have lists of clusters"),
     }
 }
 

@@ -37,6 +37,7 @@ pub(super) struct PackedParticles<const D: usize> {
 impl<const D: usize> PackedParticles<D> {
     /// Packs all particles that may have pairs; only the boundary particles if the water has not changed.
     pub(super) fn pack(&mut self, input: &PairLoopInput<'_, D>, clusters: &Clusters, units: &Units, water_stays: bool) {
+        self.clusters.reserve_exact(clusters.len().saturating_sub(self.clusters.len()));
         self.clusters.resize(clusters.len(), PackedCluster::EMPTY);
         let inv_unit = 1.0 / units.length;
         clusters.split_by_slab(&mut self.clusters, 1).into_par_iter().with_max_len(1).for_each(|(slab, packed)| {
@@ -64,6 +65,7 @@ impl<const D: usize> PackedParticles<D> {
     ) {
         let (mark, count) = (needs.suppression, needs.input_rows(D));
         self.rows.clear();
+        self.rows.reserve_exact(clusters.len() * count);
         self.rows.resize(clusters.len() * count, LaneRow::default());
         let scale = (units.time / units.length).powi(2);
         let packed = &self.clusters;

@@ -110,7 +110,7 @@ impl<const D: usize> System<D> {
         self.fluid.gradient_correction =
             self.fluid.gradient_correction.take().map(|_| state.gradient_correction.into_owned());
         self.fluid.images.originals = state.images.into_owned();
-        self.rates.fluid.resize(self.fluid.particles.len(), PairSums::zero());
+        self.rates.current = false;
         let loads = state.kinematics.into_iter().zip(state.loads);
         for (i, (solid, (kinematics, load))) in self.solids.iter_mut().zip(loads).enumerate() {
             (solid.kinematics, solid.load) = (kinematics, load);

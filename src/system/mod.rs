@@ -32,11 +32,11 @@ use rayon::prelude::*;
 
 use crate::{
     error::{Error, Result},
-    interaction::{PairLoop, PairLoopInput, PairLoopOutput, PairSums},
+    interaction::{PairLoop, PairLoopInput, PairSums},
     math::{Bounds, Matrix, Pose, Vector},
     model::Model,
     neighbours::{CHUNK, NeighbourLists},
-    particles::PARTICLES_PER_TASK,
+    particles::{PARTICLES_PER_TASK, Particles},
     solid::{Constraints, Load, Solid, TimeFunction},
     sph::{AuxiliarySums, FluidProperties, equation_of_state::EquationOfState, gradient_correction},
 };
@@ -71,14 +71,44 @@ struct FluidDomain<const D: usize> {
     initial_count: usize,
 }
 
-/// Sums over pairs from the last force pass.
+/// Sums over pairs from the last force pass; the pair loop keeps those of the water.
 pub(crate) struct Rates<const D: usize> {
-    /// One for each water particle.
-    pub(crate) fluid: Vec<PairSums<D>>,
+    /// Whether the sums of the water belong to the present neighbour lists.
+    current: bool,
     /// One for each boundary particle near water.
     pub(crate) boundary: Vec<PairSums<D>>,
-    /// One for each water particle, or none if no law needs it.
-    auxiliary: Vec<AuxiliarySums<f64, D>>,
+}
+
+/// The sums of the water from the last force pass. An image has those of its original.
+#[derive(Clone, Copy)]
+pub(crate) struct FluidRates<'a, const D: usize> {
+    pair_loop: &'a dyn PairLoop<D>,
+    neighbours: &'a NeighbourLists<D>,
+    originals: &'a [u32],
+    /// Number of particles that are no images.
+    real: usize,
+}
+
+impl<'a, const D: usize> FluidRates<'a, D> {
+    /// Acceleration and density rate of water particle `i`.
+    #[inline]
+    pub(crate) fn of(&self, i: usize) -> PairSums<D> {
+        self.pair_loop.fluid_sums(self.neighbours, self.original(i))
+    }
+
+    /// The sums of water particle `i` that only some laws need.
+    pub(crate) fn auxiliary_of(&self, i: usize) -> AuxiliarySums<f64, D> {
+        self.pair_loop.auxiliary_sums(self.neighbours, self.original(i))
+    }
+
+    /// The positions of the water for which the lists were made, m.
+    pub(crate) fn positions_at_build(&self) -> &'a [Vector<D>] {
+        self.neighbours.positions_at_build()
+    }
+
+    fn original(&self, i: usize) -> usize {
+        i.checked_sub(self.real).map_or(i, |image| self.originals[image] as usize)
+    }
 }
 
 /// Counters and extremes of the steps so far.
@@ -158,11 +188,7 @@ impl<const D: usize> System<D> {
         let mut system = Self {
             pair_loop,
             neighbours: NeighbourLists::new(support, model.dp, model.pair_loop.instruction_set()),
-            rates: Rates {
-                fluid: vec![PairSums::zero(); fluid.particles.len()],
-                boundary: Vec::new(),
-                auxiliary: Vec::new(),
-            },
+            rates: Rates { current: false, boundary: Vec::new() },
             boundary: Boundary::new(&model),
             model,
             properties,
@@ -239,6 +265,8 @@ impl<const D: usize> System<D> {
     /// water near them before.
     fn rebuild_lists(&mut self) -> Vec<u32> {
         let start = Instant::now();
+        self.rates.current = false;
+        self.pair_loop.free_buffers();
         let mut dried = self.neighbours.boundary_near_fluid().to_vec();
         self.neighbours.build(&self.fluid.particles.r, &self.boundary.particles.r);
         self.boundary.poses_at_rebuild = Some(self.solids.iter().map(|s| s.kinematics.pose).collect());
@@ -281,51 +309,64 @@ impl<const D: usize> System<D> {
     /// the neighbour lists must hold.
     pub(crate) fn update_rates(&mut self) {
         self.update_wall_state();
-        if self.pair_loop.has_auxiliary_sums() {
-            self.rates.auxiliary.resize(self.fluid.particles.len(), AuxiliarySums::filled_with(0.0));
-        }
         let Self { pair_loop, neighbours, fluid, boundary, properties, equation_of_state, rates, .. } = self;
         let input = Self::pair_input(neighbours, fluid, boundary, properties, equation_of_state);
-        let Rates { fluid, boundary, auxiliary } = rates;
-        self.status.step_limits = pair_loop.rates(&input, &mut PairLoopOutput { fluid, boundary, auxiliary });
-        self.copy_to_images();
+        self.status.step_limits = pair_loop.rates(&input, &mut rates.boundary);
+        rates.current = true;
+        self.limit_step_by_originals();
         self.update_fluid_tensors();
         let loads = self.loads(&self.rates.boundary);
         self.solids.iter_mut().zip(loads).for_each(|(solid, load)| solid.load = load);
         self.status.passes += 1;
     }
 
-    /// The stress and the corrected gradients that the next force pass reads, from the sums of this one.
-    fn update_fluid_tensors(&mut self) {
-        let (medium, auxiliary) = (&self.properties, &self.rates.auxiliary);
-        if let (Some(law), Some(stress)) = (self.model.viscosity.stress(), &mut self.fluid.stress) {
-            let rho = &self.fluid.particles.rho;
-            stress.par_iter_mut().enumerate().with_min_len(PARTICLES_PER_TASK).for_each(|(i, stress)| {
-                let rows = law.stress(&auxiliary[i].strain, medium.rho0 / rho[i], medium);
-                *stress = Matrix::from_fn(|i, j| rows[i][j]);
-            });
-        }
-        if let Some(corrections) = &mut self.fluid.gradient_correction {
-            corrections.par_iter_mut().zip(auxiliary).with_min_len(PARTICLES_PER_TASK).for_each(
-                |(correction, sums)| {
-                    let rows = gradient_correction::correction(&sums.renormalization);
-                    *correction = Matrix::from_fn(|i, j| rows[i][j]);
-                },
-            );
-        }
+    /// The sums of the water from the last force pass.
+    pub(crate) fn fluid_rates(&self) -> FluidRates<'_, D> {
+        self.fluid_rates_of(&*self.pair_loop)
     }
 
-    /// Sums of another pair loop at the state of the last force pass, and the loads that they give on the solids.
-    pub(crate) fn rates_of_pair_loop(
-        &self,
-        pair_loop: &mut dyn PairLoop<D>,
-        fluid: &mut [PairSums<D>],
-        boundary: &mut [PairSums<D>],
-    ) -> Vec<Load<D>> {
+    /// The sums of the water from the last pass of a pair loop at the present lists.
+    pub(crate) fn fluid_rates_of<'a>(&'a self, pair_loop: &'a dyn PairLoop<D>) -> FluidRates<'a, D> {
+        let originals = &self.fluid.images.originals[..];
+        FluidRates { pair_loop, neighbours: &self.neighbours, originals, real: self.particle_count() }
+    }
+
+    /// The water's particles, and their sums from the last force pass.
+    pub(crate) fn fluid_and_rates(&mut self) -> (&mut Particles<D>, FluidRates<'_, D>) {
+        let real = self.particle_count();
+        let Fluid { particles, images, .. } = &mut self.fluid;
+        let (pair_loop, neighbours, originals) = (&*self.pair_loop, &self.neighbours, &images.originals[..]);
+        (particles, FluidRates { pair_loop, neighbours, originals, real })
+    }
+
+    /// The stress and the corrected gradients that the next force pass reads, from the sums of this one.
+    fn update_fluid_tensors(&mut self) {
+        let (stress, correction) = (self.fluid.stress.take(), self.fluid.gradient_correction.take());
+        let (medium, rates, rho) = (&self.properties, self.fluid_rates(), &self.fluid.particles.rho);
+        let stress = stress.zip(self.model.viscosity.stress()).map(|(mut stress, law)| {
+            stress.par_iter_mut().enumerate().with_min_len(PARTICLES_PER_TASK).for_each(|(i, stress)| {
+                let rows = law.stress(&rates.auxiliary_of(i).strain, medium.rho0 / rho[i], medium);
+                *stress = Matrix::from_fn(|i, j| rows[i][j]);
+            });
+            stress
+        });
+        let correction = correction.map(|mut corrections| {
+            corrections.par_iter_mut().enumerate().with_min_len(PARTICLES_PER_TASK).for_each(|(i, correction)| {
+                let rows = gradient_correction::correction(&rates.auxiliary_of(i).renormalization);
+                *correction = Matrix::from_fn(|i, j| rows[i][j]);
+            });
+            corrections
+        });
+        (self.fluid.stress, self.fluid.gradient_correction) = (stress, correction);
+    }
+
+    /// Computes the sums of another pair loop at the state of the last force pass; returns the loads that they give on the solids.
+    pub(crate) fn loads_of_pair_loop(&self, pair_loop: &mut dyn PairLoop<D>) -> Vec<Load<D>> {
         let (medium, state) = (&self.properties, &self.equation_of_state);
         let input = Self::pair_input(&self.neighbours, &self.fluid, &self.boundary, medium, state);
-        pair_loop.rates(&input, &mut PairLoopOutput { fluid, boundary, auxiliary: &mut [] });
-        self.loads(boundary)
+        let mut boundary = vec![PairSums::zero(); self.rates.boundary.len()];
+        pair_loop.rates(&input, &mut boundary);
+        self.loads(&boundary)
     }
 
     /// The load on each solid by the `sums` of the wet boundary particles, added up in chunks of fixed size, in order.
@@ -363,11 +404,6 @@ impl<const D: usize> System<D> {
     /// The largest values that limit the next step.
     pub fn step_limits(&self) -> StepLimits {
         self.status.step_limits
-    }
-
-    /// The sums of each water particle that only some laws need; empty if none does.
-    pub(crate) fn auxiliary_sums(&self) -> &[AuxiliarySums<f64, D>] {
-        &self.rates.auxiliary
     }
 
     /// Returns the `impulse` (N s) to the water nearest to `solid`, in equal shares.

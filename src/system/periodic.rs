@@ -4,10 +4,10 @@
 //! image takes its rates from the particle that it mirrors, so that whoever moves the water moves both alike; only what
 //! counts the water leaves images out. Solids have none: they reach beyond the sides as far as the images do.
 
-use super::{Fluid, Rates, RemovedParticle, System};
+use super::{Fluid, RemovedParticle, System};
 use crate::{
     error::{Error, Result},
-    interaction::{PairSums, StepLimits},
+    interaction::StepLimits,
     math::{Bounds, Vector},
     model::Model,
     solid::{Role, SolidSpec},
@@ -111,23 +111,15 @@ impl<const D: usize> System<D> {
             *r += away;
         }
         images.originals = copies.into_iter().map(|(of, _)| of).collect();
-        self.rates.fluid.resize(particles.len(), PairSums::zero());
         (order, lost)
     }
 
-    /// Gives the images the rates of their originals.
-    pub(super) fn copy_to_images(&mut self) {
-        let (real, images, Rates { fluid, auxiliary, .. }) =
-            (self.particle_count(), &self.fluid.images, &mut self.rates);
-        for (k, &i) in images.originals.iter().enumerate() {
-            fluid[real + k] = fluid[i as usize];
-            if !auxiliary.is_empty() {
-                auxiliary[real + k] = auxiliary[i as usize];
-            }
-        }
-        if images.any() {
+    /// Limits the next step by the acceleration of the water without its images.
+    pub(super) fn limit_step_by_originals(&mut self) {
+        if self.fluid.images.any() {
             // The outermost images lack half their neighbours: their acceleration says nothing of the water.
-            let largest = fluid[..real].iter().map(|s| s.acceleration.norm_squared()).fold(0.0, f64::max);
+            let (real, rates) = (self.particle_count(), self.fluid_rates());
+            let largest = (0..real).map(|i| rates.of(i).acceleration.norm_squared()).fold(0.0, f64::max);
             self.status.step_limits = StepLimits { acceleration: largest.sqrt(), ..self.status.step_limits };
         }
     }

@@ -85,14 +85,14 @@ impl<const D: usize> System<D> {
         self.particle_mass() * (0.5 * v.norm_squared() - height + self.compression_energy(rho))
     }
 
-    /// Acceleration (m/s²) of water particle `i` at the last force pass, gravity included.
+    /// Acceleration (m/s²) of water particle `i` at the last force pass, gravity included; zero in a restored state until the next.
     pub fn fluid_acceleration(&self, i: usize) -> Vector<D> {
-        self.rates.fluid[i].acceleration
+        if self.rates.current { self.fluid_rates().of(i).acceleration } else { Vector::zeros() }
     }
 
-    /// Rate of density (kg/m³/s) of water particle `i` at the last force pass.
+    /// Rate of density (kg/m³/s) of water particle `i` at the last force pass; zero in a restored state until the next.
     pub fn fluid_density_rate(&self, i: usize) -> f64 {
-        self.rates.fluid[i].compression_rate * self.properties.rho0
+        if self.rates.current { self.fluid_rates().of(i).compression_rate * self.properties.rho0 } else { 0.0 }
     }
 
     /// Number of boundary particles that have water near them; the others cost nothing.

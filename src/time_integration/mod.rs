@@ -85,12 +85,14 @@ impl<const D: usize> Stepper<D> {
 /// Displacement (m) of each water particle by shifting in a step `dt` (s); `None` if the model does not shift.
 fn shifts<const D: usize>(system: &System<D>, dt: f64) -> Option<Vec<Vector<D>>> {
     let shift = system.model().shift()?;
-    let water = system.auxiliary_sums().par_iter().zip(&system.fluid.particles.v);
-    let shifts = water.with_min_len(PARTICLES_PER_TASK).map(|(sums, v)| {
+    let rates = system.fluid_rates();
+    let water = system.fluid.particles.v.par_iter().enumerate().with_min_len(PARTICLES_PER_TASK);
+    let shifts = water.map(|(i, v)| {
+        let sums = rates.auxiliary_of(i);
         if sums.shifting_suppressed > 0.0 {
             Vector::zeros()
         } else {
-            shift.displacement(sums, v.norm(), dt, system.properties())
+            shift.displacement(&sums, v.norm(), dt, system.properties())
         }
     });
     Some(shifts.collect())

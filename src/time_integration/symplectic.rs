@@ -29,14 +29,16 @@ impl Symplectic {
     ) -> f64 {
         let (dt, half) = (over.dt, 0.5 * over.dt);
         let rho0 = system.properties().rho0;
-        let (start, boundary_start) = (system.fluid.particles.clone(), system.boundary.particles.rho.clone());
-
-        let (sums, fluid) = (&system.rates.fluid, &mut system.fluid.particles);
-        let now = fluid.r.par_iter_mut().zip(&mut fluid.v).zip(&mut fluid.rho).zip(sums);
+        let boundary_start = system.boundary.particles.rho.clone();
+        let (fluid, rates) = system.fluid_and_rates();
+        let (r_start, v_start, rho_start) = (fluid.r.clone(), fluid.v.clone(), fluid.rho.clone());
+        let now = fluid.r.par_iter_mut().zip(&mut fluid.v).zip(&mut fluid.rho);
         system.status.step_check = now
-            .zip(system.neighbours.positions_at_build())
+            .zip(rates.positions_at_build())
+            .enumerate()
             .with_min_len(PARTICLES_PER_TASK)
-            .map(|((((r, v), rho), s), then)| {
+            .map(|(i, (((r, v), rho), then))| {
+                let s = rates.of(i);
                 *r += *v * half;
                 *v += s.acceleration * half;
                 *rho += rho0 * s.compression_rate * half;
@@ -56,16 +58,17 @@ impl Symplectic {
             rho_start * (2.0 - epsilon) / (2.0 + epsilon)
         };
         let guard = system.valid_range();
-        let (sums, fluid) = (&system.rates.fluid, &mut system.fluid.particles);
-        let now = fluid.r.par_iter_mut().zip(&mut fluid.v).zip(&mut fluid.rho).zip(sums);
+        let (fluid, rates) = system.fluid_and_rates();
+        let now = fluid.r.par_iter_mut().zip(&mut fluid.v).zip(&mut fluid.rho);
         system.status.step_check = now
-            .zip(system.neighbours.positions_at_build())
+            .zip(rates.positions_at_build())
             .enumerate()
             .with_min_len(PARTICLES_PER_TASK)
-            .map(|(i, ((((r, v), rho), s), then))| {
-                *v = start.v[i] + s.acceleration * dt;
-                *r = start.r[i] + (start.v[i] + *v) * half;
-                *rho = whole(start.rho[i], *rho, s.compression_rate);
+            .map(|(i, (((r, v), rho), then))| {
+                let s = rates.of(i);
+                *v = v_start[i] + s.acceleration * dt;
+                *r = r_start[i] + (v_start[i] + *v) * half;
+                *rho = whole(rho_start[i], *rho, s.compression_rate);
                 guard.check(then, r, v, *rho)
             })
             .reduce(|| StepCheck::INITIAL, StepCheck::combine);

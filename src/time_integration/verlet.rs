@@ -102,14 +102,16 @@ impl<const D: usize> Verlet<D> {
         let shifts = shifts(system, dt);
 
         let guard = system.valid_range();
-        let (sums, fluid) = (&system.rates.fluid, &mut system.fluid.particles);
+        let (fluid, rates) = system.fluid_and_rates();
         let before = self.v_before.par_iter_mut().zip(&mut self.rho_before);
-        let now = fluid.r.par_iter_mut().zip(&mut fluid.v).zip(&mut fluid.rho).zip(sums);
+        let now = fluid.r.par_iter_mut().zip(&mut fluid.v).zip(&mut fluid.rho);
         system.status.step_check = now
             .zip(before)
-            .zip(system.neighbours.positions_at_build())
+            .zip(rates.positions_at_build())
+            .enumerate()
             .with_min_len(PARTICLES_PER_TASK)
-            .map(|(((((r, v), rho), s), (v_before, rho_before)), then)| {
+            .map(|(i, ((((r, v), rho), (v_before, rho_before)), then))| {
+                let s = rates.of(i);
                 *r += *v * dt + s.acceleration * (0.5 * dt * dt);
                 (*v_before, *v) = (*v, *v_before + s.acceleration * span);
                 (*rho_before, *rho) = (*rho, *rho_before + rho0 * s.compression_rate * span);

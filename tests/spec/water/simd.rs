@@ -2,7 +2,7 @@
 
 use pontoon::{
     geometry::Shape,
-    interaction::{self, PairLoopInput, PairLoopOutput, PairSums},
+    interaction::{self, PairLoopInput, PairSums},
     math::{Pose, Vector, expression::Formula, simd},
     model::{
         Diffusion, Dimension, KernelKind, Model, PairLoopKind, PressureGradient, Shifting, Slip, TimeScheme, Viscosity,
@@ -320,8 +320,7 @@ fn with_instructions(
     let inner = (wall, Fourtakas::default().term(&scaled));
     let kernel = Wendland::new(scaled.h, 3);
     let mut pair_loop = interaction::compile(kernel, inner, wall, &scaled, units, Some(level));
-    let (mut sums, mut on_boundary) =
-        (vec![PairSums::zero(); water.len()], vec![PairSums::zero(); near.boundary_near_fluid().len()]);
+    let mut on_boundary = vec![PairSums::zero(); near.boundary_near_fluid().len()];
     let (boundary_velocity, stress, gradient_correction, suppressed) = (&boundary.v[..], &[][..], &[][..], &[][..]);
     let input = PairLoopInput {
         neighbours: &near,
@@ -334,8 +333,8 @@ fn with_instructions(
         properties: &properties,
         equation_of_state: &state,
     };
-    pair_loop.rates(&input, &mut PairLoopOutput { fluid: &mut sums, boundary: &mut on_boundary, auxiliary: &mut [] });
-    sums.into_iter().chain(on_boundary).collect()
+    pair_loop.rates(&input, &mut on_boundary);
+    (0..water.len()).map(|i| pair_loop.fluid_sums(&near, i)).chain(on_boundary).collect()
 }
 
 #[test]
