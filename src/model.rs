@@ -352,6 +352,22 @@ impl Model {
         }
     }
 
+    /// V₀ ∂W (1/m²) of the squared distance (m²), normalised as in the pair loop.
+    pub(crate) fn kernel_slope<const D: usize>(&self) -> Box<dyn Fn(f64) -> f64 + Send + Sync> {
+        fn slope<K: kernel::Kernel + 'static, const D: usize>(
+            kernel: K,
+            medium: &FluidProperties<D>,
+        ) -> Box<dyn Fn(f64) -> f64 + Send + Sync> {
+            let kernel = kernel.normalised_on_lattice(medium);
+            Box::new(move |r2| kernel.slope(r2))
+        }
+        let medium = self.fluid_properties::<D>();
+        match self.kernel {
+            KernelKind::Cubic { .. } => slope(kernel::Cubic::new(self.h, D), &medium),
+            KernelKind::Wendland => slope(kernel::Wendland::new(self.h, D), &medium),
+        }
+    }
+
     /// Least stiffness of the lattice on which water starts, –: [`kernel::lattice::lattice_stiffness`].
     pub(crate) fn lattice_stiffness<const D: usize>(&self) -> f64 {
         match self.kernel {

@@ -380,9 +380,7 @@ impl<const D: usize> Simulation<D> {
     /// # Errors
     /// `Restart` if the engine's state cannot be written.
     pub fn save(&self) -> Result<Vec<u8>> {
-        let cannot = |e: &dyn std::fmt::Display| {
-            Error::new(ErrorKind::Restart, format!("cannot write the state: {e}"))
-        };
+        let cannot = |e: &dyn std::fmt::Display| Error::new(ErrorKind::Restart, format!("cannot write the state: {e}"));
         let state = self.state(self.rollback.log.len())?;
         let length = postcard::experimental::serialized_size(&state).map_err(|e| cannot(&e))?;
         postcard::to_extend(&state, Vec::with_capacity(length)).map_err(|e| cannot(&e))

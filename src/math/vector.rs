@@ -203,6 +203,11 @@ impl<const D: usize> Bounds<D> {
         (0..D).all(|i| x[i] >= self.min[i] && x[i] <= self.max[i])
     }
 
+    /// Whether a point lies inside both.
+    pub(crate) fn meets(&self, other: &Self) -> bool {
+        (0..D).all(|i| self.min[i] <= other.max[i] && other.min[i] <= self.max[i])
+    }
+
     /// The corners.
     pub(crate) fn corners(&self) -> impl Iterator<Item = Vector<D>> + use<D> {
         let Self { min, max } = *self;

@@ -13,7 +13,7 @@ use crate::{
     model::{Model, Walls},
     particles::{PARTICLES_PER_TASK, Particles},
     solid::{Kinematics, Role, Solid, SolidSpec, boundary_motion},
-    sph::boundary::{DynamicBoundary, Slip, SupportCoverage, WallExtrapolation, no_slip_velocity},
+    sph::boundary::{DynamicBoundary, Slip, SupportCoverage, WallExtrapolation, WallTarget, no_slip_velocity},
 };
 
 /// The boundary particles of all solids, one solid after the other.
@@ -45,10 +45,7 @@ pub(crate) struct Boundary<const D: usize> {
 struct TargetDensity {
     /// Index of the boundary particle.
     particle: u32,
-    /// Target, kg/m³.
-    density: f64,
-    /// Fraction applied when the target lies above the current density, –.
-    fraction: f64,
+    target: WallTarget,
 }
 
 impl<const D: usize> Boundary<D> {
@@ -142,12 +139,7 @@ impl<const D: usize> Boundary<D> {
         let local = &self.local_positions[i];
         if !local.is_empty() {
             let (range, Particles { r, v, .. }) = (solid.boundary.clone(), &mut self.particles);
-            boundary_motion::place_boundary_particles(
-                &solid.kinematics,
-                local,
-                &mut r[range.clone()],
-                &mut v[range],
-            );
+            boundary_motion::place_boundary_particles(&solid.kinematics, local, &mut r[range.clone()], &mut v[range]);
         }
     }
 }
@@ -191,13 +183,17 @@ impl<const D: usize> System<D> {
                 self.properties.rho0 * (1.0 + self.equation_of_state.compression(nearest.1.max(0.0)))
             })
             .collect();
-        self.set_boundary_density(0.0, |k, i, rho| if range.contains(&i) { still[k] } else { rho });
+        self.set_boundary_density(None, |k, i, rho| if range.contains(&i) { still[k] } else { rho });
     }
 
     /// Sets the density (kg/m³) of each boundary particle near water to what `rho` makes of its place among them, its
-    /// index and its density, but not below what the wall law allows, and relaxes it by the fraction `relaxation` (–)
-    /// towards its target. The others stay at ρ₀.
-    pub(crate) fn set_boundary_density(&mut self, relaxation: f64, mut rho: impl FnMut(usize, usize, f64) -> f64) {
+    /// index and its density, but not below what the wall law allows; then it relaxes to its target, by the share `relaxation` (–)
+    /// where that takes time, or not at all. The others stay at ρ₀.
+    pub(crate) fn set_boundary_density(
+        &mut self,
+        relaxation: Option<f64>,
+        mut rho: impl FnMut(usize, usize, f64) -> f64,
+    ) {
         let (rho0, Boundary { particles, target_density, .. }) = (self.properties.rho0, &mut self.boundary);
         let mut targets = target_density.iter().flatten().peekable();
         for (k, &i) in self.neighbours.boundary_near_fluid().iter().enumerate() {
@@ -207,9 +203,9 @@ impl<const D: usize> System<D> {
             let bare = rho(k, i, particles.rho[i]);
             particles.rho[i] = match target {
                 None => DynamicBoundary.limited_density(bare, rho0),
-                Some(&TargetDensity { density, fraction, .. }) => {
-                    let own = DynamicBoundary.limited_density(bare, density.min(rho0));
-                    own + (density - own) * if density > own { relaxation * fraction } else { relaxation }
+                Some(TargetDensity { target, .. }) => {
+                    let own = DynamicBoundary.limited_density(bare, target.density.min(rho0));
+                    relaxation.map_or(own, |relaxation| target.relaxed(own, relaxation))
                 }
             };
         }
@@ -226,11 +222,12 @@ impl<const D: usize> System<D> {
         let mut input = Self::pair_input(neighbours, fluid, boundary, properties, equation_of_state);
         input.boundary_velocity = &boundary.particles.v;
         let mut fits = vec![WallExtrapolation::filled_with(0.0); neighbours.boundary_near_fluid().len()];
-        pair_loop.extrapolate_to_boundary(&input, sticks, &mut fits);
+        pair_loop.extrapolate_to_boundary(&input, sticks || relaxes, &mut fits);
         if let Some(wetness) = &mut self.boundary.wetness {
             *wetness = fits.iter().map(|fit| fit.weight_sum).collect();
         }
         if relaxes {
+            self.gap_pressure.update_directions(&fits);
             self.update_wall_pressure(&fits);
         }
         if sticks {
@@ -247,7 +244,9 @@ impl<const D: usize> System<D> {
             let pull = medium.gravity - self.owner(i).acceleration_at(&particles.r[i]);
             let pressure = fit.pressure(&pull, &medium.gravity, depths[i]);
             let density = medium.rho0 * (1.0 + self.equation_of_state.compression(pressure));
-            TargetDensity { particle, density, fraction: coverage.fraction(fit.weight_sum, depths[i]) }
+            let (approach, cover) = (fit.approach(&particles.v[i]), coverage.cover(fit.weight_sum, depths[i]));
+            let own = particles.rho[i];
+            TargetDensity { particle, target: WallTarget::new(density, own, approach, cover, medium.rho0, medium.c0) }
         };
         let wet = self.neighbours.boundary_near_fluid();
         let targets = wet.par_iter().zip(fits).with_min_len(PARTICLES_PER_TASK).map(target).collect();

@@ -8,6 +8,7 @@ mod change;
 mod checkpoint;
 mod fluid;
 mod free_surface;
+mod gap_pressure;
 pub(crate) mod periodic;
 mod setup;
 mod sponge_layer;
@@ -17,6 +18,7 @@ mod view;
 pub(crate) use boundary::Boundary;
 pub(crate) use checkpoint::SystemState;
 pub(crate) use fluid::{Fluid, permute};
+use gap_pressure::GapPressure;
 use periodic::Images;
 pub(crate) use periodic::Periodic;
 pub use setup::Setup;
@@ -50,6 +52,7 @@ pub struct System<const D: usize> {
     pub(crate) neighbours: NeighbourLists<D>,
     pub(crate) fluid: Fluid<D>,
     pub(crate) boundary: Boundary<D>,
+    gap_pressure: GapPressure<D>,
     pub(crate) solids: Vec<Solid<D>>,
     constraints: Constraints<D>,
     /// Components of gravity as functions of time, m/s²; empty if it is constant.
@@ -190,6 +193,7 @@ impl<const D: usize> System<D> {
             neighbours: NeighbourLists::new(support, model.dp, model.pair_loop.instruction_set()),
             rates: Rates { current: false, boundary: Vec::new() },
             boundary: Boundary::new(&model),
+            gap_pressure: GapPressure::new(&model),
             model,
             properties,
             equation_of_state,
@@ -272,6 +276,9 @@ impl<const D: usize> System<D> {
         self.boundary.poses_at_rebuild = Some(self.solids.iter().map(|s| s.kinematics.pose).collect());
         self.status.step_check.max_displacement2 = 0.0;
         self.rates.boundary.resize(self.neighbours.boundary_near_fluid().len(), PairSums::zero());
+        let r = std::mem::take(&mut self.boundary.particles.r);
+        self.find_gaps(&r);
+        self.boundary.particles.r = r;
         let mut wet = self.neighbours.boundary_near_fluid().iter().copied().peekable();
         dried.retain(|&i| {
             while wet.next_if(|&w| w < i).is_some() {}
@@ -313,6 +320,9 @@ impl<const D: usize> System<D> {
         let input = Self::pair_input(neighbours, fluid, boundary, properties, equation_of_state);
         self.status.step_limits = pair_loop.rates(&input, &mut rates.boundary);
         rates.current = true;
+        let mut boundary = std::mem::take(&mut self.rates.boundary);
+        self.add_gap_pressure(&mut boundary);
+        self.rates.boundary = boundary;
         self.limit_step_by_originals();
         self.update_fluid_tensors();
         let loads = self.loads(&self.rates.boundary);
@@ -366,6 +376,7 @@ impl<const D: usize> System<D> {
         let input = Self::pair_input(&self.neighbours, &self.fluid, &self.boundary, medium, state);
         let mut boundary = vec![PairSums::zero(); self.rates.boundary.len()];
         pair_loop.rates(&input, &mut boundary);
+        self.add_gap_pressure(&mut boundary);
         self.loads(&boundary)
     }
 

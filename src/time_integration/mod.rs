@@ -116,6 +116,6 @@ fn step_boundary_density<const D: usize>(system: &mut System<D>, dt: f64, mut rh
     let medium = system.properties();
     let relaxation = relaxation(dt, medium.h, medium.c0);
     let rates = std::mem::take(&mut system.rates.boundary);
-    system.set_boundary_density(relaxation, |k, i, now| rho(rates[k].compression_rate, i, now));
+    system.set_boundary_density(Some(relaxation), |k, i, now| rho(rates[k].compression_rate, i, now));
     system.rates.boundary = rates;
 }

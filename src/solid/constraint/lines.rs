@@ -22,7 +22,7 @@ use crate::{
 const SOUNDLESS: f64 = 2.0;
 
 /// What such a swing has of the critical damping, at least, –.
-const CALMED: f64 = 0.01;
+const CALMED: f64 = 0.03;
 
 /// The end of a line.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,7 +4,12 @@
 //!   P_w = [Σ_f V_f P_f W_wf + (g − a_w)·Σ_f m_f r_wf W_wf] / Σ_f V_f W_wf,   r_wf = r_w − r_f,
 //!   dρ_w/dt = continuity + (ρ(P_w) − ρ_w)/τ,   τ = 10 h/c₀.
 //!
-//! An impact meets the dynamic wall; water at rest or carried along has the pressure of continued water, and leaves no gap.
+//! Where the water approaches the face slowly, the density becomes ρ(P_w) at once. Continuity also compresses boundary
+//! particles that water slides past or leaves at a waterline, and a pressure that they keep for τ is a lift and a drag that no
+//! water exerts. Where the water strikes, at more than [`SLOW_APPROACH`] of c₀, the relaxation takes τ: an impact meets the dynamic
+//! wall, which holds it back and dissipates it. A sudden increase, and any change at a plate thinner than the kernel's support,
+//! takes τ as well.
+//!
 //! P_w has a lower limit, so that the face exerts no suction: P_w ≥ min(0, ρ₀ g·n' d), with d the depth along n' from the
 //! water. Pressure may always decrease; an increase is scaled by the
 //! [`SupportCoverage`], since spray and thin films would otherwise gain energy.
@@ -13,6 +18,18 @@ use crate::{math::Vector, sph::Num};
 
 /// τ over h/c₀, –: at 40 a gap of 0.05 to 0.07 dp stays, at 0 water strays into the faces.
 const RELAXATION_TIME: f64 = 10.0;
+
+/// Approach of the water over c₀, –, up to which walls take its pressure at once; from twice this on they relax within τ. A
+/// float of draft d in water of depth 10 d has c₀ = 32 √(g d): its own motions are slower than 0.01 c₀, impacts are faster.
+const SLOW_APPROACH: f64 = 0.01;
+
+/// Increase of density in a step over ρ₀, –, up to which walls take it at once; from twice this on they relax within τ. Sound of
+/// 2e-4 c₀ has it. Without this limit a light body that a rope stops at 0.1 c₀ is thrown back by half a particle.
+const SLOW_INCREASE: f64 = 2e-4;
+
+/// Weight over that behind a flat face under water, –, from which on a boundary particle has water on two faces: a plate thinner
+/// than the support.
+const TWO_FACES: f64 = 1.3;
 
 /// Depths at which [`SupportCoverage`] is tabled, less one.
 const DEPTHS: usize = 64;
@@ -81,6 +98,48 @@ impl<const D: usize> WallExtrapolation<f64, D> {
         let least = arm.try_normalize(0.0).map_or(0.0, |away| (g.dot(&away) * depth).min(0.0));
         ((self.pressure_sum + pull.dot(&arm)) / self.weight_sum).max(least)
     }
+
+    /// The unit vector from the water to the boundary particle; `None` without water.
+    pub fn direction(&self) -> Option<Vector<D>> {
+        Vector::from(self.offset_sum).try_normalize(0.0)
+    }
+
+    /// The speed (m/s) at which the water comes towards a boundary particle of velocity `v` (m/s), at least 0.
+    pub fn approach(&self, v: &Vector<D>) -> f64 {
+        let towards = |direction: Vector<D>| direction.dot(&(Vector::from(self.velocity_sum) / self.weight_sum - v));
+        if self.weight_sum < 1e-9 { 0.0 } else { self.direction().map_or(0.0, towards).max(0.0) }
+    }
+}
+
+/// The density that a boundary particle takes, and the shares of a step's change that it takes at once.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WallTarget {
+    /// ρ(P_w), kg/m³.
+    pub density: f64,
+    /// Share of an increase that is applied at all, –: [`SupportCoverage::fraction`].
+    pub increase: f64,
+    /// Share of a decrease that is applied at once, –; the rest within τ.
+    pub prompt_decrease: f64,
+    /// Share of an increase that is applied at once, –; the rest within τ.
+    pub prompt_increase: f64,
+}
+
+impl WallTarget {
+    /// The target `density` (kg/m³) of a boundary particle of density `own`, which the water approaches with `approach` (m/s).
+    /// `cover` is its place in the [`SupportCoverage`].
+    pub fn new(density: f64, own: f64, approach: f64, cover: Cover, rho0: f64, c0: f64) -> Self {
+        let below = |x: f64, limit: f64| (2.0 - x / limit).clamp(0.0, 1.0);
+        let slow = if cover.share > TWO_FACES { 0.0 } else { below(approach / c0, SLOW_APPROACH) };
+        let gentle = below((density - own).max(0.0) / rho0, SLOW_INCREASE);
+        Self { density, increase: cover.fraction(), prompt_decrease: slow, prompt_increase: slow * gentle }
+    }
+
+    /// The density (kg/m³) after a step in which the share `relaxation` (–) of a difference relaxes, from `own`.
+    pub(crate) fn relaxed(&self, own: f64, relaxation: f64) -> f64 {
+        let (share, prompt) =
+            if self.density > own { (self.increase, self.prompt_increase) } else { (1.0, self.prompt_decrease) };
+        own + (self.density - own) * share * (relaxation + (1.0 - relaxation) * prompt)
+    }
 }
 
 /// Share of a boundary particle's kernel support before the face that water fills, from the weight of its
@@ -113,13 +172,26 @@ impl SupportCoverage {
         Self { full: full.collect(), step }
     }
 
-    /// The factor (0 to 1) of an increase of pressure at a boundary particle `depth` (m) below the face whose extrapolation has
-    /// `weight`: 0 beside spray, a fifth in a film of one row, 1 where water is all around.
-    pub fn fraction(&self, weight: f64, depth: f64) -> f64 {
+    /// The cover of a boundary particle `depth` (m) below the face whose extrapolation has `weight`.
+    pub fn cover(&self, weight: f64, depth: f64) -> Cover {
         let place = (depth / self.step).clamp(0.0, DEPTHS as f64 - 1e-9);
         let (k, rest) = (place as usize, place.fract());
         let full = self.full[k] + (self.full[k + 1] - self.full[k]) * rest;
-        let t = ((weight / full.max(1e-6) - COVERAGE_MIN) / (COVERAGE_FULL - COVERAGE_MIN)).clamp(0.0, 1.0);
+        Cover { share: weight / full.max(1e-6) }
+    }
+}
+
+/// How much of a boundary particle's support before the face is water.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cover {
+    /// Its weight over that behind a flat face under water, –.
+    pub share: f64,
+}
+
+impl Cover {
+    /// The factor (0 to 1) of an increase of pressure: 0 beside spray, a fifth in a film of one row, 1 where water is all around.
+    pub fn fraction(self) -> f64 {
+        let t = ((self.share - COVERAGE_MIN) / (COVERAGE_FULL - COVERAGE_MIN)).clamp(0.0, 1.0);
         t * t * (3.0 - 2.0 * t)
     }
 }

@@ -313,14 +313,14 @@ fn the_coverage_fraction_is_one_beside_bulk_water_small_beside_a_film_and_zero_b
                 .fold(0.0, |sum, (i, j)| sum + kernel.w((f64::from(i) * dp).powi(2) + row(j).powi(2)) * dp * dp)
         };
         // The table of coverage interpolates linearly between 64 depths.
-        assert!((coverage.fraction(rows(4), depth) - 1.0).abs() < 1e-3, "a half space of fluid");
+        assert!((coverage.cover(rows(4), depth).fraction() - 1.0).abs() < 1e-3, "a half space of fluid");
         if depth < dp {
             // The first row of fluid is 0.86 of the kernel sum of the first layer of boundary particles.
-            let film = coverage.fraction(rows(1), depth);
+            let film = coverage.cover(rows(1), depth).fraction();
             assert!((0.15..0.3).contains(&film), "a film of one row: {film}");
         }
         assert_eq!(
-            coverage.fraction(kernel.w((depth + 0.5 * dp).powi(2)) * dp * dp, depth),
+            coverage.cover(kernel.w((depth + 0.5 * dp).powi(2)) * dp * dp, depth).fraction(),
             0.0,
             "a particle of spray"
         );
