@@ -241,12 +241,17 @@ impl<const D: usize> System<D> {
         let depths = depths.as_deref().unwrap_or_default();
         let target = |(&particle, fit): (&u32, &WallExtrapolation<f64, D>)| {
             let i = particle as usize;
-            let pull = medium.gravity - self.owner(i).acceleration_at(&particles.r[i]);
+            let owner = self.owner(i);
+            let pull = medium.gravity - owner.acceleration_at(&particles.r[i]);
             let pressure = fit.pressure(&pull, &medium.gravity, depths[i]);
             let density = medium.rho0 * (1.0 + self.equation_of_state.compression(pressure));
             let (approach, cover) = (fit.approach(&particles.v[i]), coverage.cover(fit.weight_sum, depths[i]));
-            let own = particles.rho[i];
-            TargetDensity { particle, target: WallTarget::new(density, own, approach, cover, medium.rho0, medium.c0) }
+            let heaviness = match &owner.spec.role {
+                Role::Free(body) => body.mass / (self.particle_mass() * owner.boundary.len() as f64),
+                _ => f64::INFINITY,
+            };
+            let (own, rho0, c0) = (particles.rho[i], medium.rho0, medium.c0);
+            TargetDensity { particle, target: WallTarget::new(density, own, approach, cover, heaviness, rho0, c0) }
         };
         let wet = self.neighbours.boundary_near_fluid();
         let targets = wet.par_iter().zip(fits).with_min_len(PARTICLES_PER_TASK).map(target).collect();

@@ -316,18 +316,30 @@ impl<const D: usize> System<D> {
     /// the neighbour lists must hold.
     pub(crate) fn update_rates(&mut self) {
         self.update_wall_state();
-        let Self { pair_loop, neighbours, fluid, boundary, properties, equation_of_state, rates, .. } = self;
+        let Self { pair_loop, neighbours, fluid, boundary, properties, equation_of_state, rates, gap_pressure, .. } =
+            self;
         let input = Self::pair_input(neighbours, fluid, boundary, properties, equation_of_state);
         self.status.step_limits = pair_loop.rates(&input, &mut rates.boundary);
         rates.current = true;
-        let mut boundary = std::mem::take(&mut self.rates.boundary);
-        self.add_gap_pressure(&mut boundary);
-        self.rates.boundary = boundary;
+        Self::add_gap_pressure(gap_pressure, &input, &mut rates.boundary);
         self.limit_step_by_originals();
         self.update_fluid_tensors();
         let loads = self.loads(&self.rates.boundary);
         self.solids.iter_mut().zip(loads).for_each(|(solid, load)| solid.load = load);
         self.status.passes += 1;
+    }
+
+    /// Adds the accelerations of boundary particles by the pressure across gaps to the sums of those near water.
+    fn add_gap_pressure(gaps: &GapPressure<D>, input: &PairLoopInput<'_, D>, sums: &mut [PairSums<D>]) {
+        let (boundary, rho0) = (input.boundary, input.properties.rho0);
+        let pressure = |i: usize| input.equation_of_state.pressure(boundary.rho[i] / rho0 - 1.0);
+        gaps.add_to(sums, input.neighbours.boundary_near_fluid(), &boundary.r, pressure);
+    }
+
+    /// Finds the narrow gaps at the positions `r` (m) of the boundary particles for which the lists were built.
+    fn find_gaps(&mut self, r: &[Vector<D>]) {
+        let Self { gap_pressure, neighbours, solids, .. } = self;
+        gap_pressure.find(solids, r, neighbours.boundary_near_fluid(), neighbours.margin());
     }
 
     /// The sums of the water from the last force pass.
@@ -376,7 +388,7 @@ impl<const D: usize> System<D> {
         let input = Self::pair_input(&self.neighbours, &self.fluid, &self.boundary, medium, state);
         let mut boundary = vec![PairSums::zero(); self.rates.boundary.len()];
         pair_loop.rates(&input, &mut boundary);
-        self.add_gap_pressure(&mut boundary);
+        Self::add_gap_pressure(&self.gap_pressure, &input, &mut boundary);
         self.loads(&boundary)
     }
 

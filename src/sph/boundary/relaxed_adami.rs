@@ -27,6 +27,10 @@ const SLOW_APPROACH: f64 = 0.01;
 /// 2e-4 c₀ has it. Without this limit a light body that a rope stops at 0.1 c₀ is thrown back by half a particle.
 const SLOW_INCREASE: f64 = 2e-4;
 
+/// Mass of a free body over that of as much water as its boundary particles hold, –, below which its walls keep τ, and from twice
+/// which on they are prompt: a sheet of foam would hop on the water.
+const LIGHT: f64 = 0.05;
+
 /// Weight over that behind a flat face under water, –, from which on a boundary particle has water on two faces: a plate thinner
 /// than the support.
 const TWO_FACES: f64 = 1.3;
@@ -126,10 +130,11 @@ pub struct WallTarget {
 
 impl WallTarget {
     /// The target `density` (kg/m³) of a boundary particle of density `own`, which the water approaches with `approach` (m/s).
-    /// `cover` is its place in the [`SupportCoverage`].
-    pub fn new(density: f64, own: f64, approach: f64, cover: Cover, rho0: f64, c0: f64) -> Self {
+    /// `cover` is its place in the [`SupportCoverage`], `heaviness` the mass of its body over that of the water in its place, –.
+    pub fn new(density: f64, own: f64, approach: f64, cover: Cover, heaviness: f64, rho0: f64, c0: f64) -> Self {
         let below = |x: f64, limit: f64| (2.0 - x / limit).clamp(0.0, 1.0);
         let slow = if cover.share > TWO_FACES { 0.0 } else { below(approach / c0, SLOW_APPROACH) };
+        let slow = slow * (heaviness / LIGHT - 1.0).clamp(0.0, 1.0);
         let gentle = below((density - own).max(0.0) / rho0, SLOW_INCREASE);
         Self { density, increase: cover.fraction(), prompt_decrease: slow, prompt_increase: slow * gentle }
     }

@@ -13,6 +13,7 @@ mod deep_water;
 mod equilibrium;
 mod external_bodies;
 mod friction;
+mod linear_theory;
 mod load_breakdown;
 mod many_bodies;
 mod meshes;

@@ -129,13 +129,13 @@ fn a_rope_at_rest_carries_the_weight() {
 }
 
 #[test]
-fn a_spring_mode_in_water_faster_than_the_sound_crossing_has_at_least_a_hundredth_of_critical_damping() {
+fn a_spring_mode_in_water_faster_than_the_sound_crossing_has_at_least_three_hundredths_of_critical_damping() {
     let (crossing, mass) = (1e-3, 4.0);
     let of = |omega: f64, damping: f64| {
         let elastic = SpringParameters { stiffness: omega * omega * mass, damping, rest_length: 1.0 };
         elastic.damped_in_water(crossing, 1.0 / mass).damping / (2.0 * omega * mass)
     };
     assert_eq!(of(1999.0, 0.0), 0.0, "a slower mode keeps its damping");
-    assert!((of(2001.0, 0.0) - 0.01).abs() < 1e-12 && (of(1e6, 0.0) - 0.01).abs() < 1e-12);
+    assert!((of(2001.0, 0.0) - 0.03).abs() < 1e-12 && (of(1e6, 0.0) - 0.03).abs() < 1e-12);
     assert!((of(1e4, 8e5) - 10.0).abs() < 1e-12, "a larger damping of its own is kept");
 }
