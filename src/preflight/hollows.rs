@@ -93,14 +93,6 @@ pub(super) fn check_hollows<const D: usize>(context: &PreflightContext<D>, findi
                 _ => Finding::warning("water_inside", what, mend),
             });
         }
-        if particles > 0 && solid.spec.dry == Some(true) {
-            let what = format!(
-                "{particles} water particles start inside \"{name}\", which is dry: a [[water]] that lies within it, or names it, \
-                 fills it"
-            );
-            let mend = "leave out that [[water]] if the hull is empty, or  dry = true  if it is not".into();
-            findings.push(Finding::note("water_inside", what, mend));
-        }
         let rim = hull(context, i).dry.iter().map(|hollow| hollow.rim_height(pose)).fold(f64::INFINITY, f64::min);
         if solid.spec.dry == Some(true) && rim < level - 0.5 * context.dp() {
             let what = format!(
