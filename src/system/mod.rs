@@ -8,6 +8,7 @@ mod change;
 mod checkpoint;
 mod fluid;
 mod free_surface;
+mod memory;
 pub(crate) mod periodic;
 mod setup;
 mod sponge_layer;
@@ -271,7 +272,7 @@ impl<const D: usize> System<D> {
         self.neighbours.build(&self.fluid.particles.r, &self.boundary.particles.r);
         self.boundary.poses_at_rebuild = Some(self.solids.iter().map(|s| s.kinematics.pose).collect());
         self.status.step_check.max_displacement2 = 0.0;
-        self.rates.boundary.resize(self.neighbours.boundary_near_fluid().len(), PairSums::zero());
+        self.rates.boundary = vec![PairSums::zero(); self.neighbours.boundary_near_fluid().len()];
         let mut wet = self.neighbours.boundary_near_fluid().iter().copied().peekable();
         dried.retain(|&i| {
             while wet.next_if(|&w| w < i).is_some() {}
