@@ -73,9 +73,6 @@ pub struct StepLimits {
 /// A pair loop with its terms compiled in. One call a pass goes through the trait object; inside, no branch depends on
 /// the choice of terms.
 pub trait PairLoop<const D: usize>: Send + Sync {
-    /// Whether [`AuxiliarySums`] are computed.
-    fn has_auxiliary_sums(&self) -> bool;
-
     /// Time spent on pairs so far.
     fn time_spent(&self) -> Duration;
 
@@ -96,6 +93,9 @@ pub trait PairLoop<const D: usize>: Send + Sync {
     /// Sums over all pairs; the neighbour lists must hold. Writes the sums of the boundary particles near water to `boundary`, in
     /// the order of [`NeighbourLists::boundary_near_fluid`], and keeps those of the water.
     fn rates(&mut self, input: &PairLoopInput<'_, D>, boundary: &mut [PairSums<D>]) -> StepLimits;
+
+    /// Memory of the buffers of a pass, B.
+    fn memory_bytes(&self) -> usize;
 
     /// Frees the buffers of a pass, before the neighbour lists are rebuilt; the sums of the last pass go with them.
     fn free_buffers(&mut self);

@@ -165,10 +165,6 @@ fn nodes<const D: usize>(
 }
 
 impl<const D: usize> PairLoop<D> for ReferencePairLoop<D> {
-    fn has_auxiliary_sums(&self) -> bool {
-        self.laws.required_sums().any_auxiliary()
-    }
-
     fn time_spent(&self) -> Duration {
         self.spent
     }
@@ -270,6 +266,11 @@ impl<const D: usize> PairLoop<D> for ReferencePairLoop<D> {
             .for_each(|((sums, wet), chunk)| laws.sum_boundary(nodes, wet, chunk, sums));
         self.spent += start.elapsed();
         StepLimits { acceleration: a2.sqrt(), approach_rate: closing }
+    }
+
+    fn memory_bytes(&self) -> usize {
+        let nodes: usize = self.nodes.iter().map(|nodes| size_of_val(&nodes[..])).sum();
+        nodes + size_of_val(&self.fluid[..]) + size_of_val(&self.auxiliary[..])
     }
 
     fn free_buffers(&mut self) {

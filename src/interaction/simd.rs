@@ -16,19 +16,21 @@ use super::{
     accumulators::{Accumulators, RequiredSums, for_each_symmetric_entry},
     boundary_sums::{self, BoundarySums},
     compiled::{CompiledTerms, PairTerms},
-    simd_layout::{PackedCluster, PackedParticles},
+    simd_layout::{PackedCluster, PackedParticles, clusters},
 };
 use crate::{
     math::Vector,
     math::simd::{self, LANES, LaneRow, Level, Simd, SimdTask, f32x8, i32x8},
-    neighbours::{Clusters, ListPart, NeighbourLists, PairLists, Slab},
+    neighbours::{Clusters, ListPart, NeighbourLists, Slab},
     particles::PARTICLES_PER_TASK,
     sph::{AuxiliarySums, FluidProperties, Pair, PairSide, Term, Units, boundary::WallExtrapolation, kernel::Kernel},
 };
 
 /// The SIMD pair loop with its terms.
 pub(super) struct SimdPairLoop<const D: usize> {
+    /// The sums over pairs.
     laws: Box<dyn PairTerms<D>>,
+    /// The extrapolation of the water to boundary particles.
     fits: Box<dyn BoundarySums<D>>,
     units: Units,
     level: Level,
@@ -144,10 +146,6 @@ fn works<'a>(clusters: &'a Clusters, lengths: &[usize], sums: &'a mut [LaneRow])
 }
 
 impl<const D: usize> PairLoop<D> for SimdPairLoop<D> {
-    fn has_auxiliary_sums(&self) -> bool {
-        self.laws.required_sums().any_auxiliary()
-    }
-
     fn time_spent(&self) -> Duration {
         self.spent
     }
@@ -201,6 +199,16 @@ impl<const D: usize> PairLoop<D> for SimdPairLoop<D> {
         StepLimits { acceleration: a2.sqrt(), approach_rate: closing }
     }
 
+    fn memory_bytes(&self) -> usize {
+        let PackedParticles { clusters, rows } = &self.packed;
+        // The extrapolation to the walls has more rows of sums than some pair loops, and shorter vectors keep their
+        // memory.
+        let packed = size_of_val(&clusters[..]) + rows.capacity() * size_of::<LaneRow>();
+        let sums = self.sums.capacity() * size_of::<LaneRow>();
+        let places = size_of_val(&self.at[..]);
+        packed + sums + places
+    }
+
     fn free_buffers(&mut self) {
         (self.packed, self.sums, self.at) = (PackedParticles::default(), Vec::new(), Vec::new());
     }
@@ -213,14 +221,6 @@ impl<const D: usize> PairLoop<D> for SimdPairLoop<D> {
 
     fn auxiliary_sums(&self, neighbours: &NeighbourLists<D>, i: usize) -> AuxiliarySums<f64, D> {
         self.auxiliary_sums_of(clusters(neighbours).fluid_slots[i], self.laws.required_sums())
-    }
-}
-
-/// The lists of clusters.
-fn clusters<const D: usize>(neighbours: &NeighbourLists<D>) -> &Clusters {
-    match neighbours.pair_lists() {
-        PairLists::Clusters(clusters, _) => clusters,
-        PairLists::Lists(_) => unreachable!("lanes have lists of clusters"),
     }
 }
 

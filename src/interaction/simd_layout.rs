@@ -6,9 +6,17 @@ use super::{PairLoopInput, accumulators::RequiredSums};
 use crate::{
     math::simd::{LANES, LaneRow},
     math::{Matrix, Vector},
-    neighbours::{self, Clusters},
+    neighbours::{self, Clusters, NeighbourLists, PairLists},
     sph::{Units, pressure::repulsion},
 };
+
+/// The lists of clusters.
+pub(super) fn clusters<const D: usize>(neighbours: &NeighbourLists<D>) -> &Clusters {
+    match neighbours.pair_lists() {
+        PairLists::Clusters(clusters, _) => clusters,
+        PairLists::Lists(_) => unreachable!("lanes have lists of clusters"),
+    }
+}
 
 /// Eight particles of one kind, in the units of the pair loop.
 #[derive(Clone, Copy, Debug)]

@@ -112,7 +112,7 @@ impl Clusters {
 
     /// Memory of the clusters and their lists, B.
     pub(super) fn memory_bytes(&self) -> usize {
-        let slab = |slab: &Slab| 8 * slab.spans.len() + 2 * slab.index.len();
+        let slab = |slab: &Slab| 8 * slab.spans.capacity() + 2 * slab.index.capacity();
         4 * (self.source.len() + self.fluid_slots.len() + self.boundary_slots.len())
             + self.slabs.iter().map(slab).sum::<usize>()
     }
@@ -129,7 +129,7 @@ impl Clusters {
     ) -> Vec<u32> {
         self.source.clear();
         self.slabs.resize_with(columns.slab_count(), Slab::default);
-        let mut extents = Vec::new();
+        let mut extents = Vec::with_capacity(self.source.capacity() / LANES);
         let (mut ranges, mut end) = ([vec![0..0; columns.len()], vec![0..0; columns.len()]], 0);
         for (s, slab) in self.slabs.iter_mut().enumerate() {
             slab.first = end;
@@ -147,6 +147,7 @@ impl Clusters {
             end = extents.len();
             slab.end = end;
         }
+        self.source.shrink_to_fit();
         let x = self.places(water_r, skin_r, &mut extents, sizes.inv_unit);
         let touched = search::fill_lists(columns, &mut self.slabs, &self.source, &x, &extents, &ranges, sizes, level);
         self.maps(water_r.len(), &touched)

@@ -49,7 +49,7 @@ pub struct ParticleLists {
 impl ParticleLists {
     /// Memory of the lists, B.
     pub(super) fn memory_bytes(&self) -> usize {
-        let chunk = |chunk: &ParticleListChunk| 12 * chunk.spans.len() + 4 * chunk.index.len();
+        let chunk = |chunk: &ParticleListChunk| 12 * chunk.spans.capacity() + 4 * chunk.index.capacity();
         self.fluid.iter().chain(&self.boundary).map(chunk).sum()
     }
 

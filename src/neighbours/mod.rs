@@ -146,18 +146,13 @@ impl<const D: usize> NeighbourLists<D> {
         &self.boundary_near_fluid
     }
 
-    /// Memory of the lists and of the packed particles, B.
+    /// Memory of the lists, B.
     pub(crate) fn memory_bytes(&self) -> usize {
-        match &self.pair_lists {
-            PairLists::Lists(lists) => {
-                lists.memory_bytes()
-                    + (self.positions_at_build.len() + self.boundary_near_fluid.len()) * 8 * (2 * D + 6)
-            }
-            // Eight particles packed in single precision: places, velocities, four numbers; and two rows of sums.
-            PairLists::Clusters(clusters, _) => {
-                clusters.memory_bytes() + clusters.source.len() * 4 * (2 * D + 4 + 2 * (D + 1))
-            }
-        }
+        let pairs = match &self.pair_lists {
+            PairLists::Lists(lists) => lists.memory_bytes(),
+            PairLists::Clusters(clusters, _) => clusters.memory_bytes(),
+        };
+        pairs + size_of_val(&self.boundary_near_fluid[..])
     }
 
     /// Calls `visit` with the index of every water particle that may be within the support of `x`.

@@ -5,7 +5,6 @@ use serde::Serialize;
 use super::{Finding, PreflightContext, StepSizeLimits};
 use crate::{
     math::format::{bytes, three_digits, two_digits_up},
-    model::PressureGradient,
     output::frame::particle_bytes,
 };
 
@@ -14,6 +13,9 @@ const BUDGET: f64 = 10e9;
 
 /// Shares of the water lattice covered by solids above which a note and a warning are reported.
 const TAKEN: [f64; 2] = [0.25, 0.5];
+
+/// Memory of the program without particles, B.
+const PROGRAM: f64 = 14e6;
 
 /// Length of a number in a table with its comma, B: seventeen digits as a rule.
 const NUMBER: f64 = 19.0;
@@ -99,24 +101,15 @@ impl<const D: usize> PreflightContext<'_, D> {
         }
     }
 
-    /// Memory (B) of a run: the arrays of the particles, their lists, what a step and a frame take for a while.
+    /// Memory (B) of a run: the program, the arrays of the particles, and what a step or a frame takes for a while. The states for a
+    /// rollback are in files.
     fn memory(&self) -> f64 {
         let system = self.system;
         let (fluid, boundary) = (system.fluid().len() as f64, system.boundary().len() as f64);
-        let (d, number) = (D as f64, 8.0);
-        let particle = 2.0 * d * number + number + 4.0;
-        let tensor = |needed: bool| if needed { 3.0 * d * d * number } else { 0.0 };
-        let stress = tensor(system.model().viscosity.stress().is_some());
-        let forms = tensor(system.model().gradient == PressureGradient::Corrected);
-        let extra = if system.model().shift().is_some() { (2.0 * d + 2.0) * number } else { 0.0 };
-        // Twice the particles, as the step keeps its start; the sums; the places of the last lists.
-        let water = 2.0 * particle + (d + 1.0) * number + d * number + stress + forms + extra;
-        let skin = particle + (2.0 * d + 2.0) * number;
         // The compressed arrays of a frame, the file that they are copied to, and some arrays before compression.
         let frame = self.plan.frames.as_ref().map_or(0.0, |frames| 2.5 * particle_bytes(&frames.fields).1);
-        // States to go back to: two, and what it takes to make one.
-        let states = 3.0 * (fluid * (particle + d * number) + boundary * particle);
-        fluid * water + boundary * skin + states + system.neighbour_list_bytes() as f64 + fluid.max(boundary) * frame
+        let for_a_while = (system.step_memory_bytes() as f64).max(fluid.max(boundary) * frame);
+        PROGRAM + system.memory_bytes() as f64 + for_a_while
     }
 
     fn disk(&self, step: &StepSizeLimits, columns: &[usize]) -> DiskUse {
@@ -133,7 +126,7 @@ impl<const D: usize> PreflightContext<'_, D> {
             tables_bytes,
             frames: frames as usize,
             frames_bytes: frames * (fluid * water + boundary * solids),
-            checkpoint_bytes: fluid * (3.0 * d * 8.0 + 11.0) + boundary * (2.0 * d * 8.0 + 11.0),
+            checkpoint_bytes: fluid * (3.0 * d * 8.0 + 11.0) + self.system.boundary_near_fluid_count() as f64 * 11.0,
         }
     }
 }

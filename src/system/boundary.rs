@@ -6,7 +6,11 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::{System, boundary_extension::ExtensionParticle};
+use super::{
+    System,
+    boundary_extension::ExtensionParticle,
+    memory::{bytes, optional_bytes},
+};
 use crate::{
     error::{Error, Result},
     math::{Bounds, Pose, Vector},
@@ -123,6 +127,16 @@ impl<const D: usize> Boundary<D> {
         }
         id.truncate(self.particles.r.len());
         local_bounds[solid] = Bounds { min: Vector::zeros(), max: Vector::zeros() };
+    }
+
+    /// Memory of the arrays, B.
+    pub(super) fn memory_bytes(&self) -> usize {
+        let Particles { r, v, rho, id } = &self.particles;
+        let local: usize = self.local_positions.iter().map(|local| bytes(local)).sum();
+        let vectors = optional_bytes(&self.normals) + optional_bytes(&self.extrapolated_velocity);
+        let numbers = optional_bytes(&self.depths) + optional_bytes(&self.wetness);
+        let marks = optional_bytes(&self.target_density) + optional_bytes(&self.shifting_suppressed);
+        bytes(r) + bytes(v) + bytes(rho) + bytes(id) + local + vectors + numbers + marks
     }
 
     /// The positions (m) of all boundary particles, with the solids at these `poses`.

@@ -9,6 +9,7 @@ mod checkpoint;
 mod fluid;
 mod free_surface;
 mod gap_pressure;
+mod memory;
 pub(crate) mod periodic;
 mod setup;
 mod sponge_layer;
@@ -275,7 +276,7 @@ impl<const D: usize> System<D> {
         self.neighbours.build(&self.fluid.particles.r, &self.boundary.particles.r);
         self.boundary.poses_at_rebuild = Some(self.solids.iter().map(|s| s.kinematics.pose).collect());
         self.status.step_check.max_displacement2 = 0.0;
-        self.rates.boundary.resize(self.neighbours.boundary_near_fluid().len(), PairSums::zero());
+        self.rates.boundary = vec![PairSums::zero(); self.neighbours.boundary_near_fluid().len()];
         let r = std::mem::take(&mut self.boundary.particles.r);
         self.find_gaps(&r);
         self.boundary.particles.r = r;

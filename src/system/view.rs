@@ -100,11 +100,6 @@ impl<const D: usize> System<D> {
         self.neighbours.boundary_near_fluid().len()
     }
 
-    /// Memory of the neighbour lists, B.
-    pub(crate) fn neighbour_list_bytes(&self) -> usize {
-        self.neighbours.memory_bytes()
-    }
-
     /// Time spent so far on lists and sorting, and on pairs.
     pub(crate) fn time_spent(&self) -> (Duration, Duration) {
         (self.status.neighbour_time, self.pair_loop.time_spent())

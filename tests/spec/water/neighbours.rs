@@ -171,3 +171,26 @@ fn the_lists_hold_every_pair_of_particles_on_the_faces_of_cell_columns() {
         assert_eq!(listed(&neighbours, &water, &boundary), all_pairs(&water, &boundary), "{pair_loop:?}");
     }
 }
+
+#[test]
+fn the_lists_hold_every_pair_of_slabs_with_more_clusters_than_an_entry_can_number() {
+    // An entry has 16 bits: two slabs of more than 2¹⁶ clusters need lists in parts. Columns a metre wide make such slabs.
+    let (n, support_radius, dp) = (540_000, 0.01, 0.5);
+    let mut random = Random(7);
+    let water: Vec<Vector<3>> =
+        (0..n).map(|_| random.point::<3>().component_mul(&Vector::from([1.9, 1.0, 1.0]))).collect();
+    let boundary: Vec<Vector<3>> = (0..1000).map(|i| water[i * 500] + Vector::from([0.0, 0.0, 1e-3])).collect();
+    let counts = ALL.map(|pair_loop| {
+        let mut neighbours = NeighbourLists::new(support_radius, dp, pair_loop.instruction_set());
+        neighbours.build(&water, &boundary);
+        if let PairLists::Clusters(clusters, _) = neighbours.pair_lists() {
+            assert!(clusters.slabs[0].list(0).count() > 1, "the lists have parts");
+        }
+        let mut counts = listed(&neighbours, &water, &boundary);
+        counts.fluid_fluid.retain(|&(i, j), _| (water[i as usize] - water[j as usize]).norm() < support_radius);
+        counts.fluid_boundary.retain(|&(i, j), _| (water[i as usize] - boundary[j as usize]).norm() < support_radius);
+        counts
+    });
+    assert!(counts[0].fluid_fluid.len() > n / 2 && counts[0].fluid_boundary.len() >= 1000, "the case has pairs");
+    assert!(counts[0] == counts[1], "clusters and single neighbours list the same pairs");
+}
