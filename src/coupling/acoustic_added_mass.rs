@@ -133,7 +133,7 @@ impl<const D: usize> AcousticAddedMass<D> {
     /// `push`. Returns the impulse (N s) that the water gets back.
     pub(super) fn apply(&mut self, system: &System<D>, dt: f64, push: &Load<D>, load: &mut Load<D>) -> Vector<D> {
         let solid = &system.solids()[self.solid];
-        let Role::Free(body) = &solid.spec.role else { return Vector::zeros() };
+        let Some(body) = &solid.body else { return Vector::zeros() };
         let added = Load { force: push.force + system.gravity() * body.mass, torque: push.torque };
         let mut whole = to_six(load) + to_six(&added);
         lock(body, |i| whole[i] = 0.0);
@@ -177,7 +177,7 @@ impl<const D: usize> AcousticAddedMass<D> {
         after: &Kinematics<D>,
     ) {
         let solid = &system.solids()[self.solid];
-        let Role::Free(body) = &solid.spec.role else { return };
+        let Some(body) = &solid.body else { return };
         let change = Load {
             force: (after.velocity - before.velocity) / dt,
             torque: (after.spin + before.spin * -1.0) * (1.0 / dt),

@@ -153,7 +153,7 @@ impl<const D: usize> Bodies<D> {
         // The engine itself adds the weight once.
         let gravity = system.gravity() * (weight - 1.0);
         let weighed = |solid: &Solid<D>| {
-            let mass = if let Role::Free(body) = &solid.spec.role { body.mass } else { 0.0 };
+            let mass = solid.body.map_or(0.0, |body| body.mass);
             match solid.load == Load::zero() {
                 true => solid.load,
                 false => Load { force: solid.load.force * weight + gravity * mass, torque: solid.load.torque * weight },

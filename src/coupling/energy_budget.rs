@@ -243,7 +243,7 @@ impl<const D: usize> Accounting<D> {
         mut breakdown: LoadBreakdown<D>,
         loads: &BodyLoads<'_, D>,
     ) {
-        let Role::Free(body) = &system.solids()[i].spec.role else { return };
+        let Some(body) = &system.solids()[i].body else { return };
         let BodyLoads { water, constraints, before, after, dt, iterated, .. } = *loads;
         (breakdown.viscous, breakdown.pressure) = (self.viscous[i], breakdown.pressure - self.viscous[i]);
         (breakdown.joints, breakdown.ropes) = (constraints.joints, constraints.ropes);

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     math::{Bivector, Matrix, Vector},
-    solid::{ContactForce, FreeBody, Kinematics, Load, Role, constraint::assembly::ConstraintLoads},
+    solid::{ContactForce, FreeBody, Kinematics, Load, constraint::assembly::ConstraintLoads},
     system::System,
 };
 
@@ -104,7 +104,7 @@ impl<const D: usize> LoadBreakdown<D> {
     /// counts as pressure. All loads are zero unless the solid is free.
     pub(super) fn of(system: &System<D>, i: usize, loads: &BodyLoads<'_, D>) -> Self {
         let solid = &system.solids()[i];
-        let Role::Free(body) = &solid.spec.role else { return Self::zero() };
+        let Some(body) = &solid.body else { return Self::zero() };
         let BodyLoads { water, pushes, contacts, constraints, before, after, gyroscopic, dt, .. } = *loads;
         let change = (momentum(body, after) - momentum(body, before)) * (1.0 / dt);
         Self {

@@ -24,7 +24,7 @@ use crate::{
     math::format::{three_digits, two_digits_down, two_digits_up},
     scene::world_bounds,
     solid::{
-        FreeBody, Role, Solid, SolidSpec,
+        FreeBody, Solid, SolidSpec,
         joint_groups::JointGroups,
         statics::{StaticBody, StaticSystem, Support, WaterAtRest},
     },
@@ -112,7 +112,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         let groups = JointGroups::of(&specs, constraints);
         let mut bodies = Vec::new();
         for (i, solid) in self.solids().iter().enumerate() {
-            let Role::Free(body) = &solid.spec.role else { continue };
+            let Some(body) = &solid.body else { continue };
             let mut found = self.body(i, body, (&statics, bodies.len()));
             let others = (0..specs.len()).filter(|j| *j != i && groups.jointed[*j] == groups.jointed[i]);
             found.tied_to = others.map(|j| specs[j].name.clone()).collect();
@@ -133,7 +133,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         }
         let level = self.still_water.level;
         let body = |(i, solid): (usize, &'_ Solid<D>)| {
-            let Role::Free(body) = &self.solids()[i].spec.role else { return None };
+            let body = self.solids()[i].body.as_ref()?;
             let (hull, pose) = (hull(self, i), solid.kinematics.pose);
             let [start, _] = hull.extent(&pose);
             let bottom = if touching[i] { start } else { start.min(level - self.still_water.depth) };

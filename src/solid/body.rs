@@ -87,6 +87,14 @@ impl<const D: usize> SolidSpec<D> {
         }
     }
 
+    /// Mass of a free solid at t = 0; `None` of any other.
+    pub fn initial_body(&self) -> Option<FreeBody<D>> {
+        match &self.role {
+            Role::Free(body) => Some(*body),
+            Role::Fixed | Role::Driven(_) => None,
+        }
+    }
+
     /// Checks shape (parts of a free solid may not overlap), pose, role, friction, restitution and
     /// contact skin.
     ///

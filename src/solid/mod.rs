@@ -147,6 +147,8 @@ pub struct Kinematics<const D: usize> {
 pub struct Solid<const D: usize> {
     /// Its specification.
     pub spec: SolidSpec<D>,
+    /// Its present mass, of a free solid; `None` of any other.
+    pub body: Option<FreeBody<D>>,
     /// Its present kinematics.
     pub kinematics: Kinematics<D>,
     /// Indices of its boundary particles.
@@ -183,7 +185,7 @@ impl<const D: usize> Solid<D> {
 
     /// Energy of its motion, ½ M V² + ½ Ω·I Ω, J (J/m in 2-D); 0 of a solid that is not free.
     pub(crate) fn kinetic_energy(&self) -> f64 {
-        let Role::Free(body) = &self.spec.role else { return 0.0 };
+        let Some(body) = &self.body else { return 0.0 };
         let now = &self.kinematics;
         let turning = rotational_energy_twice(&body.inertia, &now.pose.rotation, &now.spin.axial());
         0.5 * body.mass * now.velocity.norm_squared() + 0.5 * turning
@@ -191,7 +193,7 @@ impl<const D: usize> Solid<D> {
 
     /// Energy of its height under `gravity` (m/s²), −M g·R, J (J/m in 2-D); 0 of a solid that is not free.
     pub(crate) fn potential_energy(&self, gravity: &Vector<D>) -> f64 {
-        let Role::Free(body) = &self.spec.role else { return 0.0 };
+        let Some(body) = &self.body else { return 0.0 };
         -body.mass * gravity.dot(&self.kinematics.centre)
     }
 

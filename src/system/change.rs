@@ -21,6 +21,7 @@ impl<const D: usize> System<D> {
         let (acceleration, whirl, load) = (Vector::zeros(), Bivector::zero(), Load::zero());
         let yielding = Default::default();
         self.solids.push(Solid {
+            body: spec.initial_body(),
             spec,
             kinematics,
             acceleration,
@@ -67,7 +68,7 @@ impl<const D: usize> System<D> {
         self.boundary.remove_range(&gone, i);
         self.neighbours.remove_boundary(gone.clone());
         let solid = &mut self.solids[i];
-        solid.spec.role = Role::Fixed;
+        (solid.spec.role, solid.body) = (Role::Fixed, None);
         (solid.kinematics.velocity, solid.kinematics.spin) = (Vector::zeros(), Bivector::zero());
         (solid.acceleration, solid.angular_acceleration) = (Vector::zeros(), Bivector::zero());
         solid.load = Load::zero();

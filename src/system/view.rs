@@ -7,7 +7,7 @@ use crate::{
     math::{Bounds, Vector},
     model::Model,
     particles::ParticlesView,
-    solid::{Constraints, Load, LoadContext, Role, Solid},
+    solid::{Constraints, Load, LoadContext, Solid},
     sph::FluidProperties,
 };
 
@@ -122,9 +122,9 @@ impl<const D: usize> System<D> {
 
     /// What is around the solids that feel `loads` (N, N m) of the water.
     pub(crate) fn load_context(&self, loads: &[Load<D>]) -> LoadContext<D> {
-        let with_weight = |(load, solid): (&Load<D>, &Solid<D>)| match &solid.spec.role {
-            Role::Free(body) => Load { force: load.force + self.gravity() * body.mass, ..*load },
-            Role::Fixed | Role::Driven(_) => *load,
+        let with_weight = |(load, solid): (&Load<D>, &Solid<D>)| match &solid.body {
+            Some(body) => Load { force: load.force + self.gravity() * body.mass, ..*load },
+            None => *load,
         };
         let loads = loads.iter().zip(&self.solids).map(with_weight).collect();
         let wet = self.solids.iter().map(|solid| solid.load != Load::zero()).collect();
