@@ -85,6 +85,7 @@ impl<const D: usize> AcousticAddedMass<D> {
     fn if_light(system: &System<D>, i: usize) -> Option<Self> {
         let (medium, solid) = (system.properties(), &system.solids()[i]);
         let (pose, shape) = (solid.kinematics.pose, &solid.spec.shape);
+        // Without its ballast, which it may lose.
         let Role::Free(body) = &solid.spec.role else { return None };
         if (stiffest_frequency(shape, body, medium) * medium.h / medium.c0).powi(2) <= STIFFEST {
             return None;
@@ -117,6 +118,14 @@ impl<const D: usize> AcousticAddedMass<D> {
     /// Restores a saved state.
     pub(crate) fn restore(&mut self, state: AddedMassState) {
         self.state = state;
+    }
+
+    /// Takes pending impulse and contacts about a centre of mass that has moved by `shift` (m) within the body.
+    pub(super) fn shift_centre(&mut self, shift: &Vector<D>) {
+        for load in [&mut self.state.pending, &mut self.state.contacts] {
+            let torque = Bivector::torque(shift, &linear(load)) * -1.0;
+            *load += to_six(&Load { force: Vector::zeros(), torque });
+        }
     }
 
     /// Removes the share of the pending impulse that belongs to water that the body has left. Returns this share, N s.

@@ -20,13 +20,13 @@ use crate::{
 
 /// The rigid bodies of a run with their engine. A scene without free bodies has no engine.
 pub(crate) struct Bodies<const D: usize> {
-    engine: Option<Box<dyn Engine<D>>>,
-    added_masses: Vec<AcousticAddedMass<D>>,
+    pub(super) engine: Option<Box<dyn Engine<D>>>,
+    pub(super) added_masses: Vec<AcousticAddedMass<D>>,
     constraints: Assembly<D>,
     pub(crate) accounting: Option<Accounting<D>>,
     /// Whether an external program moves the free bodies.
     external: bool,
-    steps: u64,
+    pub(super) steps: u64,
     spent: Duration,
 }
 
@@ -382,7 +382,7 @@ fn escaped<const D: usize>(solid: usize, now: &Kinematics<D>) -> EngineFault<D> 
     }
 }
 
-fn fault_error<const D: usize>(system: &System<D>, fault: EngineFault<D>, step: u64, time: f64) -> Error {
+pub(super) fn fault_error<const D: usize>(system: &System<D>, fault: EngineFault<D>, step: u64, time: f64) -> Error {
     Error::fault(Fault {
         code: fault.code,
         reason: fault.reason,

@@ -33,9 +33,11 @@ pub struct LoadBreakdown<const D: usize> {
     pub forces: Load<D>,
     /// Loads that a program adds with `push`.
     pub pushes: Load<D>,
+    /// Momentum that ballast brought at the end of the step, over the length of the step; negative where ballast left.
+    pub ballast: Load<D>,
     /// Reaction of locked motions: by definition the negative sum of the other loads along these motions.
     pub locks: Load<D>,
-    /// Rate of change of momentum and angular momentum. For a 3-D body in a joint, on a rope or partly locked, the rate
+    /// Rate of change of momentum and angular momentum, with that of ballast. For a 3-D body in a joint, on a rope or partly locked, the rate
     /// of change of angular momentum is the expression that the engine integrates, I(R₀) ΔΩ/Δt + Ω ∧ I Ω.
     pub change: Load<D>,
 }
@@ -56,13 +58,14 @@ impl<const D: usize> LoadBreakdown<D> {
             motors: none,
             forces: none,
             pushes: none,
+            ballast: none,
             locks: none,
             change: none,
         }
     }
 
     /// Returns all loads with their names, without the change of momentum.
-    pub fn kinds(&self) -> [(&'static str, Load<D>); 12] {
+    pub fn kinds(&self) -> [(&'static str, Load<D>); 13] {
         [
             ("pressure", self.pressure),
             ("viscous", self.viscous),
@@ -76,6 +79,7 @@ impl<const D: usize> LoadBreakdown<D> {
             ("forces", self.forces),
             ("pushes", self.pushes),
             ("locks", self.locks),
+            ("ballast", self.ballast),
         ]
     }
 
@@ -148,7 +152,7 @@ pub(super) fn contact_sums<const D: usize>(contacts: &[ContactForce<D>], solids:
 }
 
 /// Returns the momentum, kg m/s, and the angular momentum about the centre of mass, kg m²/s.
-fn momentum<const D: usize>(body: &FreeBody<D>, motion: &Kinematics<D>) -> Load<D> {
+pub(super) fn momentum<const D: usize>(body: &FreeBody<D>, motion: &Kinematics<D>) -> Load<D> {
     Load {
         force: motion.velocity * body.mass,
         torque: angular_momentum(&body.inertia, &motion.pose.rotation, &motion.spin),

@@ -29,7 +29,7 @@ pub(crate) const PREVIOUS: &str = "checkpoint.previous.bin";
 pub(crate) const PART: &str = "checkpoint.bin.part";
 
 const MAGIC: &[u8; 8] = b"PONTOON\n";
-const FORMAT: u32 = 6;
+const FORMAT: u32 = 7;
 
 /// Largest ratio of the decompressed size to the file size. The identifiers of the particles do not compress well, and
 /// keep the ratio of a valid checkpoint below 200.

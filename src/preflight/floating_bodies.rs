@@ -42,8 +42,11 @@ const NEUTRAL: f64 = 1e-3;
 pub struct BodySummary {
     /// Name of the body.
     pub name: String,
-    /// Mass, kg.
+    /// Mass at the start, kg.
     pub mass_kg: f64,
+    /// Largest mass in the run, kg; absent unless it has ballast.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub largest_mass_kg: Option<f64>,
     /// Volume, m³.
     pub volume_m3: f64,
     /// Mean density of the body over the density of the water, –.
@@ -184,6 +187,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         BodySummary {
             name: solid.spec.name.clone(),
             mass_kg: body.mass,
+            largest_mass_kg: solid.spec.largest_mass(self.plan.until),
             volume_m3: volume,
             density_ratio: body.mass / (model.rho0 * volume),
             displaced_kg: model.rho0 * displaced,

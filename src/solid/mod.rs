@@ -1,5 +1,6 @@
 //! Solids: fixed, driven and free, with their kinematics, loads, constraints and the rigid-body engine. No sums over pairs.
 
+mod ballast;
 mod body;
 pub(crate) mod boundary_motion;
 pub(crate) mod constraint;
@@ -17,6 +18,7 @@ pub(crate) mod wind;
 #[path = "../../tests/unit/solid/engine.rs"]
 mod tests;
 
+pub use ballast::BallastSpec;
 pub use constraint::{
     ConstraintChange, ConstraintEvent, Constraints, ContactPairs, ContactSpec, FreeMode, InitialHold, JointKind,
     JointReading, JointSpec, Lifetime, LineEnd, LineReading, Mobility, Motor, MotorCommand, RopeSpec, SpringParameters,
@@ -84,6 +86,8 @@ pub struct SolidSpec<const D: usize> {
     /// Whether the space that it encloses starts dry: `Some(true)` also of an open hull below its rim; `Some(false)`
     /// if the water in it is meant. `None`: closed hollows are dry, and water in an open hull is reported.
     pub dry: Option<bool>,
+    /// Masses at points of a free solid that change with time, in addition to its own.
+    pub ballast: Vec<BallastSpec<D>>,
 }
 
 /// What moves a solid.

@@ -62,6 +62,15 @@ impl<const D: usize> System<D> {
         (reordering, before - self.particle_count(), energy)
     }
 
+    /// Sets the masses of the free solids with ballast to those of time `t` (s), after their kinematics were restored.
+    pub(crate) fn set_masses_at(&mut self, t: f64) {
+        for solid in &mut self.solids {
+            if solid.body.is_some() && !solid.spec.ballast.is_empty() {
+                solid.body = solid.spec.body_at(t);
+            }
+        }
+    }
+
     /// Removes solid number `i`: it keeps its number, stays at rest at its position, and has no boundary particles.
     pub(crate) fn remove_body(&mut self, i: usize) {
         let gone = self.solids[i].boundary.clone();
