@@ -281,7 +281,7 @@ impl<const D: usize> BodyStep<'_, D> {
         for (i, solid) in self.system.solids.iter().enumerate() {
             if let Role::Free(_) = solid.spec.role {
                 self.solids[i] = engine.kinematics(i);
-                if !self.system.domain().contains(&self.solids[i].centre) {
+                if !self.system.domain().contains(&self.system.wrapped(&self.solids[i].centre)) {
                     return Err(fault_error(self.system, escaped(i, &self.solids[i]), *steps, t));
                 }
             }

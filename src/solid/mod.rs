@@ -155,8 +155,10 @@ pub struct Solid<const D: usize> {
     pub body: Option<FreeBody<D>>,
     /// Its present kinematics.
     pub kinematics: Kinematics<D>,
-    /// Indices of its boundary particles.
+    /// Indices of its boundary particles. A free solid in a periodic sea has several copies, one after the other.
     pub boundary: Range<usize>,
+    /// Number of copies of its boundary particles.
+    pub(crate) copies: usize,
     /// Acceleration of `kinematics.centre`, a mean over the last few steps, m/s².
     pub acceleration: Vector<D>,
     /// Angular acceleration, the same mean, rad/s².
@@ -172,6 +174,12 @@ pub struct Solid<const D: usize> {
 const ACCELERATION_FILTER: f64 = 0.2;
 
 impl<const D: usize> Solid<D> {
+    /// Indices of the boundary particles of its copy number `copy`.
+    pub(crate) fn boundary_of_copy(&self, copy: usize) -> Range<usize> {
+        let (start, count) = (self.boundary.start, self.boundary.len() / self.copies);
+        start + copy * count..start + (copy + 1) * count
+    }
+
     /// Moves it to `next` over `dt` (s).
     pub(crate) fn advance(&mut self, next: Kinematics<D>, dt: f64) {
         let now = &self.kinematics;

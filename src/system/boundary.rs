@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::{System, boundary_extension::ExtensionParticle};
+use super::{System, boundary_extension::ExtensionParticle, periodic::Images};
 use crate::{
     error::{Error, Result},
     math::{Bounds, Pose, Vector},
@@ -66,12 +66,13 @@ impl<const D: usize> Boundary<D> {
         }
     }
 
-    /// Appends the boundary particles of a solid that moves as `kinematics`, its `extension` last; returns their range.
+    /// Appends `copies` of the boundary particles of a solid that moves as `kinematics`, the `extension` last in each;
+    /// returns their range. All copies stand in the place of the solid.
     pub(super) fn append(
         &mut self,
         model: &Model,
         spec: &SolidSpec<D>,
-        kinematics: &Kinematics<D>,
+        (kinematics, copies): (&Kinematics<D>, usize),
         extension: &[ExtensionParticle<D>],
     ) -> Result<Range<usize>> {
         let first = self.particles.len();
@@ -81,7 +82,8 @@ impl<const D: usize> Boundary<D> {
             .into_iter()
             .map(|point| point.r)
             .collect::<Vec<_>>();
-        for r in faces.iter().chain(extension.iter().map(|particle| &particle.r)) {
+        let places: Vec<Vector<D>> = faces.iter().copied().chain(extension.iter().map(|particle| particle.r)).collect();
+        for r in (0..copies).flat_map(|_| &places) {
             self.particles.push(kinematics.pose.point(r), model.rho0);
             self.local_positions.push(*r);
         }
@@ -91,10 +93,12 @@ impl<const D: usize> Boundary<D> {
                 .help("make it larger or dp smaller"));
         }
         if let Some(depths) = &mut self.depths {
-            depths.par_extend(faces.par_iter().map(|r| -spec.shape.signed_distance(r)));
+            let own: Vec<f64> = faces.par_iter().map(|r| -spec.shape.signed_distance(r)).collect();
+            (0..copies).for_each(|_| depths.extend_from_slice(&own));
         }
         if let Some(normals) = &mut self.normals {
-            normals.par_extend(faces.par_iter().map(|r| spec.shape.outward_normal(r, 0.05 * model.dp)));
+            let own: Vec<_> = faces.par_iter().map(|r| spec.shape.outward_normal(r, 0.05 * model.dp)).collect();
+            (0..copies).for_each(|_| normals.extend_from_slice(&own));
         }
         self.local_bounds.push(Bounds::around(&self.local_positions[first..]));
         Ok(first..self.particles.len())
@@ -113,25 +117,75 @@ impl<const D: usize> Boundary<D> {
         local_bounds[solid] = Bounds { min: Vector::zeros(), max: Vector::zeros() };
     }
 
+    /// Middle (m) of the boundary particles of solid number `number` at `pose`.
+    pub(super) fn middle(&self, number: usize, pose: &Pose<D>) -> Vector<D> {
+        let Bounds { min, max } = &self.local_bounds[number];
+        pose.point(&((min + max) * 0.5))
+    }
+
+    /// Ranges of the copies of the boundary particles of `solid`, number `number`, at `pose`, and the ways (m) to them.
+    pub(super) fn copies<'a>(
+        &'a self,
+        images: &'a Images<D>,
+        (number, solid): (usize, &'a Solid<D>),
+        pose: &'a Pose<D>,
+    ) -> impl Iterator<Item = (Range<usize>, Vector<D>)> + 'a {
+        (0..solid.copies).map(move |copy| {
+            let none = solid.copies == 1;
+            let way = if none { Vector::zeros() } else { images.way_to_copy(&self.middle(number, pose), copy) };
+            (solid.boundary_of_copy(copy), way)
+        })
+    }
+
     /// The positions `r` (m) of all boundary particles, with those of each solid as at its pose.
-    pub(super) fn positions_at(&self, mut r: Vec<Vector<D>>, poses: &[Pose<D>], solids: &[Solid<D>]) -> Vec<Vector<D>> {
-        for (solid, pose) in solids.iter().zip(poses) {
-            for i in solid.boundary.clone() {
-                r[i] = pose.point(&self.local_positions[i]);
+    pub(super) fn positions_at(
+        &self,
+        mut r: Vec<Vector<D>>,
+        poses: &[Pose<D>],
+        solids: &[Solid<D>],
+        images: &Images<D>,
+    ) -> Vec<Vector<D>> {
+        for (numbered, pose) in solids.iter().enumerate().zip(poses) {
+            for (range, way) in self.copies(images, numbered, pose) {
+                for i in range {
+                    r[i] = pose.point(&self.local_positions[i]) + way;
+                }
             }
         }
         r
     }
 
-    /// Places the boundary particles of `solid` where its kinematics say.
-    pub(super) fn place(&mut self, solid: &Solid<D>) {
-        let (range, Particles { r, v, .. }) = (solid.boundary.clone(), &mut self.particles);
-        boundary_motion::place_boundary_particles(
-            &solid.kinematics,
-            &self.local_positions[range.clone()],
-            &mut r[range.clone()],
-            &mut v[range],
-        );
+    /// Places the boundary particles of `solid`, number `number`, where its kinematics say.
+    pub(super) fn place(&mut self, number: usize, solid: &Solid<D>, images: &Images<D>) {
+        let copies: Vec<_> = self.copies(images, (number, solid), &solid.kinematics.pose).collect();
+        let Particles { r, v, .. } = &mut self.particles;
+        for (range, way) in copies {
+            let local = &self.local_positions[range.clone()];
+            let r = &mut r[range.clone()];
+            boundary_motion::place_boundary_particles(&solid.kinematics, local, r, &mut v[range]);
+            if way != Vector::<D>::zeros() {
+                r.iter_mut().for_each(|r| *r += way);
+            }
+        }
+    }
+
+    /// Gives the copies of each boundary particle the density and the velocity, with which it acts, of that between the
+    /// sides.
+    pub(super) fn update_copies(&mut self, solids: &[Solid<D>], images: &Images<D>) {
+        let Self { particles: Particles { r, rho, .. }, extrapolated_velocity, .. } = self;
+        for solid in solids.iter().filter(|solid| solid.copies > 1) {
+            for own in solid.boundary_of_copy(0) {
+                let count = solid.boundary.len() / solid.copies;
+                let copies = || (0..solid.copies).map(|copy| own + copy * count);
+                let Some(inside) = copies().find(|i| images.is_inside(&r[*i])) else { continue };
+                let density = rho[inside];
+                copies().for_each(|i| rho[i] = density);
+                if let Some(acting) = extrapolated_velocity {
+                    let velocity = acting[inside];
+                    copies().for_each(|i| acting[i] = velocity);
+                }
+            }
+        }
     }
 
     /// Sets the target densities of the boundary particles near water.
@@ -148,7 +202,7 @@ impl<const D: usize> Boundary<D> {
 impl<const D: usize> System<D> {
     /// Puts the boundary particles of solid `i` where its kinematics say.
     pub(crate) fn place_boundary(&mut self, i: usize) {
-        self.boundary.place(&self.solids[i]);
+        self.boundary.place(i, &self.solids[i], &self.fluid.images);
     }
 
     /// Finds the boundary particles beside which water is not shifted.
@@ -230,11 +284,11 @@ impl<const D: usize> System<D> {
 
     /// Makes target densities of the extrapolated pressures of `fits`, one for each boundary particle near water.
     fn update_wall_pressure(&mut self, fits: &[WallExtrapolation<f64, D>]) {
-        let (medium, Boundary { particles, depths, coverage, .. }) = (&self.properties, &self.boundary);
+        let (medium, Boundary { depths, coverage, .. }) = (&self.properties, &self.boundary);
         let depths = depths.as_deref().unwrap_or_default();
         let target = |(&i, fit): (&u32, &WallExtrapolation<f64, D>)| {
             let i = i as usize;
-            let pull = medium.gravity - self.owner(i).acceleration_at(&particles.r[i]);
+            let pull = medium.gravity - self.owner(i).acceleration_at(&self.place_on_solid(i));
             let pressure = fit.pressure(&pull, &medium.gravity, depths[i]);
             let density = medium.rho0 * (1.0 + self.equation_of_state.compression(pressure));
             (density, coverage.fraction(fit.weight_sum, depths[i]))
@@ -265,7 +319,42 @@ impl<const D: usize> System<D> {
 
     /// The solid of boundary particle `i`.
     fn owner(&self, i: usize) -> &Solid<D> {
-        &self.solids[self.solids.partition_point(|solid| solid.boundary.end <= i)]
+        &self.solids[self.owner_number(i)]
+    }
+
+    fn owner_number(&self, i: usize) -> usize {
+        self.solids.partition_point(|solid| solid.boundary.end <= i)
+    }
+
+    /// Position (m) of boundary particle `i` on its solid, without the way to its copy.
+    pub(crate) fn place_on_solid(&self, i: usize) -> Vector<D> {
+        let (number, r) = (self.owner_number(i), &self.boundary.particles.r[i]);
+        let solid = &self.solids[number];
+        if solid.copies == 1 {
+            return *r;
+        }
+        let copy = (i - solid.boundary.start) * solid.copies / solid.boundary.len();
+        r - self.fluid.images.way_to_copy(&self.boundary.middle(number, &solid.kinematics.pose), copy)
+    }
+
+    /// Pose of solid number `solid`; that of its copy with its middle between the periodic sides, if it has several.
+    pub(crate) fn home_pose(&self, solid: usize) -> Pose<D> {
+        let own = &self.solids[solid];
+        let mut pose = own.kinematics.pose;
+        if own.copies > 1 {
+            let middle = self.boundary.middle(solid, &pose);
+            let images = &self.fluid.images;
+            pose.position += images.way_to_copy(&middle, images.home_copy(&middle, own.copies));
+        }
+        pose
+    }
+
+    /// Indices of the boundary particles of solid number `solid`; of several copies those with their middle between the
+    /// periodic sides.
+    pub(crate) fn home_boundary(&self, solid: usize) -> Range<usize> {
+        let own = &self.solids[solid];
+        let middle = self.boundary.middle(solid, &own.kinematics.pose);
+        own.boundary_of_copy(self.fluid.images.home_copy(&middle, own.copies))
     }
 }
 

@@ -17,7 +17,8 @@ impl<const D: usize> System<D> {
         kinematics: Kinematics<D>,
         extension: &[ExtensionParticle<D>],
     ) -> Result<()> {
-        let skin = self.boundary.append(&self.model, &spec, &kinematics, extension)?;
+        let copies = self.fluid.images.copies(&spec);
+        let skin = self.boundary.append(&self.model, &spec, (&kinematics, copies), extension)?;
         let (acceleration, whirl, load) = (Vector::zeros(), Bivector::zero(), Load::zero());
         let yielding = Default::default();
         self.solids.push(Solid {
@@ -27,6 +28,7 @@ impl<const D: usize> System<D> {
             acceleration,
             angular_acceleration: whirl,
             boundary: skin,
+            copies,
             load,
             absorption: yielding,
         });

@@ -87,7 +87,7 @@ impl<const D: usize> System<D> {
                 .help("it belongs to another scene: resume in the folder of its own run"));
         }
         let (water, poses) = state.at_rebuild;
-        let boundary = self.boundary.positions_at(state.boundary.r.clone(), &poses, &self.solids);
+        let boundary = self.boundary.positions_at(state.boundary.r.clone(), &poses, &self.solids, &self.fluid.images);
         // No run continues with water outside its domain, but images lie beyond periodic sides.
         let around = self.fluid_domain.domain.grown(self.fluid_domain.domain.size().max());
         let near = water.iter().chain(&state.fluid.r).all(|x| around.contains(x));

@@ -155,6 +155,16 @@ impl<const D: usize> System<D> {
         self.particle_mass() * self.fluid().v.iter().map(|v| along.dot(v)).sum::<f64>()
     }
 
+    /// Whether `x` (m) lies between the periodic sides.
+    pub(crate) fn is_between_sides(&self, x: &Vector<D>) -> bool {
+        self.fluid.images.is_inside(x)
+    }
+
+    /// The place between the periodic sides that is whole periods from `x` (m).
+    pub fn wrapped(&self, x: &Vector<D>) -> Vector<D> {
+        self.fluid.images.wrapped(x)
+    }
+
     /// Calls `visit` with index, place (m) and kernel value W (1/mᴰ) of each water particle whose support holds `x` (m). Across
     /// a periodic side the place is that of its image.
     pub fn visit_fluid_near(&self, x: &Vector<D>, visit: &mut dyn FnMut(usize, &Vector<D>, f64)) {
