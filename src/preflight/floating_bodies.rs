@@ -123,6 +123,7 @@ impl<const D: usize> PreflightContext<'_, D> {
             let first = bodies.len() - 1;
             let touches = (0..specs.len()).any(|j| touching[j] && groups.jointed[j] == groups.jointed[i]);
             self.flotation_findings(&bodies[first], (&statics, first), touches, findings);
+            self.ballast_findings(i, &bodies[first], findings);
             self.resolution_findings(&bodies[first], findings);
         }
         self.thin_bodies(&bodies, findings);
@@ -262,6 +263,22 @@ impl<const D: usize> PreflightContext<'_, D> {
                 vec![tilt(vec![-sin, cos, 0.0], middle - half), tilt(vec![cos, sin, 0.0], middle + half)]
             }
         }
+    }
+
+    /// Adds a finding about a body that floats at the start and sinks at its largest mass.
+    fn ballast_findings(&self, i: usize, body: &BodySummary, findings: &mut Vec<Finding>) {
+        let floats_alone = body.support == "water" && body.tied_to.is_empty() && body.load_kg == 0.0;
+        let Some(largest) = body.largest_mass_kg.filter(|_| floats_alone) else { return };
+        let (pose, rho0) = (&self.solids()[i].kinematics.pose, self.system.model().rho0);
+        if hull(self, i).equilibrium_height(pose, largest, rho0, self.still_water.level).is_ok() {
+            return;
+        }
+        let what = format!(
+            "\"{}\" floats at the start, and sinks at its largest mass, {} kg with its ballast",
+            body.name,
+            three_digits(largest)
+        );
+        findings.push(Finding::warning("ballast_sinks", what, "give it less ballast, or make it larger".into()));
     }
 
     /// Adds findings about the equilibrium of a body, of an assembly with its first body.

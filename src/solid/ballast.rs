@@ -48,11 +48,11 @@ impl<const D: usize> BallastSpec<D> {
     /// The first time (s) of a run of `until` s at which its law is negative beyond round-off, or not finite, and the
     /// law's value (kg) then. All samples of a table count.
     pub(crate) fn first_invalid(&self, until: f64) -> Option<(f64, f64)> {
-        let mut values: Vec<(f64, f64)> =
-            sample_times(&self.mass, until).map(|t| (t, self.mass.value_and_rate(t).0)).collect();
+        let mut values: Vec<(f64, f64)> = Vec::new();
         if let TimeFunction::Table(series) = &self.mass {
             values.extend(series.times().iter().copied().zip(series.values().iter().copied()));
         }
+        values.extend(sample_times(&self.mass, until).map(|t| (t, self.mass.value_and_rate(t).0)));
         let size = values.iter().map(|(_, mass)| mass.abs()).fold(0.0, f64::max);
         values.into_iter().find(|(_, mass)| !(mass.is_finite() && *mass >= -ROUND_OFF * size))
     }
