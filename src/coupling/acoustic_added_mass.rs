@@ -90,7 +90,7 @@ impl<const D: usize> AcousticAddedMass<D> {
         if (stiffest_frequency(shape, body, medium) * medium.h / medium.c0).powi(2) <= STIFFEST {
             return None;
         }
-        let of = |i: usize| (i as u32, pose.local(&system.place_on_solid(i)));
+        let of = |k: usize| (k as u32, pose.local(&system.place_on_solid(i, k)));
         let near_face = |(_, r): &(u32, Vector<D>)| -shape.signed_distance(r) < 0.75 * medium.dp;
         let all = solid.boundary.clone().map(of).filter(near_face);
         let outer = all.map(|(i, r)| (i, shape.outward_normal(&r, 0.05 * medium.dp))).collect();
@@ -235,7 +235,7 @@ impl<const D: usize> AcousticAddedMass<D> {
                 if !system.is_between_sides(x) {
                     continue;
                 }
-                let arm = system.place_on_solid(*i as usize) - solid.kinematics.centre;
+                let arm = system.place_on_solid(self.solid, *i as usize) - solid.kinematics.centre;
                 let torque = Bivector::torque(&arm, &normal);
                 visit((wetness[k] / FULL).min(1.0), x, &normal, to_six(&Load { force: normal, torque }));
             }

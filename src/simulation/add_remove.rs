@@ -25,8 +25,8 @@ impl<const D: usize> Simulation<D>
 where
     Dim<D>: Dimension<D>,
 {
-    /// Adds a solid between two steps. A driven solid starts at the present value of its law. A free solid has the
-    /// ballast of t = 0 in its first step, and that of the present time from then on.
+    /// Adds a solid between two steps. A driven solid starts at the present value of its law. Ballast is that of
+    /// the present time.
     ///
     /// Water particles inside it are removed, with their mass and momentum; their number is returned. A run with such
     /// solids has the same bits at any number of threads; its states are read by [`Simulation::restore_with_added_solids`].
@@ -60,6 +60,7 @@ where
             accounting.add_displaced(energy);
             accounting.add_solid_energy(self.system.solids()[solid].energy(&self.system.gravity()));
         }
+        self.bodies.update_masses(&mut self.system, self.clock.time, self.clock.dt)?;
         self.finish_change(reordering);
         Ok(AddedSolid { solid, displaced })
     }

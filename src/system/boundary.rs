@@ -288,7 +288,9 @@ impl<const D: usize> System<D> {
         let depths = depths.as_deref().unwrap_or_default();
         let target = |(&i, fit): (&u32, &WallExtrapolation<f64, D>)| {
             let i = i as usize;
-            let pull = medium.gravity - self.owner(i).acceleration_at(&self.place_on_solid(i));
+            let owner = self.owner(i);
+            let place = self.place_on_solid(owner, i);
+            let pull = medium.gravity - self.solids[owner].acceleration_at(&place);
             let pressure = fit.pressure(&pull, &medium.gravity, depths[i]);
             let density = medium.rho0 * (1.0 + self.equation_of_state.compression(pressure));
             (density, coverage.fraction(fit.weight_sum, depths[i]))
@@ -304,7 +306,7 @@ impl<const D: usize> System<D> {
         let (depths, normals) = (depths.as_deref().unwrap_or_default(), normals.as_deref().unwrap_or_default());
         let velocity = |(&i, fit): (&u32, &WallExtrapolation<f64, D>)| {
             let i = i as usize;
-            let normal = self.owner(i).kinematics.pose.rotation * normals[i];
+            let normal = self.solids[self.owner(i)].kinematics.pose.rotation * normals[i];
             no_slip_velocity(fit, particles.v[i], &normal, depths[i])
         };
         let (wet, count) = (self.neighbours.boundary_near_fluid(), particles.len());
@@ -317,19 +319,14 @@ impl<const D: usize> System<D> {
         }
     }
 
-    /// The solid of boundary particle `i`.
-    fn owner(&self, i: usize) -> &Solid<D> {
-        &self.solids[self.owner_number(i)]
-    }
-
-    fn owner_number(&self, i: usize) -> usize {
+    /// Number of the solid of boundary particle `i`.
+    fn owner(&self, i: usize) -> usize {
         self.solids.partition_point(|solid| solid.boundary.end <= i)
     }
 
-    /// Position (m) of boundary particle `i` on its solid, without the way to its copy.
-    pub(crate) fn place_on_solid(&self, i: usize) -> Vector<D> {
-        let (number, r) = (self.owner_number(i), &self.boundary.particles.r[i]);
-        let solid = &self.solids[number];
+    /// Position (m) of boundary particle `i` on its solid, number `number`, without the way to its copy.
+    pub(crate) fn place_on_solid(&self, number: usize, i: usize) -> Vector<D> {
+        let (solid, r) = (&self.solids[number], &self.boundary.particles.r[i]);
         if solid.copies == 1 {
             return *r;
         }

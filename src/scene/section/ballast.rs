@@ -52,8 +52,8 @@ impl BallastConfig {
             None => Ok(ballast),
             Some((t, mass)) => {
                 let what = format!("the ballast has a mass of {mass} kg at t = {t} s");
-                let help = "its mass is 0 or more: for a body that becomes lighter, take what leaves off  density  or  \
-                            mass, and write it as ballast that falls to 0";
+                let help = "its mass is 0 or more; a body that becomes lighter has as its own  mass  what remains in the \
+                            end, and the rest as ballast that falls to 0";
                 Err(ctx.error_with_help(&key, what, help).with_code(ErrorCode::OutOfRange))
             }
         }
