@@ -88,6 +88,23 @@ pub struct BenchTiming {
     pub peak_bytes: f64,
 }
 
+/// The effective kinematic viscosity of the shipped default model in the water of the standard case.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct DefaultViscosity {
+    /// Dimension.
+    pub dimension: usize,
+    /// Particle spacing, m.
+    pub dp_m: f64,
+    /// Depth of the water, m.
+    pub depth_m: f64,
+    /// Speed of sound, m/s.
+    pub c0_mps: f64,
+    /// Smoothing length, m.
+    pub h_m: f64,
+    /// Effective kinematic viscosity of a shear flow, m²/s.
+    pub viscosity_m2ps: f64,
+}
+
 impl BenchCase {
     /// Returns the standard case with the standard model.
     pub fn standard(dimension: usize, water: usize) -> Self {
@@ -116,6 +133,15 @@ impl BenchCase {
 
     /// Returns the scene of the case.
     fn scene(&self) -> Result<Scene> {
+        self.scene_with(&format!(
+            "model = {{ h_over_dp = {:?}, walls = \"dbc\", slip = \"partial\", c0_factor = 20.0 }}\n\
+             time = {{ scheme = {{ verlet = {{ euler_every = 50 }} }}, cfl = 0.2 }}",
+            3f64.sqrt()
+        ))
+    }
+
+    /// Returns the scene of the case with the entries `model` of its sections `model` and `time`.
+    fn scene_with(&self, model: &str) -> Result<Scene> {
         let dp = self.dp();
         let cells = |x: f64| (x / dp).round() * dp;
         let size = |along: f64, up: f64| match self.dimension {
@@ -125,12 +151,11 @@ impl BenchCase {
         let (origin, pool, tank) = (vec![0.0; self.dimension], size(0.8, DEPTH), size(2.0 * self.dry, 1.2));
         let mut text = format!(
             "dimension = {}\ndp = {dp:?}\nuntil = 1000.0\n{}
-             model = {{ h_over_dp = {:?}, walls = \"dbc\", slip = \"partial\", c0_factor = 20.0 }}\ntime = {{ scheme = {{ verlet = {{ euler_every = 50 }} }}, cfl = 0.2 }}
+             {model}
              water = [{{ fill = {{ box = {{ min = {origin:?}, max = {pool:?} }} }} }}]
              [[solid]]\nname = \"tank\"\nfixed = true\nshape = {{ tank = {{ size = {tank:?} }} }}\n",
             self.dimension,
             if self.probes_toml.contains("[frames]") { "" } else { "frames = \"off\"" },
-            3f64.sqrt(),
         );
         if self.with_body {
             let axes = ["x = ", "y = ", "z = "];
@@ -147,6 +172,29 @@ impl BenchCase {
         let sets: Vec<_> = self.overrides.iter().map(|(key, value)| (key.to_string(), value.to_string())).collect();
         Scene::parse(&text, Path::new(""), &sets)
     }
+}
+
+/// Returns the viscosity of the shipped default in the standard case of `water` particles.
+///
+/// # Errors
+/// `Usage` if this program was built without the dimension.
+pub fn default_viscosity(dimension: usize, water: usize) -> Result<DefaultViscosity> {
+    let case = BenchCase::standard(dimension, water);
+    let scene = case.scene_with("")?;
+    let model = match dimension {
+        #[cfg(feature = "dim2")]
+        2 => scene.layout::<2>()?.model,
+        #[cfg(feature = "dim3")]
+        3 => scene.layout::<3>()?.model,
+        n => return Err(missing_dimension(n)),
+    };
+    let (c0_mps, h_m) = (model.c0, model.h);
+    let viscosity_m2ps = model.viscosity.effective(c0_mps, h_m, dimension);
+    Ok(DefaultViscosity { dimension, dp_m: case.dp(), depth_m: DEPTH, c0_mps, h_m, viscosity_m2ps })
+}
+
+fn missing_dimension(dimension: usize) -> Error {
+    Error::new(ErrorKind::Usage, format!("this program was built without {dimension}-D"))
 }
 
 /// Prepares every case and times the cases in turns, `rounds` times on each number of `threads`. Returns the round of
@@ -188,7 +236,7 @@ fn prepare(work: &BenchCase) -> Result<Box<dyn TimedCase>> {
         2 => Ok(Box::new(PreparedCase::<2>::new(work)?)),
         #[cfg(feature = "dim3")]
         3 => Ok(Box::new(PreparedCase::<3>::new(work)?)),
-        n => Err(Error::new(ErrorKind::Usage, format!("this program was built without {n}-D"))),
+        n => Err(missing_dimension(n)),
     }
 }
 

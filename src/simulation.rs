@@ -249,6 +249,7 @@ impl<const D: usize> Simulation<D> {
         self.clock.steps += 1;
         self.clock.time = if left <= allowed { end } else { self.clock.time + dt };
         self.change_gravity(self.clock.time);
+        self.bodies.update_masses(&mut self.system, self.clock.time, dt)?;
         self.guard()?;
         self.remove_due()
     }
@@ -471,6 +472,7 @@ impl<const D: usize> Simulation<D> {
         (self.stepper, self.clock) = (kept.stepper.into_owned(), kept.clock);
         self.removed = kept.removed.into_owned();
         self.system.set_gravity_at(self.clock.time);
+        self.system.set_masses_at(self.clock.time);
         self.rollback.restart(kept.rollbacks.into_owned());
         Ok(())
     }

@@ -3,9 +3,9 @@
 use clap::Args;
 use pontoon::{
     Result,
-    bench::{self, BenchCase, BenchTiming},
+    bench::{self, BenchCase, BenchTiming, DefaultViscosity},
     error::{Error, ErrorKind},
-    math::format::metric_prefix,
+    math::format::{metric_prefix, three_digits},
     output::manifest::Machine,
 };
 use serde::Serialize;
@@ -54,6 +54,8 @@ struct BenchReport {
     terms: Vec<BenchTiming>,
     /// Time of the oracle's pairs over that of the fast sweep's, of each work.
     fast_over_oracle: Vec<f64>,
+    /// Viscosity of the shipped default in the water of the works.
+    default_viscosity: Vec<DefaultViscosity>,
 }
 
 /// Times and gives the text to print.
@@ -74,8 +76,12 @@ pub fn bench(args: &BenchArgs) -> Result<String> {
         oracle: Vec::new(),
         terms: Vec::new(),
         fast_over_oracle: Vec::new(),
+        default_viscosity: Vec::new(),
     };
     for &water in &args.size {
+        for dimension in [3, 2] {
+            tables.default_viscosity.push(bench::default_viscosity(dimension, water)?);
+        }
         if args.terms {
             for dimension in [3, 2] {
                 tables.terms.extend(bench::time(&bench::term_cases(dimension, water), &[1], 5)?);
@@ -146,7 +152,19 @@ fn text(tables: &BenchReport) -> String {
         text += "\nWhat each adds, processor time per particle and step over that of the standard work:\n";
         text += &table(&term_rows(&tables.terms));
     }
+    text += "\nEffective kinematic viscosity of the shipped default in this water, α c₀ h/(4 (D + 2)):\n";
+    text += &table(&viscosity_rows(&tables.default_viscosity));
     text
+}
+
+fn viscosity_rows(viscosities: &[DefaultViscosity]) -> Vec<Vec<String>> {
+    let heads = ["", "dp (m)", "depth (m)", "c₀ (m/s)", "h (m)", "viscosity (m²/s)"];
+    let mut rows = vec![heads.map(String::from).to_vec()];
+    for own in viscosities {
+        let figures = [own.dp_m, own.depth_m, own.c0_mps, own.h_m, own.viscosity_m2ps].map(three_digits);
+        rows.push([format!("{}-D", own.dimension)].into_iter().chain(figures).collect());
+    }
+    rows
 }
 
 fn rows(timings: &[BenchTiming]) -> Vec<Vec<String>> {

@@ -303,6 +303,10 @@ fn bodies(bodies: &[BodySummary], dimension: usize) -> String {
     }
     let mut ties = String::new();
     for (i, body) in bodies.iter().enumerate() {
+        if let Some(largest) = body.largest_mass_kg {
+            let [start, largest] = [body.mass_kg, largest].map(three_digits);
+            let _ = writeln!(ties, "  {}: {start} kg at the start, {largest} kg at most with its ballast", body.name);
+        }
         // Each assembly once, with its first body.
         if !body.tied_to.is_empty() && !bodies[..i].iter().any(|other| body.tied_to.contains(&other.name)) {
             let _ = writeln!(

@@ -85,11 +85,12 @@ impl<const D: usize> AcousticAddedMass<D> {
     fn if_light(system: &System<D>, i: usize) -> Option<Self> {
         let (medium, solid) = (system.properties(), &system.solids()[i]);
         let (pose, shape) = (solid.kinematics.pose, &solid.spec.shape);
+        // Without its ballast, which it may lose.
         let Role::Free(body) = &solid.spec.role else { return None };
         if (stiffest_frequency(shape, body, medium) * medium.h / medium.c0).powi(2) <= STIFFEST {
             return None;
         }
-        let of = |i: usize| (i as u32, pose.local(&system.boundary().r[i]));
+        let of = |k: usize| (k as u32, pose.local(&system.place_on_solid(i, k)));
         let near_face = |(_, r): &(u32, Vector<D>)| -shape.signed_distance(r) < 0.75 * medium.dp;
         let all = solid.boundary.clone().map(of).filter(near_face);
         let outer = all.map(|(i, r)| (i, shape.outward_normal(&r, 0.05 * medium.dp))).collect();
@@ -119,6 +120,14 @@ impl<const D: usize> AcousticAddedMass<D> {
         self.state = state;
     }
 
+    /// Takes pending impulse and contacts about a centre of mass that has moved by `shift` (m) within the body.
+    pub(super) fn shift_centre(&mut self, shift: &Vector<D>) {
+        for load in [&mut self.state.pending, &mut self.state.contacts] {
+            let torque = Bivector::torque(shift, &linear(load)) * -1.0;
+            *load += to_six(&Load { force: Vector::zeros(), torque });
+        }
+    }
+
     /// Removes the share of the pending impulse that belongs to water that the body has left. Returns this share, N s.
     fn release(&mut self, stiffness_sum: f64) -> Vector<D> {
         let stays =
@@ -133,7 +142,7 @@ impl<const D: usize> AcousticAddedMass<D> {
     /// `push`. Returns the impulse (N s) that the water gets back.
     pub(super) fn apply(&mut self, system: &System<D>, dt: f64, push: &Load<D>, load: &mut Load<D>) -> Vector<D> {
         let solid = &system.solids()[self.solid];
-        let Role::Free(body) = &solid.spec.role else { return Vector::zeros() };
+        let Some(body) = &solid.body else { return Vector::zeros() };
         let added = Load { force: push.force + system.gravity() * body.mass, torque: push.torque };
         let mut whole = to_six(load) + to_six(&added);
         lock(body, |i| whole[i] = 0.0);
@@ -177,7 +186,7 @@ impl<const D: usize> AcousticAddedMass<D> {
         after: &Kinematics<D>,
     ) {
         let solid = &system.solids()[self.solid];
-        let Role::Free(body) = &solid.spec.role else { return };
+        let Some(body) = &solid.body else { return };
         let change = Load {
             force: (after.velocity - before.velocity) / dt,
             torque: (after.spin + before.spin * -1.0) * (1.0 / dt),
@@ -223,7 +232,11 @@ impl<const D: usize> AcousticAddedMass<D> {
             k += wet[k..].iter().take_while(|w| *w < i).count();
             if wet.get(k) == Some(i) {
                 let (x, normal) = (&system.boundary.particles.r[*i as usize], turn * normal);
-                let torque = Bivector::torque(&(x - solid.kinematics.centre), &normal);
+                if !system.is_between_sides(x) {
+                    continue;
+                }
+                let arm = system.place_on_solid(self.solid, *i as usize) - solid.kinematics.centre;
+                let torque = Bivector::torque(&arm, &normal);
                 visit((wetness[k] / FULL).min(1.0), x, &normal, to_six(&Load { force: normal, torque }));
             }
         }

@@ -20,13 +20,13 @@ use crate::{
 
 /// The rigid bodies of a run with their engine. A scene without free bodies has no engine.
 pub(crate) struct Bodies<const D: usize> {
-    engine: Option<Box<dyn Engine<D>>>,
-    added_masses: Vec<AcousticAddedMass<D>>,
+    pub(super) engine: Option<Box<dyn Engine<D>>>,
+    pub(super) added_masses: Vec<AcousticAddedMass<D>>,
     constraints: Assembly<D>,
     pub(crate) accounting: Option<Accounting<D>>,
     /// Whether an external program moves the free bodies.
     external: bool,
-    steps: u64,
+    pub(super) steps: u64,
     spent: Duration,
 }
 
@@ -153,7 +153,7 @@ impl<const D: usize> Bodies<D> {
         // The engine itself adds the weight once.
         let gravity = system.gravity() * (weight - 1.0);
         let weighed = |solid: &Solid<D>| {
-            let mass = if let Role::Free(body) = &solid.spec.role { body.mass } else { 0.0 };
+            let mass = solid.body.map_or(0.0, |body| body.mass);
             match solid.load == Load::zero() {
                 true => solid.load,
                 false => Load { force: solid.load.force * weight + gravity * mass, torque: solid.load.torque * weight },
@@ -281,7 +281,7 @@ impl<const D: usize> BodyStep<'_, D> {
         for (i, solid) in self.system.solids.iter().enumerate() {
             if let Role::Free(_) = solid.spec.role {
                 self.solids[i] = engine.kinematics(i);
-                if !self.system.domain().contains(&self.solids[i].centre) {
+                if !self.system.domain().contains(&self.system.wrapped(&self.solids[i].centre)) {
                     return Err(fault_error(self.system, escaped(i, &self.solids[i]), *steps, t));
                 }
             }
@@ -382,7 +382,7 @@ fn escaped<const D: usize>(solid: usize, now: &Kinematics<D>) -> EngineFault<D> 
     }
 }
 
-fn fault_error<const D: usize>(system: &System<D>, fault: EngineFault<D>, step: u64, time: f64) -> Error {
+pub(super) fn fault_error<const D: usize>(system: &System<D>, fault: EngineFault<D>, step: u64, time: f64) -> Error {
     Error::fault(Fault {
         code: fault.code,
         reason: fault.reason,

@@ -14,7 +14,7 @@ use super::{
 use crate::{
     math::Vector,
     model::Dimension,
-    solid::{Dim, Kinematics, Load, Role},
+    solid::{Dim, FreeBody, Kinematics, Load, Role},
     system::{RemovedParticle, System},
 };
 
@@ -49,7 +49,7 @@ pub struct EnergyBudget {
     pub coupling: f64,
     /// Energy of removed particles, negative.
     pub removed: f64,
-    /// Energy of added free solids less the energy of removed free solids.
+    /// Energy of added free solids and ballast less the energy of removed ones.
     pub solids: f64,
 }
 
@@ -219,7 +219,7 @@ impl<const D: usize> Accounting<D> {
         self.budget.removed -= energy;
     }
 
-    /// Adds the energy (J) of a solid that was added. The energy of a removed solid is negative.
+    /// Adds the energy (J) of a solid or of ballast that was added. The energy of what was removed is negative.
     pub(crate) fn add_solid_energy(&mut self, energy: f64) {
         self.budget.solids += energy;
     }
@@ -234,6 +234,15 @@ impl<const D: usize> Accounting<D> {
         self.budget.coupling += energy;
     }
 
+    /// Adds to the breakdown of solid number `i` the load of the ballast that the solid took on, and the change of
+    /// momentum by it. `body` is the solid's mass after the change. Locks bear the remainder along locked motions.
+    pub(super) fn add_ballast(&mut self, i: usize, body: &FreeBody<D>, ballast: Load<D>, change: Load<D>) {
+        let breakdown = &mut self.breakdown[i];
+        breakdown.ballast += ballast;
+        breakdown.change += change;
+        breakdown.locks += locked(body, false, &(change - ballast));
+    }
+
     /// Adds the work of one step on solid number `i` of `system` under the loads of `breakdown`, if the solid is free.
     /// Adds the loads of joints, ropes and locks to `breakdown`.
     pub(super) fn add_body_step(
@@ -243,7 +252,7 @@ impl<const D: usize> Accounting<D> {
         mut breakdown: LoadBreakdown<D>,
         loads: &BodyLoads<'_, D>,
     ) {
-        let Role::Free(body) = &system.solids()[i].spec.role else { return };
+        let Some(body) = &system.solids()[i].body else { return };
         let BodyLoads { water, constraints, before, after, dt, iterated, .. } = *loads;
         (breakdown.viscous, breakdown.pressure) = (self.viscous[i], breakdown.pressure - self.viscous[i]);
         (breakdown.joints, breakdown.ropes) = (constraints.joints, constraints.ropes);

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     math::{Bivector, Matrix, Vector},
-    solid::{ContactForce, FreeBody, Kinematics, Load, Role, constraint::assembly::ConstraintLoads},
+    solid::{ContactForce, FreeBody, Kinematics, Load, constraint::assembly::ConstraintLoads},
     system::System,
 };
 
@@ -33,10 +33,13 @@ pub struct LoadBreakdown<const D: usize> {
     pub forces: Load<D>,
     /// Loads that a program adds with `push`.
     pub pushes: Load<D>,
+    /// Momentum that ballast brought at the end of the step, over the length of the step; negative where ballast left.
+    pub ballast: Load<D>,
     /// Reaction of locked motions: by definition the negative sum of the other loads along these motions.
     pub locks: Load<D>,
-    /// Rate of change of momentum and angular momentum. For a 3-D body in a joint, on a rope or partly locked, the rate
-    /// of change of angular momentum is the expression that the engine integrates, I(R₀) ΔΩ/Δt + Ω ∧ I Ω.
+    /// Rate of change of momentum and angular momentum, with that of ballast. For a 3-D body in a joint, on a rope or
+    /// partly locked, the rate of change of angular momentum is the expression that the engine integrates,
+    /// I(R₀) ΔΩ/Δt + Ω ∧ I Ω.
     pub change: Load<D>,
 }
 
@@ -56,13 +59,14 @@ impl<const D: usize> LoadBreakdown<D> {
             motors: none,
             forces: none,
             pushes: none,
+            ballast: none,
             locks: none,
             change: none,
         }
     }
 
     /// Returns all loads with their names, without the change of momentum.
-    pub fn kinds(&self) -> [(&'static str, Load<D>); 12] {
+    pub fn kinds(&self) -> [(&'static str, Load<D>); 13] {
         [
             ("pressure", self.pressure),
             ("viscous", self.viscous),
@@ -76,6 +80,7 @@ impl<const D: usize> LoadBreakdown<D> {
             ("forces", self.forces),
             ("pushes", self.pushes),
             ("locks", self.locks),
+            ("ballast", self.ballast),
         ]
     }
 
@@ -104,7 +109,7 @@ impl<const D: usize> LoadBreakdown<D> {
     /// counts as pressure. All loads are zero unless the solid is free.
     pub(super) fn of(system: &System<D>, i: usize, loads: &BodyLoads<'_, D>) -> Self {
         let solid = &system.solids()[i];
-        let Role::Free(body) = &solid.spec.role else { return Self::zero() };
+        let Some(body) = &solid.body else { return Self::zero() };
         let BodyLoads { water, pushes, contacts, constraints, before, after, gyroscopic, dt, .. } = *loads;
         let change = (momentum(body, after) - momentum(body, before)) * (1.0 / dt);
         Self {
@@ -148,7 +153,7 @@ pub(super) fn contact_sums<const D: usize>(contacts: &[ContactForce<D>], solids:
 }
 
 /// Returns the momentum, kg m/s, and the angular momentum about the centre of mass, kg m²/s.
-fn momentum<const D: usize>(body: &FreeBody<D>, motion: &Kinematics<D>) -> Load<D> {
+pub(super) fn momentum<const D: usize>(body: &FreeBody<D>, motion: &Kinematics<D>) -> Load<D> {
     Load {
         force: motion.velocity * body.mass,
         torque: angular_momentum(&body.inertia, &motion.pose.rotation, &motion.spin),

@@ -4,6 +4,7 @@ mod acoustic_added_mass;
 mod body_step;
 mod energy_budget;
 mod load_breakdown;
+mod mass_change;
 mod power_breakdown;
 
 pub use acoustic_added_mass::stiffest_frequency;

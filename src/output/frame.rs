@@ -5,6 +5,7 @@
 use std::{
     fs::File,
     io,
+    ops::Range,
     path::{Path, PathBuf},
 };
 
@@ -136,11 +137,13 @@ impl FrameWriter {
         let water = kept.as_ref().map_or(water, |kept| kept.first_n(kept.len()));
         let [wet, dry] = piece_names(number);
         let mut bytes = self.write_piece(&wet, system, water, None)?;
-        let mut owner = vec![0.0; system.boundary().len()];
-        for (i, solid) in system.solids().iter().enumerate() {
-            owner[solid.boundary.clone()].fill(i as f32);
-        }
-        bytes += self.write_piece(&dry, system, system.boundary(), Some(owner))?;
+        let ranges: Vec<Range<usize>> = (0..system.solids().len()).map(|i| system.home_boundary(i)).collect();
+        let owner = ranges.iter().enumerate().flat_map(|(i, range)| range.clone().map(move |_| i as f32)).collect();
+        let boundary = system.boundary();
+        let has_copies = ranges.iter().map(Range::len).sum::<usize>() < boundary.len();
+        let kept = has_copies.then(|| boundary.select(ranges.into_iter().flatten()));
+        let boundary = kept.as_ref().map_or(boundary, |kept| kept.first_n(kept.len()));
+        bytes += self.write_piece(&dry, system, boundary, Some(owner))?;
         self.bytes += bytes;
         self.times.push(t);
         self.write_index()

@@ -24,7 +24,7 @@ use crate::{
     math::format::{three_digits, two_digits_down, two_digits_up},
     scene::world_bounds,
     solid::{
-        FreeBody, Role, Solid, SolidSpec,
+        FreeBody, Solid, SolidSpec,
         joint_groups::JointGroups,
         statics::{StaticBody, StaticSystem, Support, WaterAtRest},
     },
@@ -42,8 +42,11 @@ const NEUTRAL: f64 = 1e-3;
 pub struct BodySummary {
     /// Name of the body.
     pub name: String,
-    /// Mass, kg.
+    /// Mass at the start, kg.
     pub mass_kg: f64,
+    /// Largest mass in the run, kg; absent unless it has ballast.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub largest_mass_kg: Option<f64>,
     /// Volume, m³.
     pub volume_m3: f64,
     /// Mean density of the body over the density of the water, –.
@@ -112,7 +115,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         let groups = JointGroups::of(&specs, constraints);
         let mut bodies = Vec::new();
         for (i, solid) in self.solids().iter().enumerate() {
-            let Role::Free(body) = &solid.spec.role else { continue };
+            let Some(body) = &solid.body else { continue };
             let mut found = self.body(i, body, (&statics, bodies.len()));
             let others = (0..specs.len()).filter(|j| *j != i && groups.jointed[*j] == groups.jointed[i]);
             found.tied_to = others.map(|j| specs[j].name.clone()).collect();
@@ -120,6 +123,7 @@ impl<const D: usize> PreflightContext<'_, D> {
             let first = bodies.len() - 1;
             let touches = (0..specs.len()).any(|j| touching[j] && groups.jointed[j] == groups.jointed[i]);
             self.flotation_findings(&bodies[first], (&statics, first), touches, findings);
+            self.ballast_findings(i, &bodies[first], findings);
             self.resolution_findings(&bodies[first], findings);
         }
         self.thin_bodies(&bodies, findings);
@@ -133,7 +137,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         }
         let level = self.still_water.level;
         let body = |(i, solid): (usize, &'_ Solid<D>)| {
-            let Role::Free(body) = &self.solids()[i].spec.role else { return None };
+            let body = self.solids()[i].body.as_ref()?;
             let (hull, pose) = (hull(self, i), solid.kinematics.pose);
             let [start, _] = hull.extent(&pose);
             let bottom = if touching[i] { start } else { start.min(level - self.still_water.depth) };
@@ -184,6 +188,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         BodySummary {
             name: solid.spec.name.clone(),
             mass_kg: body.mass,
+            largest_mass_kg: solid.spec.largest_mass(self.plan.until),
             volume_m3: volume,
             density_ratio: body.mass / (model.rho0 * volume),
             displaced_kg: model.rho0 * displaced,
@@ -258,6 +263,22 @@ impl<const D: usize> PreflightContext<'_, D> {
                 vec![tilt(vec![-sin, cos, 0.0], middle - half), tilt(vec![cos, sin, 0.0], middle + half)]
             }
         }
+    }
+
+    /// Adds a finding about a body that floats at the start and sinks at its largest mass.
+    fn ballast_findings(&self, i: usize, body: &BodySummary, findings: &mut Vec<Finding>) {
+        let floats_alone = body.support == "water" && body.tied_to.is_empty() && body.load_kg == 0.0;
+        let Some(largest) = body.largest_mass_kg.filter(|_| floats_alone) else { return };
+        let (pose, rho0) = (&self.solids()[i].kinematics.pose, self.system.model().rho0);
+        if hull(self, i).equilibrium_height(pose, largest, rho0, self.still_water.level).is_ok() {
+            return;
+        }
+        let what = format!(
+            "\"{}\" floats at the start, and sinks at its largest mass, {} kg with its ballast",
+            body.name,
+            three_digits(largest)
+        );
+        findings.push(Finding::warning("ballast_sinks", what, "give it less ballast, or make it larger".into()));
     }
 
     /// Adds findings about the equilibrium of a body, of an assembly with its first body.

@@ -6,7 +6,7 @@ use crate::{
     math::{Bounds, Vector, format::three_digits},
     solid::{
         Role, Solid,
-        hydrostatics::{Ballast, Hull},
+        hydrostatics::{HollowWater, Hull},
     },
 };
 
@@ -54,7 +54,7 @@ pub(super) fn hull<'a, const D: usize>(context: &'a PreflightContext<D>, i: usiz
             // Half a row is the error of a count.
             let as_outside = volume_below(level - 0.6 * dp) < water && water < volume_below(level + 0.6 * dp);
             let water = if as_outside { volume_below(level) } else { water };
-            hull.ballast.push((hollow, Ballast::Volume(water)));
+            hull.filled.push((hollow, HollowWater::Volume(water)));
         }
     }
     hull

@@ -16,7 +16,7 @@ impl<const D: usize> PreflightContext<'_, D> {
     pub(super) fn misplaced_bodies(&self, touching: &[bool], findings: &mut Vec<Finding>) {
         let water = Bounds::around(self.system.fluid().r).grown(0.5 * self.dp());
         for (i, solid) in self.solids().iter().enumerate() {
-            let Role::Free(body) = &solid.spec.role else { continue };
+            let Some(body) = &solid.body else { continue };
             if self.g > 0.0 && !touching[i] {
                 findings.extend(self.outside_water(solid, &water));
             }

@@ -82,8 +82,8 @@ fn body_flow<const D: usize>(
     let (speed_mps, speed_from) = match &solid.spec.role {
         Role::Fixed => return None,
         Role::Driven(_) => (context.driven_speed(i), "motion"),
-        Role::Free(body) => {
-            let ratio = body.mass / (context.system.model().rho0 * volume);
+        Role::Free(_) => {
+            let ratio = solid.body.map_or(0.0, |body| body.mass) / (context.system.model().rho0 * volume);
             let orbital = waves.iter().filter_map(|w| Some(std::f64::consts::PI * w.height_m / w.period_s?));
             let speeds = [
                 (((1.0 - ratio).abs() * context.g * size_m).sqrt(), "buoyancy"),

@@ -8,7 +8,7 @@ use crate::{
     error::{Error, Result},
     model::Dimension,
     simulation::Simulation,
-    solid::{Dim, Load, Role},
+    solid::{Dim, Load},
     system::System,
 };
 
@@ -56,7 +56,7 @@ impl ProbeDefinition for LoadBalancePlan {
 }
 
 /// Measures the loads on a free body: force (N) and torque about its centre of mass (N m) of pressure, viscosity,
-/// weight, contacts and constraints, as far as the scene has them. The next columns are the sum of the loads, the
+/// weight, contacts, constraints and ballast, as far as the scene has them. The next columns are the sum of the loads, the
 /// change of momentum and angular momentum, and the difference between the two. All columns are NaN unless loads are
 /// recorded ([`Simulation::enable_load_breakdown`]).
 pub(crate) struct LoadBalanceProbe {
@@ -65,14 +65,15 @@ pub(crate) struct LoadBalanceProbe {
 }
 
 impl LoadBalanceProbe {
-    /// Creates the probe of the free solid called `solid`.
+    /// Creates the probe of the free solid called `name`.
     ///
     /// # Errors
     /// `Scene` if there is no such solid or the solid is not free.
-    pub(crate) fn new<const D: usize>(system: &System<D>, solid: &str) -> Result<Self> {
-        let index = find_solid(system, solid)?;
-        let Role::Free(body) = &system.solids()[index].spec.role else {
-            return Err(Error::scene(format!("\"{solid}\" is not free: what it weighs and carries is not known"))
+    pub(crate) fn new<const D: usize>(system: &System<D>, name: &str) -> Result<Self> {
+        let index = find_solid(system, name)?;
+        let solid = &system.solids()[index];
+        let Some(body) = &solid.body else {
+            return Err(Error::scene(format!("\"{name}\" is not free: what it weighs and carries is not known"))
                 .help("the water's load on any solid is  force = \"...\""));
         };
         let links = system.constraints();
@@ -84,6 +85,7 @@ impl LoadBalanceProbe {
             ("ropes", links.ropes.is_empty()),
             ("springs", links.springs.is_empty()),
             ("forces", links.forces.is_empty() && links.winds.is_empty()),
+            ("ballast", solid.spec.ballast.is_empty()),
             ("locks", !(held || locked)),
         ];
         let all = LoadBreakdown::<D>::zero().kinds().map(|(kind, _)| kind);

@@ -1,6 +1,7 @@
 //! Position, angles and velocity of a solid.
 //!
-//! Surge, sway and heave are the displacements of its centre from the start along x, y (3-D) and up. In 2-D
+//! Surge, sway and heave are the displacements of its centre from the start along x, y (3-D) and up. The centre of mass
+//! of a solid with ballast moves within it: there the centre is the point of the solid that it is at the start. In 2-D
 //! pitch is the angle of the solid's frame, counter-clockwise; in 3-D the frame is turned by roll about x,
 //! then pitch about y, then yaw about z (right-handed, world axes): R = R_z R_y R_x.
 
@@ -53,6 +54,8 @@ impl ProbeDefinition for MotionPlan {
 pub struct MotionProbe<const D: usize> {
     solid: usize,
     start: Vector<D>,
+    /// The centre in the frame of a solid with ballast, m.
+    point: Option<Vector<D>>,
 }
 
 impl<const D: usize> MotionProbe<D> {
@@ -61,8 +64,11 @@ impl<const D: usize> MotionProbe<D> {
     /// # Errors
     /// `Scene` if there is no such solid.
     pub fn new(system: &System<D>, solid: &str) -> Result<Self> {
-        let solid = find_solid(system, solid)?;
-        Ok(Self { solid, start: system.solids()[solid].kinematics.centre })
+        let index = find_solid(system, solid)?;
+        let solid = &system.solids()[index];
+        let start = solid.kinematics.centre;
+        let point = (!solid.spec.ballast.is_empty()).then(|| solid.kinematics.pose.local(&start));
+        Ok(Self { solid: index, start, point })
     }
 }
 
@@ -95,10 +101,17 @@ impl<const D: usize> Probe<D> for MotionProbe<D> {
 
     fn sample(&self, sim: &Simulation<D>) -> Vec<f64> {
         let now = &sim.system().solids()[self.solid].kinematics;
-        let moved = now.centre - self.start;
-        let mut row: Vec<f64> = now.centre.iter().chain(moved.iter()).copied().collect();
+        let (centre, velocity) = match &self.point {
+            Some(point) => {
+                let centre = now.pose.point(point);
+                (centre, now.velocity + now.spin.velocity_at(&(centre - now.centre)))
+            }
+            None => (now.centre, now.velocity),
+        };
+        let moved = centre - self.start;
+        let mut row: Vec<f64> = centre.iter().chain(moved.iter()).copied().collect();
         row.extend(euler_angles(&now.pose.rotation).into_iter().map(f64::to_degrees));
-        row.extend(now.velocity.iter());
+        row.extend(velocity.iter());
         row.extend(now.spin.axial());
         row
     }

@@ -37,15 +37,16 @@ impl<const D: usize> MountedPoint<D> {
         self.solid.is_some()
     }
 
-    /// Its place in the world, m.
+    /// Its place in the world, between periodic sides, m.
     pub(super) fn position(&self, system: &System<D>) -> Vector<D> {
-        self.solid.map_or(self.at, |solid| system.solids()[solid].kinematics.pose.point(&self.at))
+        let on_solid = |solid: usize| system.wrapped(&system.solids()[solid].kinematics.pose.point(&self.at));
+        self.solid.map_or(self.at, on_solid)
     }
 
     /// Its velocity, m/s, and the rotation of its axes; those of the world if it does not go with a solid.
     pub(super) fn velocity_and_axes(&self, system: &System<D>) -> (Vector<D>, Matrix<D>) {
         let Some(solid) = self.solid else { return (Vector::zeros(), Matrix::identity()) };
         let now = &system.solids()[solid].kinematics;
-        (now.velocity + now.spin.velocity_at(&(self.position(system) - now.centre)), now.pose.rotation)
+        (now.velocity + now.spin.velocity_at(&(now.pose.point(&self.at) - now.centre)), now.pose.rotation)
     }
 }

@@ -86,11 +86,11 @@ impl<const D: usize> PatchProbe<D> {
         // A place on an edge of the box belongs to it; no boundary particle lies deeper than the kernel reaches.
         let (inside, near) = (part.grown(1e-9), part.grown(system.model().support_radius() + dp));
         let (mut behind, mut places) = (Vec::new(), Vec::new());
-        for r in &system.boundary().r[of.boundary.clone()] {
-            let local = pose.local(r);
+        for r in of.boundary.clone().map(|i| system.place_on_solid(number, i)) {
+            let local = pose.local(&r);
             let depth = -shape.signed_distance(&local);
             let foot = local + shape.outward_normal(&local, 0.05 * dp) * depth;
-            let chosen = near.contains(r) && inside.contains(&pose.point(&foot));
+            let chosen = near.contains(&r) && inside.contains(&pose.point(&foot));
             behind.push(chosen);
             if chosen && depth < 0.75 * dp {
                 places.push(foot);
@@ -122,7 +122,7 @@ impl<const D: usize> Probe<D> for PatchProbe<D> {
         });
         let (mut sum, mut most) = (0.0, f64::NEG_INFINITY);
         for place in &self.places {
-            let p = pressure(system, &solid.kinematics.pose.point(place));
+            let p = pressure(system, &system.wrapped(&solid.kinematics.pose.point(place)));
             (sum, most) = (sum + p, most.max(p));
         }
         force.iter().copied().chain([sum / self.places.len() as f64, most]).collect()

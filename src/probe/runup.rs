@@ -73,8 +73,7 @@ impl<const D: usize> Probe<D> for RunupProbe<D> {
 
 /// Returns the nearest point (m) on solid number `solid` to the highest water that lies on its face.
 fn highest_waterline<const D: usize>(system: &System<D>, solid: usize) -> Vector<D> {
-    let (solid, dp) = (&system.solids()[solid], system.model().dp);
-    let (shape, pose) = (&solid.spec.shape, &solid.kinematics.pose);
+    let (shape, pose, dp) = (&system.solids()[solid].spec.shape, &system.home_pose(solid), system.model().dp);
     let mut highest = Vector::from_element(f64::NAN);
     for r in system.fluid().r {
         if r[D - 1] <= highest[D - 1] {

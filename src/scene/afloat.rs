@@ -17,8 +17,8 @@ use crate::{
     },
     math::Pose,
     solid::{
-        Role, SolidSpec,
-        hydrostatics::{Ballast, Hull},
+        SolidSpec,
+        hydrostatics::{HollowWater, Hull},
         tie_loads::{StartState, TieLoads},
     },
 };
@@ -90,7 +90,7 @@ fn float_bodies<const D: usize>(
     for group in loads.groups() {
         let own: Vec<usize> = group.iter().copied().filter(|i| afloat[*i]).collect();
         for &i in &own {
-            let Role::Free(body) = &specs[i].role else { continue };
+            let Some(body) = specs[i].initial_body() else { continue };
             // One body carries all; several carry their own loads first, and what is left together.
             let carried = if own.len() == 1 { loads.of_group(i) } else { 0.0 } + loads.on(i);
             rises[i] = rise(i, body.mass + carried)?;
@@ -166,7 +166,7 @@ impl<const D: usize> PlacedSolids<D> {
                 None => hull.dry.push(hollow),
                 // Water as high as outside carries nothing.
                 Some(own) if own == level => (),
-                Some(own) => hull.ballast.push((hollow, Ballast::Level(own))),
+                Some(own) => hull.filled.push((hollow, HollowWater::Level(own))),
             }
         }
         hull

@@ -114,7 +114,7 @@ impl Scene {
             require_inside_domain(ctx, domain, &water, solids)?;
         }
         let periodic = scene.periodic.clone().unwrap_or_default().build();
-        periodic::check(&periodic, &model, solids).map_err(|e| ctx.with_location(e, "periodic"))?;
+        periodic::check(&periodic, &model, solids, &constraints).map_err(|e| ctx.with_location(e, "periodic"))?;
         require_affordable(ctx, &water, solids)?;
         let regions: Vec<WaterRegion<D>> =
             water.iter().map(|b| WaterRegion { shape: b.region.shape.clone(), pose: b.region.pose }).collect();

@@ -82,6 +82,7 @@ const EXAMPLES: &[(&str, &str)] = &[
     ("density", "free = { density = 500.0 }        # kg/m³"),
     ("inertia", "free = { density = 500.0, inertia = 0.005 }        # kg m²/m; three numbers in 3-D"),
     ("release", "free = { density = 500.0, release = 1.0 }        # s"),
+    ("ballast", "free = { density = 500.0, ballast = [{ at = [0.1, 0.0], mass = \"0.5*t\" }] }"),
     ("locked", "free = { density = 500.0, locked = [\"x\", \"turn\"] }"),
     ("contact_skin", "contact_skin = 0.005        # m"),
     (

@@ -29,6 +29,7 @@ mod verify_probes;
 /// The sections of a scene.
 mod section {
     pub(crate) mod analysis;
+    pub(crate) mod ballast;
     pub(crate) mod contact;
     pub(crate) mod domain;
     pub(crate) mod force_element;
@@ -67,6 +68,7 @@ pub use {
     build::BuiltScene,
     bundled::{BundledScene, bundled_scenes},
     schema::schema,
+    section::ballast::BallastConfig,
     section::contact::ContactConfig,
     section::force_element::{ForceConfig, RopeConfig, SpringConfig},
     section::joint::{JointConfig, JointKindConfig, MotorConfig},

@@ -1,6 +1,6 @@
 //! Adding and removing solids during a simulation.
 
-use super::Simulation;
+use super::{Simulation, external_bodies::refuse_ballast};
 use crate::{
     coupling::AcousticAddedMass,
     error::{Error, ErrorKind, Result},
@@ -25,7 +25,8 @@ impl<const D: usize> Simulation<D>
 where
     Dim<D>: Dimension<D>,
 {
-    /// Adds a solid between two steps. A driven solid starts at the present value of its law.
+    /// Adds a solid between two steps. A driven solid starts at the present value of its law. Ballast is that of
+    /// the present time.
     ///
     /// Water particles inside it are removed, with their mass and momentum; their number is returned. A run with such
     /// solids has the same bits at any number of threads; its states are read by [`Simulation::restore_with_added_solids`].
@@ -35,6 +36,9 @@ where
     /// says which and how deep. Nothing has changed then.
     pub fn add_solid(&mut self, spec: SolidSpec<D>) -> Result<AddedSolid> {
         spec.check()?;
+        if self.has_external_bodies() {
+            refuse_ballast(&spec)?;
+        }
         if self.system.find_solid(&spec.name).is_some() {
             return Err(Error::scene(format!("a solid is or was called {:?} already", spec.name))
                 .help("give each its own name, also after one was removed"));
@@ -56,6 +60,7 @@ where
             accounting.add_displaced(energy);
             accounting.add_solid_energy(self.system.solids()[solid].energy(&self.system.gravity()));
         }
+        self.bodies.update_masses(&mut self.system, self.clock.time, self.clock.dt)?;
         self.finish_change(reordering);
         Ok(AddedSolid { solid, displaced })
     }

@@ -4,7 +4,7 @@ use super::{BodyStep, Setup, Simulation};
 use crate::{
     error::{Error, Result},
     model::Dimension,
-    solid::Dim,
+    solid::{Dim, SolidSpec},
 };
 
 impl<const D: usize> Simulation<D> {
@@ -16,7 +16,7 @@ impl<const D: usize> Simulation<D> {
     /// of your world. Such a simulation does not roll back, because your world cannot.
     ///
     /// # Errors
-    /// `Scene` if a constant has no valid value, a solid cannot be made, or solids are tied: says which.
+    /// `Scene` if a constant has no valid value, a solid cannot be made or has ballast, or solids are tied: says which.
     pub fn with_external_bodies(setup: Setup<D>) -> Result<Self>
     where
         Dim<D>: Dimension<D>,
@@ -27,6 +27,7 @@ impl<const D: usize> Simulation<D> {
             )
             .help("put them into the world that moves the bodies, and leave setup.links as Links::default()"));
         }
+        setup.solids.iter().try_for_each(refuse_ballast)?;
         let pair_loop = Dim::<D>::pair_loop(&setup.model);
         Ok(Self::with_bodies(setup, pair_loop, true)?.without_rollback())
     }
@@ -68,4 +69,13 @@ impl<const D: usize> Simulation<D> {
     pub fn has_external_bodies(&self) -> bool {
         self.bodies.has_external_bodies()
     }
+}
+
+/// Refuses ballast of a solid that an external program moves, because the masses are those of that program.
+pub(super) fn refuse_ballast<const D: usize>(solid: &SolidSpec<D>) -> Result<()> {
+    if solid.ballast.is_empty() {
+        return Ok(());
+    }
+    let what = format!("solid {:?} has ballast, and an external program moves it", solid.name);
+    Err(Error::scene(what).help("change the mass of the body in the world that moves it"))
 }

@@ -24,6 +24,7 @@ impl<const D: usize> SolidSpec<D> {
             restitution: DEFAULT_RESTITUTION,
             contact_skin: DEFAULT_CONTACT_SKIN,
             dry: None,
+            ballast: Vec::new(),
         }
     }
 
@@ -78,10 +79,10 @@ impl<const D: usize> SolidSpec<D> {
             velocity: Vector::zeros(),
             spin: Bivector::zero(),
         };
-        match &self.role {
-            Role::Fixed => still,
-            Role::Driven(motion) => motion.kinematics(&self.pose, 0.0),
-            Role::Free(body) => {
+        match (&self.role, self.initial_body()) {
+            (Role::Driven(motion), _) => motion.kinematics(&self.pose, 0.0),
+            (_, None) => still,
+            (_, Some(body)) => {
                 Kinematics { centre: self.pose.point(&body.centre), velocity: body.velocity, spin: body.spin, ..still }
             }
         }
@@ -107,20 +108,37 @@ impl<const D: usize> SolidSpec<D> {
             Role::Driven(motion) => motion.check(),
             Role::Free(body) => body.check(),
         };
-        role.and_then(|()| {
-            let turn = self.pose.rotation;
-            let off = (turn * turn.transpose() - Matrix::identity()).norm();
-            require(self.pose.position.norm().is_finite(), || "its position is not finite".into(), "m, finite")?;
-            require(off < 1e-6, || "its pose is not a rotation".into(), "an orthogonal matrix")?;
-            let friction = self.friction;
-            require(friction >= 0.0 && friction.is_finite(), || format!("friction is {friction}"), "0 or more")?;
-            let bounce = self.restitution;
-            require((0.0..=1.0).contains(&bounce), || format!("restitution is {bounce}"), "0 (stays) … 1 (bounces)")?;
-            let (skin, most) = (self.contact_skin, self.thickest_skin());
-            let right = format!("0 to {most:.4} m, half of its smallest extent");
-            require(self.has_valid_contact_skin(), || format!("its contact skin is {skin} m"), &right)
-        })
-        .map_err(|e| self.named(e))
+        role.and_then(|()| self.check_ballast())
+            .and_then(|()| {
+                let turn = self.pose.rotation;
+                let off = (turn * turn.transpose() - Matrix::identity()).norm();
+                require(self.pose.position.norm().is_finite(), || "its position is not finite".into(), "m, finite")?;
+                require(off < 1e-6, || "its pose is not a rotation".into(), "an orthogonal matrix")?;
+                let friction = self.friction;
+                require(friction >= 0.0 && friction.is_finite(), || format!("friction is {friction}"), "0 or more")?;
+                let bounce = self.restitution;
+                require(
+                    (0.0..=1.0).contains(&bounce),
+                    || format!("restitution is {bounce}"),
+                    "0 (stays) … 1 (bounces)",
+                )?;
+                let (skin, most) = (self.contact_skin, self.thickest_skin());
+                let right = format!("0 to {most:.4} m, half of its smallest extent");
+                require(self.has_valid_contact_skin(), || format!("its contact skin is {skin} m"), &right)
+            })
+            .map_err(|e| self.named(e))
+    }
+
+    /// Refuses ballast of a solid that is not free, and ballast that is nowhere or has no valid mass at t = 0.
+    fn check_ballast(&self) -> Result<()> {
+        let free = matches!(self.role, Role::Free(_)) || self.ballast.is_empty();
+        require(free, || "it has ballast and is not free".into(), "free: the mass of any other solid has no effect")?;
+        for ballast in &self.ballast {
+            let (place, mass) = (ballast.at.norm(), ballast.mass_at(0.0));
+            require(place.is_finite(), || "its ballast is nowhere".into(), "a point in its frame, m, finite")?;
+            require(mass.is_finite(), || format!("its ballast is {mass} kg"), "0 or more and finite")?;
+        }
+        Ok(())
     }
 
     /// Whether it may be a hull among `water` (m): not if it is a fixed basin around all of the water, or a fixed bed.

@@ -9,14 +9,14 @@ use crate::{
 
 /// The water in a hollow.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Ballast {
+pub(crate) enum HollowWater {
     /// Of this volume, m³ (m² in 2-D), at any pose.
     Volume(f64),
     /// Up to this height, m.
     Level(f64),
 }
 
-impl Ballast {
+impl HollowWater {
     /// Volume (m³; m² in 2-D) of the water in `hollow` at `pose`, and its first moment.
     fn volume_and_moment<const D: usize>(self, hollow: &Hollow<D>, pose: &Pose<D>) -> (f64, Vector<D>) {
         match self {
@@ -33,13 +33,13 @@ pub(crate) struct Hull<'a, const D: usize> {
     /// The hollows without water.
     pub(crate) dry: Vec<&'a Hollow<D>>,
     /// The hollows with water of their own.
-    pub(crate) ballast: Vec<(&'a Hollow<D>, Ballast)>,
+    pub(crate) filled: Vec<(&'a Hollow<D>, HollowWater)>,
 }
 
 impl<'a, const D: usize> Hull<'a, D> {
     /// A solid without such hollows.
     pub(crate) fn new(shape: &'a Shape<D>) -> Self {
-        Self { shape, dry: Vec::new(), ballast: Vec::new() }
+        Self { shape, dry: Vec::new(), filled: Vec::new() }
     }
 
     /// Volume (m³; m² in 2-D) of the displaced water at `pose` with the still water at `level` (m), and its centroid,
@@ -54,7 +54,7 @@ impl<'a, const D: usize> Hull<'a, D> {
             let (volume, moment) = hollow.volume_and_moment_below(pose, level);
             (all, first, any) = (all + volume, first + moment, true);
         }
-        for (hollow, water) in self.ballast.iter().filter(|(hollow, _)| hollow.rim_height(pose) >= level - slack) {
+        for (hollow, water) in self.filled.iter().filter(|(hollow, _)| hollow.rim_height(pose) >= level - slack) {
             let (volume, moment) = water.volume_and_moment(hollow, pose);
             (all, first) = (all - volume, first - moment);
         }
@@ -63,14 +63,14 @@ impl<'a, const D: usize> Hull<'a, D> {
 
     /// The hollows in which water does not stand as high as outside.
     fn hollows(&self) -> impl Iterator<Item = &'a Hollow<D>> {
-        self.dry.iter().copied().chain(self.ballast.iter().map(|(hollow, _)| *hollow))
+        self.dry.iter().copied().chain(self.filled.iter().map(|(hollow, _)| *hollow))
     }
 
     /// Volume (m³; m² in 2-D) of the displaced water, with hollows dry even if their rim lies below the level.
     pub(crate) fn volume_if_dry(&self, pose: &Pose<D>, level: f64) -> f64 {
         let hollows: f64 = self.hollows().map(|hollow| hollow.volume_and_moment_below(pose, level).0).sum();
-        let ballast: f64 = self.ballast.iter().map(|(hollow, water)| water.volume_and_moment(hollow, pose).0).sum();
-        self.shape.submerged_volume(pose, level).0 + hollows - ballast
+        let filled: f64 = self.filled.iter().map(|(hollow, water)| water.volume_and_moment(hollow, pose).0).sum();
+        self.shape.submerged_volume(pose, level).0 + hollows - filled
     }
 
     /// Lowest and highest height (m) of the box around the hull at `pose`.

@@ -1,5 +1,6 @@
 //! Solids: fixed, driven and free, with their kinematics, loads, constraints and the rigid-body engine. No sums over pairs.
 
+mod ballast;
 mod body;
 pub(crate) mod boundary_motion;
 pub(crate) mod constraint;
@@ -17,6 +18,7 @@ pub(crate) mod wind;
 #[path = "../../tests/unit/solid/engine.rs"]
 mod tests;
 
+pub use ballast::BallastSpec;
 pub use constraint::{
     ConstraintChange, ConstraintEvent, Constraints, ContactPairs, ContactSpec, FreeMode, InitialHold, JointKind,
     JointReading, JointSpec, Lifetime, LineEnd, LineReading, Mobility, Motor, MotorCommand, RopeSpec, SpringParameters,
@@ -84,6 +86,8 @@ pub struct SolidSpec<const D: usize> {
     /// Whether the space that it encloses starts dry: `Some(true)` also of an open hull below its rim; `Some(false)`
     /// if the water in it is meant. `None`: closed hollows are dry, and water in an open hull is reported.
     pub dry: Option<bool>,
+    /// Masses at points of a free solid that change with time, in addition to its own.
+    pub ballast: Vec<BallastSpec<D>>,
 }
 
 /// What moves a solid.
@@ -147,10 +151,14 @@ pub struct Kinematics<const D: usize> {
 pub struct Solid<const D: usize> {
     /// Its specification.
     pub spec: SolidSpec<D>,
+    /// Its present mass, of a free solid; `None` of any other.
+    pub body: Option<FreeBody<D>>,
     /// Its present kinematics.
     pub kinematics: Kinematics<D>,
-    /// Indices of its boundary particles.
+    /// Indices of its boundary particles. A free solid in a periodic sea has several copies, one after the other.
     pub boundary: Range<usize>,
+    /// Number of copies of its boundary particles.
+    pub(crate) copies: usize,
     /// Acceleration of `kinematics.centre`, a mean over the last few steps, m/s².
     pub acceleration: Vector<D>,
     /// Angular acceleration, the same mean, rad/s².
@@ -166,6 +174,12 @@ pub struct Solid<const D: usize> {
 const ACCELERATION_FILTER: f64 = 0.2;
 
 impl<const D: usize> Solid<D> {
+    /// Indices of the boundary particles of its copy number `copy`.
+    pub(crate) fn boundary_of_copy(&self, copy: usize) -> Range<usize> {
+        let (start, count) = (self.boundary.start, self.boundary.len() / self.copies);
+        start + copy * count..start + (copy + 1) * count
+    }
+
     /// Moves it to `next` over `dt` (s).
     pub(crate) fn advance(&mut self, next: Kinematics<D>, dt: f64) {
         let now = &self.kinematics;
@@ -183,7 +197,7 @@ impl<const D: usize> Solid<D> {
 
     /// Energy of its motion, ½ M V² + ½ Ω·I Ω, J (J/m in 2-D); 0 of a solid that is not free.
     pub(crate) fn kinetic_energy(&self) -> f64 {
-        let Role::Free(body) = &self.spec.role else { return 0.0 };
+        let Some(body) = &self.body else { return 0.0 };
         let now = &self.kinematics;
         let turning = rotational_energy_twice(&body.inertia, &now.pose.rotation, &now.spin.axial());
         0.5 * body.mass * now.velocity.norm_squared() + 0.5 * turning
@@ -191,7 +205,7 @@ impl<const D: usize> Solid<D> {
 
     /// Energy of its height under `gravity` (m/s²), −M g·R, J (J/m in 2-D); 0 of a solid that is not free.
     pub(crate) fn potential_energy(&self, gravity: &Vector<D>) -> f64 {
-        let Role::Free(body) = &self.spec.role else { return 0.0 };
+        let Some(body) = &self.body else { return 0.0 };
         -body.mass * gravity.dot(&self.kinematics.centre)
     }
 

@@ -59,7 +59,7 @@ impl TieLoads {
             }
         }
         for i in (0..n).filter(|i| !state.afloat[*i]) {
-            if let Role::Free(body) = &specs[i].role {
+            if let Some(body) = specs[i].initial_body() {
                 made.add(state, i, body.mass - (state.displaced)(i));
             }
         }

@@ -10,6 +10,7 @@ use super::{
     System,
     boundary_extension::ExtensionParticle,
     memory::{bytes, optional_bytes},
+    periodic::Images,
 };
 use crate::{
     error::{Error, Result},
@@ -77,12 +78,13 @@ impl<const D: usize> Boundary<D> {
         }
     }
 
-    /// Appends the boundary particles of a solid that moves as `kinematics`, its `extension` last; returns their range.
+    /// Appends `copies` of the boundary particles of a solid that moves as `kinematics`, the `extension` last in each;
+    /// returns their range. All copies stand in the place of the solid.
     pub(super) fn append(
         &mut self,
         model: &Model,
         spec: &SolidSpec<D>,
-        kinematics: &Kinematics<D>,
+        (kinematics, copies): (&Kinematics<D>, usize),
         extension: &[ExtensionParticle<D>],
     ) -> Result<Range<usize>> {
         let first = self.particles.len();
@@ -93,18 +95,22 @@ impl<const D: usize> Boundary<D> {
             .map(|point| point.r)
             .collect::<Vec<_>>();
         let local: Vec<Vector<D>> = faces.iter().copied().chain(extension.iter().map(|particle| particle.r)).collect();
-        self.particles.reserve_exact(local.len());
-        local.iter().for_each(|r| self.particles.push(kinematics.pose.point(r), model.rho0));
+        self.particles.reserve_exact(copies * local.len());
+        for r in (0..copies).flat_map(|_| &local) {
+            self.particles.push(kinematics.pose.point(r), model.rho0);
+        }
         faces.extend(extension.iter().map(|particle| particle.behind_face));
         if self.particles.len() == first {
             return Err(Error::scene(format!("solid {:?} is too small for a single boundary particle", spec.name))
                 .help("make it larger or dp smaller"));
         }
         if let Some(depths) = &mut self.depths {
-            depths.par_extend(faces.par_iter().map(|r| -spec.shape.signed_distance(r)));
+            let own: Vec<f64> = faces.par_iter().map(|r| -spec.shape.signed_distance(r)).collect();
+            (0..copies).for_each(|_| depths.extend_from_slice(&own));
         }
         if let Some(normals) = &mut self.normals {
-            normals.par_extend(faces.par_iter().map(|r| spec.shape.outward_normal(r, 0.05 * model.dp)));
+            let own: Vec<_> = faces.par_iter().map(|r| spec.shape.outward_normal(r, 0.05 * model.dp)).collect();
+            (0..copies).for_each(|_| normals.extend_from_slice(&own));
         }
         self.local_bounds.push(Bounds::around(&local));
         self.local_positions.push(if matches!(spec.role, Role::Fixed) { Vec::new() } else { local });
@@ -139,21 +145,67 @@ impl<const D: usize> Boundary<D> {
         bytes(r) + bytes(v) + bytes(rho) + bytes(id) + local + vectors + numbers + marks
     }
 
+    /// Middle (m) of the boundary particles of solid number `number` at `pose`.
+    pub(super) fn middle(&self, number: usize, pose: &Pose<D>) -> Vector<D> {
+        let Bounds { min, max } = &self.local_bounds[number];
+        pose.point(&((min + max) * 0.5))
+    }
+
+    /// Ranges of the copies of the boundary particles of `solid`, number `number`, at `pose`, and the ways (m) to them.
+    pub(super) fn copies<'a>(
+        &'a self,
+        images: &'a Images<D>,
+        (number, solid): (usize, &'a Solid<D>),
+        pose: &'a Pose<D>,
+    ) -> impl Iterator<Item = (Range<usize>, Vector<D>)> + 'a {
+        (0..solid.copies).map(move |copy| {
+            let none = solid.copies == 1;
+            let way = if none { Vector::zeros() } else { images.way_to_copy(&self.middle(number, pose), copy) };
+            (solid.boundary_of_copy(copy), way)
+        })
+    }
+
     /// The positions (m) of all boundary particles, with the solids at these `poses`.
-    pub(super) fn positions_at(&self, poses: &[Pose<D>], solids: &[Solid<D>]) -> Vec<Vector<D>> {
+    pub(super) fn positions_at(&self, poses: &[Pose<D>], solids: &[Solid<D>], images: &Images<D>) -> Vec<Vector<D>> {
         let mut r = self.particles.r.clone();
-        for ((solid, pose), local) in solids.iter().zip(poses).zip(&self.local_positions) {
-            r[solid.boundary.clone()].iter_mut().zip(local).for_each(|(r, local)| *r = pose.point(local));
+        for (numbered, pose) in solids.iter().enumerate().zip(poses) {
+            for (range, way) in self.copies(images, numbered, pose) {
+                let local = &self.local_positions[numbered.0];
+                r[range].iter_mut().zip(local).for_each(|(r, local)| *r = pose.point(local) + way);
+            }
         }
         r
     }
 
-    /// Places the boundary particles of solid number `i`, which is `solid`, where its kinematics say.
-    pub(super) fn place(&mut self, i: usize, solid: &Solid<D>) {
-        let local = &self.local_positions[i];
-        if !local.is_empty() {
-            let (range, Particles { r, v, .. }) = (solid.boundary.clone(), &mut self.particles);
-            boundary_motion::place_boundary_particles(&solid.kinematics, local, &mut r[range.clone()], &mut v[range]);
+    /// Places the boundary particles of `solid`, number `number`, where its kinematics say.
+    pub(super) fn place(&mut self, number: usize, solid: &Solid<D>, images: &Images<D>) {
+        let copies: Vec<_> = self.copies(images, (number, solid), &solid.kinematics.pose).collect();
+        let (local, Particles { r, v, .. }) = (&self.local_positions[number], &mut self.particles);
+        for (range, way) in copies.into_iter().filter(|_| !local.is_empty()) {
+            let r = &mut r[range.clone()];
+            boundary_motion::place_boundary_particles(&solid.kinematics, local, r, &mut v[range]);
+            if way != Vector::<D>::zeros() {
+                r.iter_mut().for_each(|r| *r += way);
+            }
+        }
+    }
+
+    /// Gives the copies of each boundary particle the density and the velocity, with which it acts, of that between the
+    /// sides.
+    pub(super) fn update_copies(&mut self, solids: &[Solid<D>], images: &Images<D>) {
+        let Self { particles: Particles { r, rho, .. }, extrapolated_velocity, .. } = self;
+        for solid in solids.iter().filter(|solid| solid.copies > 1) {
+            for own in solid.boundary_of_copy(0) {
+                let count = solid.boundary.len() / solid.copies;
+                let copies = || (0..solid.copies).map(|copy| own + copy * count);
+                let Some(inside) = copies().find(|i| images.is_inside(&r[*i])) else { continue };
+                let density = rho[inside];
+                copies().for_each(|i| rho[i] = density);
+                if let Some(acting) = extrapolated_velocity {
+                    let velocity = acting[inside];
+                    copies().for_each(|i| acting[i] = velocity);
+                }
+            }
         }
     }
 }
@@ -161,7 +213,7 @@ impl<const D: usize> Boundary<D> {
 impl<const D: usize> System<D> {
     /// Puts the boundary particles of solid `i` where its kinematics say.
     pub(crate) fn place_boundary(&mut self, i: usize) {
-        self.boundary.place(i, &self.solids[i]);
+        self.boundary.place(i, &self.solids[i], &self.fluid.images);
     }
 
     /// Finds the boundary particles beside which water is not shifted.
@@ -256,14 +308,14 @@ impl<const D: usize> System<D> {
         let target = |(&particle, fit): (&u32, &WallExtrapolation<f64, D>)| {
             let i = particle as usize;
             let owner = self.owner(i);
-            let pull = medium.gravity - owner.acceleration_at(&particles.r[i]);
+            let place = self.place_on_solid(owner, i);
+            let owner = &self.solids[owner];
+            let pull = medium.gravity - owner.acceleration_at(&place);
             let pressure = fit.pressure(&pull, &medium.gravity, depths[i]);
             let density = medium.rho0 * (1.0 + self.equation_of_state.compression(pressure));
             let (approach, cover) = (fit.approach(&particles.v[i]), coverage.cover(fit.weight_sum, depths[i]));
-            let heaviness = match &owner.spec.role {
-                Role::Free(body) => body.mass / (self.particle_mass() * owner.boundary.len() as f64),
-                _ => f64::INFINITY,
-            };
+            let water_in_place = self.particle_mass() * owner.boundary_of_copy(0).len() as f64;
+            let heaviness = owner.body.as_ref().map_or(f64::INFINITY, |body| body.mass / water_in_place);
             let (own, rho0, c0) = (particles.rho[i], medium.rho0, medium.c0);
             TargetDensity { particle, target: WallTarget::new(density, own, approach, cover, heaviness, rho0, c0) }
         };
@@ -278,7 +330,7 @@ impl<const D: usize> System<D> {
         let (depths, normals) = (depths.as_deref().unwrap_or_default(), normals.as_deref().unwrap_or_default());
         let velocity = |(&i, fit): (&u32, &WallExtrapolation<f64, D>)| {
             let i = i as usize;
-            let normal = self.owner(i).kinematics.pose.rotation * normals[i];
+            let normal = self.solids[self.owner(i)].kinematics.pose.rotation * normals[i];
             no_slip_velocity(fit, particles.v[i], &normal, depths[i])
         };
         let (wet, count) = (self.neighbours.boundary_near_fluid(), particles.len());
@@ -291,9 +343,39 @@ impl<const D: usize> System<D> {
         }
     }
 
-    /// The solid of boundary particle `i`.
-    fn owner(&self, i: usize) -> &Solid<D> {
-        &self.solids[self.solids.partition_point(|solid| solid.boundary.end <= i)]
+    /// Number of the solid of boundary particle `i`.
+    fn owner(&self, i: usize) -> usize {
+        self.solids.partition_point(|solid| solid.boundary.end <= i)
+    }
+
+    /// Position (m) of boundary particle `i` on its solid, number `number`, without the way to its copy.
+    pub(crate) fn place_on_solid(&self, number: usize, i: usize) -> Vector<D> {
+        let (solid, r) = (&self.solids[number], &self.boundary.particles.r[i]);
+        if solid.copies == 1 {
+            return *r;
+        }
+        let copy = (i - solid.boundary.start) * solid.copies / solid.boundary.len();
+        r - self.fluid.images.way_to_copy(&self.boundary.middle(number, &solid.kinematics.pose), copy)
+    }
+
+    /// Pose of solid number `solid`; that of its copy with its middle between the periodic sides, if it has several.
+    pub(crate) fn home_pose(&self, solid: usize) -> Pose<D> {
+        let own = &self.solids[solid];
+        let mut pose = own.kinematics.pose;
+        if own.copies > 1 {
+            let middle = self.boundary.middle(solid, &pose);
+            let images = &self.fluid.images;
+            pose.position += images.way_to_copy(&middle, images.home_copy(&middle, own.copies));
+        }
+        pose
+    }
+
+    /// Indices of the boundary particles of solid number `solid`; of several copies those with their middle between the
+    /// periodic sides.
+    pub(crate) fn home_boundary(&self, solid: usize) -> Range<usize> {
+        let own = &self.solids[solid];
+        let middle = self.boundary.middle(solid, &own.kinematics.pose);
+        own.boundary_of_copy(self.fluid.images.home_copy(&middle, own.copies))
     }
 }
 

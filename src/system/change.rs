@@ -17,15 +17,18 @@ impl<const D: usize> System<D> {
         kinematics: Kinematics<D>,
         extension: &[ExtensionParticle<D>],
     ) -> Result<()> {
-        let skin = self.boundary.append(&self.model, &spec, &kinematics, extension)?;
+        let copies = self.fluid.images.copies(&spec);
+        let skin = self.boundary.append(&self.model, &spec, (&kinematics, copies), extension)?;
         let (acceleration, whirl, load) = (Vector::zeros(), Bivector::zero(), Load::zero());
         let yielding = Default::default();
         self.solids.push(Solid {
+            body: spec.initial_body(),
             spec,
             kinematics,
             acceleration,
             angular_acceleration: whirl,
             boundary: skin,
+            copies,
             load,
             absorption: yielding,
         });
@@ -61,13 +64,22 @@ impl<const D: usize> System<D> {
         (reordering, before - self.particle_count(), energy)
     }
 
+    /// Sets the masses of the free solids with ballast to those of time `t` (s), after their kinematics were restored.
+    pub(crate) fn set_masses_at(&mut self, t: f64) {
+        for solid in &mut self.solids {
+            if solid.body.is_some() && !solid.spec.ballast.is_empty() {
+                solid.body = solid.spec.body_at(t);
+            }
+        }
+    }
+
     /// Removes solid number `i`: it keeps its number, stays at rest at its position, and has no boundary particles.
     pub(crate) fn remove_body(&mut self, i: usize) {
         let gone = self.solids[i].boundary.clone();
         self.boundary.remove_range(&gone, i);
         self.neighbours.remove_boundary(gone.clone());
         let solid = &mut self.solids[i];
-        solid.spec.role = Role::Fixed;
+        (solid.spec.role, solid.body) = (Role::Fixed, None);
         (solid.kinematics.velocity, solid.kinematics.spin) = (Vector::zeros(), Bivector::zero());
         (solid.acceleration, solid.angular_acceleration) = (Vector::zeros(), Bivector::zero());
         solid.load = Load::zero();

@@ -95,12 +95,13 @@ impl<const D: usize> System<D> {
                 .help("it belongs to another scene: resume in the folder of its own run"));
         }
         let (water, poses) = (state.at_rebuild.0, state.at_rebuild.1.into_owned());
-        let boundary = self.boundary.positions_at(&poses, &self.solids);
+        let boundary = self.boundary.positions_at(&poses, &self.solids, &self.fluid.images);
         // No run continues with water outside its domain, but images lie beyond periodic sides.
         let around = self.fluid_domain.domain.grown(self.fluid_domain.domain.size().max());
         let near = water.iter().chain(&state.fluid.r).all(|x| around.contains(x));
         let now: Vec<Pose<D>> = state.kinematics.iter().map(|kinematics| kinematics.pose).collect();
-        let mut places = boundary.iter().copied().chain(self.boundary.positions_at(&now, &self.solids));
+        let mut places =
+            boundary.iter().copied().chain(self.boundary.positions_at(&now, &self.solids, &self.fluid.images));
         if !near || !places.all(|x| x.amax() < FARTHEST) {
             return Err(Error::new(ErrorKind::Restart, "the checkpoint holds a particle that is nowhere"));
         }
@@ -114,7 +115,7 @@ impl<const D: usize> System<D> {
         let loads = state.kinematics.into_iter().zip(state.loads);
         for (i, (solid, (kinematics, load))) in self.solids.iter_mut().zip(loads).enumerate() {
             (solid.kinematics, solid.load) = (kinematics, load);
-            self.boundary.place(i, solid);
+            self.boundary.place(i, solid, &self.fluid.images);
         }
         self.boundary.particles.rho.fill(self.properties.rho0);
         for (i, rho) in state.boundary_density {

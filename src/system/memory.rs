@@ -1,11 +1,7 @@
 //! Memory of the arrays of a system, from their lengths.
 
 use super::System;
-use crate::{
-    math::Vector,
-    model::TimeScheme,
-    sph::boundary::WallExtrapolation,
-};
+use crate::{math::Vector, model::TimeScheme, sph::boundary::WallExtrapolation};
 
 /// Memory of an array of `T`, B.
 pub(super) fn bytes<T>(array: &[T]) -> usize {
@@ -24,9 +20,7 @@ impl<const D: usize> System<D> {
         let tensors = optional_bytes(&self.fluid.stress) + optional_bytes(&self.fluid.gradient_correction);
         let particles = bytes(&fluid.r) + bytes(&fluid.v) + bytes(&fluid.rho) + bytes(&fluid.id);
         let before = match self.model.scheme {
-            TimeScheme::Verlet { .. } => {
-                water * size_of::<(Vector<D>, f64)>() + bytes(&self.boundary.particles.rho)
-            }
+            TimeScheme::Verlet { .. } => water * size_of::<(Vector<D>, f64)>() + bytes(&self.boundary.particles.rho),
             TimeScheme::Symplectic => 0,
         };
         particles

@@ -29,7 +29,10 @@ pub(crate) use step_check::{LimitViolation, StepCheck};
 
 pub use crate::interaction::StepLimits;
 
-use std::time::{Duration, Instant};
+use std::{
+    ops::Range,
+    time::{Duration, Instant},
+};
 
 use rayon::prelude::*;
 
@@ -139,9 +142,9 @@ pub(crate) struct Reordering<const D: usize> {
     pub(crate) removed: Vec<RemovedParticle<D>>,
 }
 
-/// An impulse that was shared equally by some water particles.
+/// An impulse that was shared equally by some water particles, and given to their images.
 pub(crate) struct MomentumTransfer<const D: usize> {
-    /// The water particles.
+    /// The water particles and their images.
     pub(crate) particles: Vec<usize>,
     /// Change of the velocity of each, m/s.
     pub(crate) velocity: Vector<D>,
@@ -317,6 +320,7 @@ impl<const D: usize> System<D> {
     /// the neighbour lists must hold.
     pub(crate) fn update_rates(&mut self) {
         self.update_wall_state();
+        self.boundary.update_copies(&self.solids, &self.fluid.images);
         let Self { pair_loop, neighbours, fluid, boundary, properties, equation_of_state, rates, gap_pressure, .. } =
             self;
         let input = Self::pair_input(neighbours, fluid, boundary, properties, equation_of_state);
@@ -397,9 +401,9 @@ impl<const D: usize> System<D> {
     fn loads(&self, sums: &[PairSums<D>]) -> Vec<Load<D>> {
         let (mass, wet, r) = (self.particle_mass(), self.neighbours.boundary_near_fluid(), &self.boundary.particles.r);
         let place = |end: usize| wet.partition_point(|&i| (i as usize) < end);
-        let of = |solid: &Solid<D>| {
-            let centre = solid.kinematics.centre;
-            let own = place(solid.boundary.start)..place(solid.boundary.end);
+        let of_copy = |solid: &Solid<D>, (range, way): (Range<usize>, Vector<D>)| {
+            let centre = solid.kinematics.centre + way;
+            let own = place(range.start)..place(range.end);
             let chunks = wet[own.clone()].par_chunks(CHUNK).zip(sums[own].par_chunks(CHUNK));
             let part = |(wet, sums): (&[u32], &[PairSums<D>])| {
                 // Beyond a periodic side the water is an image, and its load has been counted.
@@ -410,7 +414,11 @@ impl<const D: usize> System<D> {
             let parts: Vec<Load<D>> = chunks.map(part).collect();
             parts.into_iter().sum()
         };
-        self.solids.iter().map(of).collect()
+        let of = |numbered: (usize, &Solid<D>)| {
+            let copies = self.boundary.copies(&self.fluid.images, numbered, &numbered.1.kinematics.pose);
+            copies.map(|copy| of_copy(numbered.1, copy)).sum()
+        };
+        self.solids.iter().enumerate().map(of).collect()
     }
 
     /// Sets gravity to that of time `t` (s). Returns its change (m/s²); `None` if gravity is constant.
@@ -436,7 +444,7 @@ impl<const D: usize> System<D> {
             return None;
         }
         let (real, mass) = (self.particle_count(), self.particle_mass());
-        let own = Bounds::around(&self.boundary.particles.r[self.solids[solid].boundary.clone()]);
+        let own = Bounds::around(&self.boundary.particles.r[self.home_boundary(solid)]);
         let water = &mut self.fluid.particles;
         let mut distance = self.model.support_radius();
         loop {
@@ -446,6 +454,10 @@ impl<const D: usize> System<D> {
             if !particles.is_empty() {
                 let velocity = impulse / (particles.len() as f64 * mass);
                 let gained: f64 = particles.iter().map(|&i| velocity.dot(&(water.v[i] + velocity * 0.5))).sum();
+                let images = self.fluid.images.originals.iter().zip(real..);
+                let moved = images.filter(|(i, _)| particles.binary_search(&(**i as usize)).is_ok()).map(|(_, k)| k);
+                let moved: Vec<usize> = moved.collect();
+                particles.extend(moved);
                 particles.iter().for_each(|&i| water.v[i] += velocity);
                 return Some(MomentumTransfer { particles, velocity, energy: gained * mass });
             }

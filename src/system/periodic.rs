@@ -2,7 +2,14 @@
 //!
 //! Water near a side has an image one period away, a particle of the arrays like any other, after all that is real. An
 //! image takes its rates from the particle that it mirrors, so that whoever moves the water moves both alike; only what
-//! counts the water leaves images out. Solids have none: they reach beyond the sides as far as the images do.
+//! counts the water leaves images out.
+//!
+//! Fixed and driven solids have no images: they reach beyond the sides as far as those of the water do. A free solid is
+//! not wrapped: its kinematics go on beyond the sides. Its boundary particles stand in the arrays twice for each periodic
+//! axis, an even and an odd number of periods from its place: one copy with its middle between the sides, and one beyond
+//! the nearer side. Of the copies of a particle exactly one lies between the sides. It gives the load, and the others
+//! take its density. A copy moves by two periods when the middle of the solid passes the middle between the sides; then
+//! no water is near it.
 
 use super::{Fluid, RemovedParticle, System};
 use crate::{
@@ -10,7 +17,7 @@ use crate::{
     interaction::StepLimits,
     math::{Bounds, Vector},
     model::Model,
-    solid::{Role, SolidSpec},
+    solid::{Constraints, Role, SolidSpec},
 };
 
 /// How far images reach beyond a side, over the kernel's support: the skin beyond a side sees water as that inside does, also
@@ -77,6 +84,40 @@ impl<const D: usize> Images<D> {
         images
     }
 
+    /// Number of copies of the boundary particles of a solid.
+    pub(super) fn copies(&self, spec: &SolidSpec<D>) -> usize {
+        let axes = self.periodic.iter().flatten().count();
+        if matches!(spec.role, Role::Free(_)) { 1 << axes } else { 1 }
+    }
+
+    /// The way (m) to copy number `copy` from a free solid whose middle is at `middle` (m).
+    pub(super) fn way_to_copy(&self, middle: &Vector<D>, copy: usize) -> Vector<D> {
+        let mut way = Vector::zeros();
+        let sides = self.periodic.iter().enumerate().filter_map(|(axis, side)| Some((axis, (*side)?)));
+        for (bit, (axis, [from, to])) in sides.enumerate() {
+            let periods = (middle[axis] - from) / (to - from);
+            let home = -periods.floor();
+            let beside = if periods + home < 0.5 { home + 1.0 } else { home - 1.0 };
+            let is_odd = |count: f64| count.rem_euclid(2.0) == 1.0;
+            let count = if is_odd(home) == (copy >> bit & 1 == 1) { home } else { beside };
+            way[axis] = count * (to - from);
+        }
+        way
+    }
+
+    /// Number of the copy of a free solid whose middle is between the sides, if its middle is at `middle` (m).
+    pub(super) fn home_copy(&self, middle: &Vector<D>, copies: usize) -> usize {
+        let is_home = |copy: &usize| self.is_inside(&(middle + self.way_to_copy(middle, *copy)));
+        (0..copies).find(is_home).unwrap_or(0)
+    }
+
+    /// The place between the sides that is whole periods from `x` (m).
+    pub(super) fn wrapped(&self, x: &Vector<D>) -> Vector<D> {
+        let mut r = [*x];
+        self.wrap(&mut r);
+        r[0]
+    }
+
     /// Whether `x` (m) lies between the sides.
     pub(super) fn is_inside(&self, x: &Vector<D>) -> bool {
         let inside = |(x, side): (&f64, &Option<[f64; 2]>)| side.is_none_or(|[from, to]| (from..to).contains(x));
@@ -128,8 +169,14 @@ impl<const D: usize> System<D> {
 /// Refuses periodic sides that cannot be.
 ///
 /// # Errors
-/// `Scene` if a period is too short or no whole number of dp, or a solid is free or ends at a side.
-pub(crate) fn check<const D: usize>(periodic: &Periodic<D>, model: &Model, solids: &[SolidSpec<D>]) -> Result<()> {
+/// `Scene` if a period is too short or no whole number of dp, a fixed or driven solid ends at a side, or a free solid
+/// starts across a side, is too long or may touch another solid.
+pub(crate) fn check<const D: usize>(
+    periodic: &Periodic<D>,
+    model: &Model,
+    solids: &[SolidSpec<D>],
+    constraints: &Constraints<D>,
+) -> Result<()> {
     let (dp, width) = (model.dp, WIDTH * model.support_radius());
     for (axis, side) in periodic.iter().enumerate() {
         let Some([from, to]) = *side else { continue };
@@ -143,18 +190,75 @@ pub(crate) fn check<const D: usize>(periodic: &Periodic<D>, model: &Model, solid
             let what = format!("the period along {name}, {length} m, is not a whole number of dp");
             return Err(Error::scene(what).help(format!("write  dp = {}", length / rows)));
         }
-        if let Some(solid) = solids.iter().find(|solid| matches!(solid.role, Role::Free(_))) {
-            let what = format!("solid {:?} is free, and periodic sides allow only fixed and driven ones", solid.name);
-            return Err(Error::scene(what).help("close the sides with walls, or make the solid fixed or driven"));
+        for solid in solids.iter().filter(|solid| matches!(solid.role, Role::Free(_))) {
+            check_free(solid, (name, axis), [from, to], width)?;
         }
         let near = |x: f64, side: f64| (x - side).abs() < width * (1.0 - 1e-9);
         let ends = |solid: &&SolidSpec<D>| {
+            if let Role::Free(_) = solid.role {
+                return false;
+            }
             let Bounds { min, max } = solid.shape.bounds_at(&solid.pose);
             near(min[axis], from) || near(min[axis], to) || near(max[axis], from) || near(max[axis], to)
         };
         if let Some(solid) = solids.iter().find(ends) {
             let what = format!("solid {:?} ends at a periodic side along {name}: solids are not repeated", solid.name);
             let help = format!("let it reach {width} m or more beyond the side, or end as far before it");
+            return Err(Error::scene(what).help(help));
+        }
+    }
+    if periodic.iter().any(Option::is_some) {
+        return check_contacts(solids, constraints);
+    }
+    Ok(())
+}
+
+/// Refuses a free solid that starts across the sides `from` and `to` (m), or of which two copies could be beside the same
+/// water, which sees as far as `width` (m).
+fn check_free<const D: usize>(
+    solid: &SolidSpec<D>,
+    (name, axis): (&str, usize),
+    [from, to]: [f64; 2],
+    width: f64,
+) -> Result<()> {
+    let bounds = solid.shape.bounds_at(&solid.initial_kinematics().pose);
+    let (min, max) = (bounds.min[axis], bounds.max[axis]);
+    // The longest that it can become along the axis as it turns.
+    let (long, longest) = (solid.shape.bounds().size().norm(), to - from - 2.0 * width);
+    if long > longest {
+        let what = format!(
+            "free solid {:?} is up to {long:.4} m long, and the period along {name} {} m",
+            solid.name,
+            to - from
+        );
+        let help =
+            format!("it may have {longest:.4} m: the period less twice the {width:.4} m that water sees across a side");
+        return Err(Error::scene(what).help(help));
+    }
+    if min < from || max > to {
+        let what = format!(
+            "free solid {:?} starts across a periodic side: it is from {name} = {min:.4} to {max:.4} m",
+            solid.name
+        );
+        let by = if min < from { from - min } else { to - max };
+        return Err(Error::scene(what)
+            .help(format!("move it by {by:.4} m along {name}; during the run it may cross the sides")));
+    }
+    Ok(())
+}
+
+/// Refuses a free solid that may touch another, because contacts do not act across the sides.
+fn check_contacts<const D: usize>(solids: &[SolidSpec<D>], constraints: &Constraints<D>) -> Result<()> {
+    let free = |i: &usize| matches!(solids[*i].role, Role::Free(_));
+    for i in (0..solids.len()).filter(free) {
+        let touched = |j: &usize| i != *j && constraints.can_touch(i, *j);
+        if let Some(j) = (0..solids.len()).find(touched) {
+            let name = &solids[i].name;
+            let what = format!(
+                "free solid {name:?} may touch {:?}, and contacts do not act across periodic sides",
+                solids[j].name
+            );
+            let help = format!("let it pass through all others:  [[contact]]  between = [{name:?}]  touch = false");
             return Err(Error::scene(what).help(help));
         }
     }

@@ -249,7 +249,7 @@ impl<const D: usize> Setup<D> {
         }
         self.sponge_layers.iter().try_for_each(SpongeLayer::check)?;
         self.constraints.check(&self.solids)?;
-        periodic::check(&self.periodic, m, &self.solids)
+        periodic::check(&self.periodic, m, &self.solids, &self.constraints)
     }
 }
 

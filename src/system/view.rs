@@ -7,7 +7,7 @@ use crate::{
     math::{Bounds, Vector},
     model::Model,
     particles::ParticlesView,
-    solid::{Constraints, Load, LoadContext, Role, Solid},
+    solid::{Constraints, Load, LoadContext, Solid},
     sph::FluidProperties,
 };
 
@@ -117,9 +117,9 @@ impl<const D: usize> System<D> {
 
     /// What is around the solids that feel `loads` (N, N m) of the water.
     pub(crate) fn load_context(&self, loads: &[Load<D>]) -> LoadContext<D> {
-        let with_weight = |(load, solid): (&Load<D>, &Solid<D>)| match &solid.spec.role {
-            Role::Free(body) => Load { force: load.force + self.gravity() * body.mass, ..*load },
-            Role::Fixed | Role::Driven(_) => *load,
+        let with_weight = |(load, solid): (&Load<D>, &Solid<D>)| match &solid.body {
+            Some(body) => Load { force: load.force + self.gravity() * body.mass, ..*load },
+            None => *load,
         };
         let loads = loads.iter().zip(&self.solids).map(with_weight).collect();
         let wet = self.solids.iter().map(|solid| solid.load != Load::zero()).collect();
@@ -150,6 +150,16 @@ impl<const D: usize> System<D> {
         self.particle_mass() * self.fluid().v.iter().map(|v| along.dot(v)).sum::<f64>()
     }
 
+    /// Whether `x` (m) lies between the periodic sides.
+    pub(crate) fn is_between_sides(&self, x: &Vector<D>) -> bool {
+        self.fluid.images.is_inside(x)
+    }
+
+    /// The place between the periodic sides that is whole periods from `x` (m).
+    pub fn wrapped(&self, x: &Vector<D>) -> Vector<D> {
+        self.fluid.images.wrapped(x)
+    }
+
     /// Calls `visit` with index, place (m) and kernel value W (1/mᴰ) of each water particle whose support holds `x` (m). Across
     /// a periodic side the place is that of its image.
     pub fn visit_fluid_near(&self, x: &Vector<D>, visit: &mut dyn FnMut(usize, &Vector<D>, f64)) {
@@ -163,7 +173,7 @@ impl<const D: usize> System<D> {
     /// Calls `visit` with index, place (m) and kernel value W (1/mᴰ) of each boundary particle whose support holds `x` (m).
     pub fn visit_boundary_near(&self, x: &Vector<D>, visit: &mut dyn FnMut(usize, &Vector<D>, f64)) {
         let at_rebuild = || match &self.boundary.poses_at_rebuild {
-            Some(poses) => self.boundary.positions_at(poses, &self.solids),
+            Some(poses) => self.boundary.positions_at(poses, &self.solids, &self.fluid.images),
             None => self.boundary.particles.r.clone(),
         };
         self.neighbours.visit_boundary_around(at_rebuild, x, &mut |i| {

@@ -4,6 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{
+    ballast::BallastConfig,
     motion::DrivenConfig,
     shape::{PlacementConfig, ShapeConfig, vector},
     water::StillWater,
@@ -18,7 +19,7 @@ use crate::{
         file_units,
         untagged::DraftChoice,
     },
-    solid::{DEFAULT_CONTACT_SKIN, DEFAULT_FRICTION, DEFAULT_RESTITUTION, FreeBody, Role, SolidSpec},
+    solid::{BallastSpec, DEFAULT_CONTACT_SKIN, DEFAULT_FRICTION, DEFAULT_RESTITUTION, FreeBody, Role, SolidSpec},
 };
 
 /// Largest extent, dp, of bodies that must weigh half a water particle.
@@ -85,6 +86,9 @@ pub struct FreeBodyConfig {
     /// Locked modes.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub locked: Vec<MotionMode>,
+    /// Masses at its points that change with time, in addition to its own.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub ballast: Vec<BallastConfig>,
 }
 
 /// A mode of motion, which can be locked or left free.
@@ -221,6 +225,9 @@ impl SolidConfig {
         if let Some(driven) = &mut self.driven {
             driven.fill(defaults, &format!("{key}.driven"));
         }
+        for (i, ballast) in self.free.iter_mut().flat_map(|free| free.ballast.iter_mut().enumerate()) {
+            ballast.fill(defaults, &format!("{key}.free.ballast.{i}"));
+        }
     }
 
     /// Refuses a solid that is not exactly one of fixed, driven and free.
@@ -285,6 +292,10 @@ impl SolidConfig {
             }
             (None, None) => Role::Fixed,
         };
+        let entries = self.free.iter().flat_map(|free| free.ballast.iter().enumerate());
+        let ballast = entries
+            .map(|(i, ballast)| ballast.build(ctx, &format!("{key}.free.ballast.{i}")))
+            .collect::<Result<Vec<BallastSpec<D>>>>()?;
         if self.is_afloat() && !matches!(role, Role::Free(_)) {
             let key = format!("{key}.at.draft");
             return Err(ctx.error_with_help(
@@ -302,6 +313,7 @@ impl SolidConfig {
             restitution: self.restitution.unwrap_or(DEFAULT_RESTITUTION),
             contact_skin: self.contact_skin.unwrap_or(DEFAULT_CONTACT_SKIN),
             dry: self.dry,
+            ballast,
         };
         let blamed = if spec.has_valid_contact_skin() { key.to_string() } else { format!("{key}.contact_skin") };
         spec.check().map_err(|e| ctx.with_location(e, &blamed))?;
@@ -363,6 +375,8 @@ impl FreeBodyConfig {
             ));
         }
         self.verify_inertia(ctx, &format!("{key}.inertia"))?;
+        let mut ballast = self.ballast.iter().enumerate();
+        ballast.try_for_each(|(i, ballast)| ballast.verify(ctx, &format!("{key}.ballast.{i}")))?;
         verify_modes(ctx, &format!("{key}.locked"), &self.locked)
     }
 

@@ -6,8 +6,8 @@
 
 use crate::{
     error::{Error, ErrorCode, ErrorKind, Result},
-    math::{Bivector, Pose, Vector},
-    solid::{Constraints, Kinematics, Load, Mobility, SolidSpec},
+    math::{Bivector, Matrix, Pose, Vector},
+    solid::{Constraints, FreeBody, Kinematics, Load, Mobility, SolidSpec},
 };
 
 /// Moves the free solids of one world under weight, water loads, contact forces and the user's forces.
@@ -53,6 +53,10 @@ pub trait Engine<const D: usize>: Send + Sync {
 
     /// Holds a free solid at rest if `held` is true, or else releases it with its original locks.
     fn set_held(&mut self, solid: usize, held: bool);
+
+    /// Sets mass, centre of mass and inertia of a free solid that started with the rotation `start`. Its points keep
+    /// their velocities, except that its centre of mass stays at rest along locked translations.
+    fn set_mass(&mut self, solid: usize, body: &FreeBody<D>, start: &Matrix<D>);
 
     /// Sets the acceleration of gravity (m/s²) from the next step on.
     fn set_gravity(&mut self, gravity: &Vector<D>);

@@ -65,7 +65,17 @@ pub fn solid_from_body(
         return refuse("has no mass yet", help);
     }
     let pose = world::from_frame(body.position());
-    Ok(SolidSpec { name, shape, pose, role, friction: 0.0, restitution: 0.0, contact_skin: 0.0, dry: None })
+    Ok(SolidSpec {
+        name,
+        shape,
+        pose,
+        role,
+        friction: 0.0,
+        restitution: 0.0,
+        contact_skin: 0.0,
+        dry: None,
+        ballast: Vec::new(),
+    })
 }
 
 /// Replaces all forces and torques on a body by the load of the water. Rapier keeps forces until they are reset, so add

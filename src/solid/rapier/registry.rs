@@ -98,11 +98,11 @@ pub(super) fn insert_solid(
     parts: &ConvexParts,
     hooks: ActiveHooks,
 ) -> RigidBodyHandle {
-    let builder = match &solid.role {
-        Role::Fixed => RigidBodyBuilder::fixed(),
-        Role::Driven(_) => RigidBodyBuilder::kinematic_position_based(),
-        Role::Free(body) => lock(RigidBodyBuilder::dynamic(), body)
-            .additional_mass_properties(mass_properties(body, &start.pose.rotation))
+    let builder = match (&solid.role, solid.initial_body()) {
+        (Role::Driven(_), _) => RigidBodyBuilder::kinematic_position_based(),
+        (_, None) => RigidBodyBuilder::fixed(),
+        (_, Some(body)) => lock(RigidBodyBuilder::dynamic(), &body)
+            .additional_mass_properties(mass_properties(&body, &start.pose.rotation))
             .linvel(to_point(&start.velocity))
             .angvel(to_angular(&start.spin)),
     };

@@ -42,9 +42,9 @@ use super::{
 };
 use crate::{
     error::{ErrorCode, Result},
-    math::{Bivector, Pose, Vector},
+    math::{Bivector, Matrix, Pose, Vector},
     solid::{
-        Constraints, Kinematics, Load, Mobility, Role, SolidSpec,
+        Constraints, FreeBody, Kinematics, Load, Mobility, Role, SolidSpec,
         rapier::engine::{ContactForce, Engine, EngineFault, restart_error},
     },
 };
@@ -328,6 +328,20 @@ impl Engine<D> for RapierWorld {
         body.set_locked_axes(if held { LockedAxes::all() } else { self.locks[solid] }, true);
     }
 
+    fn set_mass(&mut self, solid: usize, body: &FreeBody<D>, start: &Matrix<D>) {
+        let PhysicsWorld { bodies, colliders, .. } = &mut self.world;
+        let own = &mut bodies[self.bodies[solid]];
+        let before = own.center_of_mass();
+        own.set_additional_mass_properties(mass_properties(body, start), false);
+        own.recompute_mass_properties_from_colliders(colliders);
+        let shift = from_point(own.center_of_mass() - before);
+        let change = from_angular(own.angvel()).velocity_at(&shift);
+        let unlocked = |i: usize| if body.locked_translations[i] { 0.0 } else { change[i] };
+        let velocity = from_point(own.linvel()) + Vector::from_fn(|i, _| unlocked(i));
+        own.set_linvel(to_point(&velocity), false);
+        self.when_near = registry::iterations_in_contact(&self.world);
+    }
+
     fn set_gravity(&mut self, gravity: &Vector<D>) {
         self.world.gravity = to_point(gravity);
     }
@@ -387,6 +401,7 @@ impl Engine<D> for RapierWorld {
             )));
         }
         (self.world, self.tuned_for, self.met, self.pushes) = (world, tuned_for, met, pushes);
+        self.when_near = registry::iterations_in_contact(&self.world);
         Ok(())
     }
 }

@@ -118,7 +118,7 @@ impl<'a, const D: usize> Measurements<'a, D> {
         }
         for of in &judge.draft {
             let solid = &system.solids()[find_solid(system, &of.solid)?];
-            let Role::Free(body) = &solid.spec.role else { continue };
+            let Some(body) = &solid.body else { continue };
             let (shape, pose) = (&solid.spec.shape, &solid.kinematics.pose);
             let off = equilibrium_height(shape, pose, body.mass, system.model().rho0, self.level)?;
             self.record_max(&draft_figure(&of.solid), off.abs() / system.model().dp);
@@ -182,10 +182,7 @@ fn momentum_scale<const D: usize>(system: &System<D>) -> f64 {
 
 /// Returns the free solids and their masses.
 fn free_bodies<const D: usize>(system: &System<D>) -> impl Iterator<Item = (&Solid<D>, f64)> {
-    system.solids().iter().filter_map(|solid| match &solid.spec.role {
-        Role::Free(body) => Some((solid, body.mass)),
-        _ => None,
-    })
+    system.solids().iter().filter_map(|solid| Some((solid, solid.body?.mass)))
 }
 
 /// Returns three figures: the depth (dp) of water inside a solid, the depth (dp) of the face of a free body inside

@@ -1,6 +1,6 @@
 //! Bodies that start in deep water under the default laws.
 
-use pontoon::error::Result;
+use pontoon::{bench, error::Result};
 
 use crate::common::{self, run_to};
 
@@ -46,5 +46,17 @@ fn the_default_viscosity_does_not_grow_with_the_depth() -> Result<()> {
     // A value of the scene is taken as it is: α c₀ h/16.
     let given = nu(3.0, "model.viscosity.artificial.alpha = 0.1\nmodel.h_over_dp = 1.7")?;
     assert!((given / (0.1 * 10.0 * (9.81_f64 * 3.0).sqrt() * 1.7 * 0.025 / 16.0) - 1.0).abs() < 1e-12);
+    Ok(())
+}
+
+#[test]
+fn bench_states_the_effective_viscosity_of_the_shipped_default() -> Result<()> {
+    // α c₀ h/(4 (D + 2)) with α = 0.02, c₀ = 10 √(g d) in water 0.6 m deep, and h = 1.7 dp in 2-D and 1.5 dp in 3-D.
+    let c0 = 10.0 * (9.81_f64 * 0.6).sqrt();
+    for (dimension, h_over_dp, dp) in [(2, 1.7, 1.0 / 323.0), (3, 1.5, 1.0 / 47.0)] {
+        let found = bench::default_viscosity(dimension, 50_000)?;
+        let exact = 0.02 * c0 * h_over_dp * dp / (4.0 * (dimension as f64 + 2.0));
+        assert!((found.viscosity_m2ps / exact - 1.0).abs() < 1e-9, "{found:?}, exactly {exact} m²/s");
+    }
     Ok(())
 }

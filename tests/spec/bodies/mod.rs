@@ -2,6 +2,7 @@
 
 mod accelerated_frames;
 mod acoustic_added_mass;
+mod ballast;
 mod buoyancy;
 mod concave_solids;
 mod contact_groups;

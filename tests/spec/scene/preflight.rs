@@ -165,7 +165,7 @@ fn a_body_in_too_viscous_water_is_found_with_the_alpha_that_helps() {
 type Fault =
     (&'static str, &'static [(&'static str, &'static str)], &'static str, &'static [(&'static str, &'static str)]);
 
-const FAULTS: [Fault; 29] = [
+const FAULTS: [Fault; 30] = [
     ("slow_sound", &[("model.c0_factor", "5")], "c0 = 20 ", &[("model.c0", "20")]),
     // A plate with a single row of boundary particles moves water like a thick one: 0.4 m × 2π/s.
     (
@@ -185,6 +185,13 @@ const FAULTS: [Fault; 29] = [
         &[("solid.box.shape.box.size", "[0.2, 0.2]"), ("solid.box.free.centre_offset", "[0.0, -0.017]")],
     ),
     ("lists", &[("solid.box.free.centre_offset", "[0.005, 0.0]")], "angle_deg", &[]),
+    // It can displace 20 kg/m, and has 10 kg/m of its own.
+    (
+        "ballast_sinks",
+        &[("solid.box.free.ballast", "[{ at = [0.0, 0.0], mass = \"6*t\" }]")],
+        "less ballast",
+        &[("solid.box.free.ballast", "[{ at = [0.0, 0.0], mass = \"4*t\" }]")],
+    ),
     ("off_draft", &[("solid.box.at", "{ x = 1.0, bottom = 0.5 }")], "draft = \"equilibrium\"", &[]),
     ("beside_water", &[("solid.box.at", "{ x = 2.5, bottom = 0.3 }")], "over the water", &[]),
     (

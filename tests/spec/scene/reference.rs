@@ -182,8 +182,10 @@ fn every_default_of_the_scene_reference_is_the_default_of_a_scene() {
 fn every_fragment_of_the_scene_reference_is_read() {
     let page = scene_page();
     let blocks = page.split("```toml\n").skip(1).map(|rest| rest.split("```").next().unwrap());
-    // Each fragment begins with `driven` at the start of a line.
-    let fragments: Vec<String> = blocks
+    // Each fragment begins with `driven` at the start of a line, or is a `free` of its own.
+    let (free, driven): (Vec<&str>, Vec<&str>) = blocks.partition(|block| block.starts_with("free"));
+    let fragments: Vec<String> = driven
+        .into_iter()
         .flat_map(|block| block.split("\ndriven"))
         .map(|part| format!("driven{}", part.trim_start_matches("driven")))
         .collect();
@@ -191,6 +193,12 @@ fn every_fragment_of_the_scene_reference_is_read() {
     for fragment in fragments {
         let driven = "driven = { along = [1.0, 0.0], wave = { WAVE } }";
         let text = SCENE.replace(driven, &fragment);
+        let error = Scene::parse(&text, Path::new(""), &[]).and_then(|scene| scene.resolve()).err();
+        assert!(error.is_none(), "{fragment}: {}", error.unwrap());
+    }
+    assert_eq!(free.len(), 1);
+    for fragment in free {
+        let text = SCENE.replace("WAVE", REGULAR).replace("free = { density = 500.0 }", fragment);
         let error = Scene::parse(&text, Path::new(""), &[]).and_then(|scene| scene.resolve()).err();
         assert!(error.is_none(), "{fragment}: {}", error.unwrap());
     }

@@ -7,7 +7,7 @@ use pontoon::{
     math::{Pose, Vector},
     model::{Diffusion, Model, PairLoopKind, Shifting, Slip, Viscosity},
     simulation::{Setup, Simulation},
-    solid::Role,
+    solid::{FreeBody, Role, SolidSpec},
     sph::{particle_shifting::Shift, viscosity::Laminar},
 };
 
@@ -132,5 +132,144 @@ fn invalid_periodic_sides_are_refused() {
     let box_ = Shape::Box { size: Vector::from([1.0, 0.2]) };
     let ends = common::solid("bed", box_.clone(), Pose::at(Vector::from([0.5, -0.1])), Role::Fixed);
     assert!(setup(0.0, 1.0, vec![ends]).contains("\"bed\" ends at a periodic side"));
-    assert!(setup(0.0, 1.0, vec![common::float(box_, [0.5, 1.2], 500.0)]).contains("\"float\" is free"));
+}
+
+/// Water of two metres square, periodic along both axes, with pressure and without gravity, that swirls and drifts with
+/// `drift` (m/s); and in it a free body.
+fn swirl_with_body(density: f64, pair_loop: PairLoopKind, drift: [f64; 2]) -> Simulation<2> {
+    let mut model = model().pair_loop(pair_loop).shifting(Shifting::None);
+    model.viscosity = Viscosity::Laminar(Laminar { nu0: 0.01 });
+    let shape = Shape::Box { size: Vector::from([0.4, 0.2]) };
+    let mut body = FreeBody::from_density(&shape, density);
+    body.velocity = drift.into();
+    let solid = SolidSpec::with_body("body", shape, body).at([0.7, 1.1]);
+    let swirl = |r: &Vector<2>| Vector::from([-(0.5 * TAU * r[1]).sin(), (0.5 * TAU * r[0]).sin()]) * 0.3;
+    let setup = Setup::new(model).solid(solid).fill_box([0.0, 0.0], [2.0, 2.0]).expect("room for water");
+    let setup = setup.velocity(|r| swirl(r) + Vector::from(drift)).pressure(|_| 3000.0);
+    Simulation::new(setup.periodic(0, 0.0, 2.0).periodic(1, 0.0, 2.0)).expect("a sound setup")
+}
+
+/// Momentum of the water and of a free body with what it has yet to get, kg m/s.
+fn momentum_with_body(sim: &Simulation<2>) -> Vector<2> {
+    let body = &sim.system().solids()[0];
+    let mass = body.body.expect("a free body").mass;
+    common::water_momentum(sim) + body.kinematics.velocity * mass + sim.pending_impulse(0)
+}
+
+#[test]
+fn a_free_body_that_drifts_across_both_sides_moves_as_one_that_stays() {
+    // The lighter body has acoustic added mass.
+    for density in [800.0, 60.0] {
+        let run = |drift: [f64; 2]| {
+            let mut sim = swirl_with_body(density, PairLoopKind::Reference, drift);
+            let start = momentum_with_body(&sim);
+            common::run_to(&mut sim, 1.5).expect("a sound run");
+            let drifted = (momentum_with_body(&sim) - start).norm();
+            // Loads on the body and on the water are sums of the same forces: round-off of 3000 Pa on 1.2 m over 1.5 s.
+            assert!(drifted < 1e-9 * 3000.0 * 1.2 * 1.5, "{density} kg/m³, {drift:?}: {drifted} kg m/s");
+            sim.system().solids()[0].kinematics
+        };
+        let (still, moving) = (run([0.0, 0.0]), run([2.0, 3.0]));
+        // It has crossed two sides along x and three along y, and its position goes on beyond them.
+        let way = moving.pose.position - still.pose.position;
+        let off = (way - Vector::from([3.0, 4.5])).norm();
+        let slip = (moving.velocity - still.velocity - Vector::from([2.0, 3.0])).norm();
+        let moved = (still.pose.position - Vector::from([0.7, 1.1])).norm();
+        assert!(moved > 0.05, "the water moves it: {moved} m");
+        // Steps and sums differ by round-off, which the flow amplifies.
+        assert!(off < 1e-6 && slip < 1e-5, "{density} kg/m³: {off} m, {slip} m/s");
+    }
+}
+
+/// A channel of 1.2 m with a bed and a box that starts 0.02 m above its draft; water and box go with `speed` (m/s).
+fn channel(speed: f64, density: f64) -> String {
+    format!(
+        r#"
+dimension = 2
+dp = 0.02
+until = 2.2
+periodic = {{ x = [0.0, 1.2] }}
+[[water]]
+fill = {{ box = {{ min = [0.0, 0.0], max = [1.2, 0.3] }} }}
+velocity = ["{speed}", "0"]
+[[solid]]
+name = "bed"
+fixed = true
+shape = {{ box = {{ size = [2.4, 0.12] }} }}
+at = {{ x = 0.6, y = -0.06 }}
+[[solid]]
+name = "box"
+shape = {{ box = {{ size = [0.2, 0.1] }} }}
+at = {{ x = 0.6, draft = 0.03 }}
+free = {{ density = {density}, velocity = [{speed}, 0.0] }}
+[[contact]]
+between = ["box"]
+touch = false
+"#
+    )
+}
+
+#[test]
+fn a_box_heaves_in_a_current_through_the_sides_as_in_still_water() {
+    let heave = |speed: f64| {
+        let mut sim = common::scene_simulation::<2>(&channel(speed, 500.0)).expect("a sound scene");
+        let mut heights = Vec::new();
+        for i in 1..=44 {
+            common::run_to(&mut sim, 0.05 * f64::from(i)).expect("a sound run");
+            heights.push(sim.system().solids()[1].kinematics.centre[1] - 0.3);
+        }
+        let way = sim.system().solids()[1].kinematics.centre[0] - 0.6;
+        (heights, way)
+    };
+    let ((still, rest), (moving, way)) = (heave(0.0), heave(1.0));
+    assert!(rest.abs() < 0.02, "{rest} m");
+    assert!((way - 2.2).abs() < 0.05, "it crosses the side at 0.6 and 1.8 m: {way} m");
+    let off = still.iter().zip(&moving).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    println!("OFF {off} {way} {rest}");
+    // The bed is not smooth for water that slides along it.
+    assert!(off < 0.002, "{off} m, a tenth of the first displacement");
+}
+
+#[test]
+fn a_run_with_a_body_across_a_side_has_the_same_bits_after_a_restart_and_on_any_number_of_threads() {
+    // A light one with acoustic added mass, on a line to the ground.
+    let text = channel(1.0, 80.0)
+        + "[[spring]]\nname = \"line\"\nbetween = [\"box\"]\nfrom = [0.6, 0.3]\nto = [0.2, 0.0]\nstiffness = 20.0\n";
+    let make = || {
+        let mut sim = common::scene_simulation::<2>(&text).expect("a sound scene");
+        sim.enable_load_breakdown();
+        sim
+    };
+    let on = |threads: usize| {
+        common::on_threads(threads, || {
+            let mut sim = make();
+            common::run_to(&mut sim, 0.6).expect("a sound run");
+            let saved = sim.save().expect("a state");
+            let across = sim.system().solids()[1].kinematics.centre[0];
+            common::run_to(&mut sim, 0.9).expect("a sound run");
+            (saved, across, sim.save().expect("a state"))
+        })
+    };
+    let (saved, across, whole) = on(1);
+    assert!((across - 1.2).abs() < 0.08, "its middle is at {across} m, the side at 1.2 m");
+    assert!(on(3) == (saved.clone(), across, whole.clone()));
+    let mut resumed = make();
+    resumed.restore(&saved).expect("a state of this setup");
+    common::run_to(&mut resumed, 0.9).expect("a sound run");
+    assert!(resumed.save().expect("a state") == whole);
+}
+
+#[test]
+fn free_bodies_that_periodic_sides_do_not_allow_are_refused_with_the_remedy() {
+    let refused = |from: &str, to: &str| {
+        let text = channel(0.0, 500.0).replace(from, to);
+        common::scene_simulation::<2>(&text).err().map(|e| e.to_string()).unwrap_or_default()
+    };
+    assert_eq!(refused("", ""), "");
+    let message = refused("at = { x = 0.6, draft", "at = { x = 1.15, draft");
+    assert!(message.contains("starts across a periodic side") && message.contains("move it by -0.05"), "{message}");
+    let message = refused("size = [0.2, 0.1]", "size = [1.0, 0.1]");
+    assert!(message.contains("the period less twice"), "{message}");
+    let message = refused("touch = false", "friction = 0.1");
+    assert!(message.contains("may touch \"bed\"") && message.contains("[[contact]]"), "{message}");
 }

@@ -22,6 +22,7 @@ fn spec(mass: f64, inertia: [f64; 3]) -> SolidSpec<3> {
         restitution: 0.0,
         contact_skin: 0.0,
         dry: None,
+        ballast: Vec::new(),
     }
 }
 

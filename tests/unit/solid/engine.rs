@@ -25,7 +25,17 @@ fn down<const D: usize>() -> Vector<D> {
 
 fn solid<const D: usize>(name: &str, shape: Shape<D>, at: [f64; D], role: Role<D>) -> SolidSpec<D> {
     let (name, pose) = (name.into(), Pose::at(at.into()));
-    SolidSpec { name, shape, pose, role, friction: 0.5, restitution: 0.0, contact_skin: 0.0, dry: None }
+    SolidSpec {
+        name,
+        shape,
+        pose,
+        role,
+        friction: 0.5,
+        restitution: 0.0,
+        contact_skin: 0.0,
+        dry: None,
+        ballast: Vec::new(),
+    }
 }
 
 /// A free body of 2 kg with the moments of inertia 1, 2, 2.5 g m² (in 2-D: 1 g m²).

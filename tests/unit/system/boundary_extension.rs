@@ -18,6 +18,7 @@ fn paddle(foot: f64, motion: PrescribedMotion<2>) -> Vec<ExtensionParticle<2>> {
         restitution: 0.0,
         contact_skin: 0.0,
         dry: None,
+        ballast: Vec::new(),
     };
     let specs =
         [solid("bed", [10.0, 1.0], -0.5, Role::Fixed), solid("paddle", [0.4, 2.0], foot + 1.0, Role::Driven(motion))];

@@ -124,6 +124,7 @@ pub(in crate::solid) fn bar<const D: usize>(name: &str, length: f64, at: Vector<
         restitution: 0.0,
         contact_skin: 0.0,
         dry: None,
+        ballast: Vec::new(),
     }
 }
 

@@ -12,7 +12,17 @@ fn refusal(length: f64, height: f64, at: f64, basin: bool) -> String {
     let role = Role::Free(FreeBody::from_density(&shape, 500.0));
     let solid = |name: &str, shape: Shape<D>, at: Vector<D>, role: Role<D>| {
         let (name, pose) = (name.into(), Pose::at(at));
-        SolidSpec { name, shape, pose, role, friction: 0.0, restitution: 0.0, contact_skin: 0.0, dry: None }
+        SolidSpec {
+            name,
+            shape,
+            pose,
+            role,
+            friction: 0.0,
+            restitution: 0.0,
+            contact_skin: 0.0,
+            dry: None,
+            ballast: Vec::new(),
+        }
     };
     let point = |x: f64, up: f64| {
         Vector::from_fn(|i, _| {
