@@ -50,7 +50,7 @@ fn a_run_allocates_about_the_estimated_memory() {
         sets.push(("until".into(), until.into()));
         let path = home.join(scene);
         let asked = InspectOptions { overrides: sets.clone(), ..InspectOptions::default() };
-        let estimate = run::inspect(&path, &asked).unwrap().preflight.size.memory_bytes;
+        let estimate = run::inspect(&path, &asked).unwrap().report().unwrap().preflight.size.memory_bytes;
         let out = std::env::temp_dir().join(format!("pontoon-memory-{}-{i}", std::process::id()));
         let _ = std::fs::remove_dir_all(&out);
         let options = RunOptions { out: Some(out.clone()), overrides: sets, threads: Some(1) };
