@@ -23,7 +23,10 @@ pub(crate) mod statistics;
 
 pub use energy_drift::EnergyDrift;
 #[doc(hidden)]
-pub use inspect::{InspectOptions, InspectReport, MeshSummary, SeriesColumns, SolidSummary, StepTiming, inspect};
+pub use inspect::{
+    CostEstimate, InspectOptions, InspectReport, Inspection, LARGE, MeshSummary, SeriesColumns, SolidSummary,
+    StepTiming, inspect,
+};
 pub(crate) use lock::Lock;
 #[doc(hidden)]
 pub use lock::lock_owner;

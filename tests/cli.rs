@@ -215,6 +215,8 @@ fn help_and_lists_contain_commands_options_and_examples() {
     shows(&["stress", "--list"], &["float", "courant", "impact-water", "cases"]);
     shows(&["scenes"], &["raft", "still-tank", "flume-box", "column", "dam-break", "buoyancy-3d", "pontoon run NAME"]);
     shows(&["inspect", "raft", "--dp", "0.02"], &["particles", "paddle", "driven", "scene line", "--set", "default: "]);
+    shows(&["inspect", "raft", "--dp", "0.0003"], &["estimate from areas", "than 4 million", "on one thread"]);
+    shows(&["inspect", "raft", "--dp", "0.0003", "--json"], &["\"estimate\": true", "thread_seconds"]);
     assert_eq!(fs::read_dir(&folder.0).unwrap().count(), 0, "none of these commands writes a file");
     assert_eq!(folder.pontoon(&[]).code, Some(2));
 }

@@ -73,7 +73,7 @@ fn a_run_allocates_the_estimated_memory_and_few_bytes_a_particle() {
         let sets = owned(&more);
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(scene);
         let asked = InspectOptions { overrides: sets.clone(), ..InspectOptions::default() };
-        let estimate = run::inspect(&path, &asked).unwrap().preflight.size.memory_bytes - PROGRAM;
+        let estimate = run::inspect(&path, &asked).unwrap().report().unwrap().preflight.size.memory_bytes - PROGRAM;
         let ratio = peak(scene, &sets) / estimate;
         println!("{scene} {more:?}: peak over estimate {ratio:.3}, estimate {estimate} B");
         if !(0.9..1.1).contains(&ratio) {
@@ -84,7 +84,7 @@ fn a_run_allocates_the_estimated_memory_and_few_bytes_a_particle() {
         let sets = owned(&[("dp", dp), ("frames", "off"), ("until", "0.005")]);
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/column");
         let asked = InspectOptions { overrides: sets.clone(), ..InspectOptions::default() };
-        let size = run::inspect(&path, &asked).unwrap().preflight.size;
+        let size = run::inspect(&path, &asked).unwrap().report().unwrap().preflight.size;
         ((size.fluid + size.boundary) as f64, peak("column", &sets))
     });
     let [(few, less), (many, more)] = sizes;

@@ -3,6 +3,9 @@
 //! The test hashes the state through the public interface of a simulation, so that the record does not depend on the
 //! layout of a checkpoint. It hashes the series as files. On a mismatch it prints the new table, which replaces the
 //! record after an intended change.
+//!
+//! `.ci/without-slp` repeats the test in a build with `-C no-vectorize-slp`: a compiler fault in one of the builds, in this crate
+//! or in its dependencies, changes bits of only one of them (decision record 0130).
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::print_stdout, clippy::print_stderr, reason = "tests may")]
 

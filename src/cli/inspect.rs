@@ -1,15 +1,13 @@
 //! `pontoon inspect`: what a scene would run and what looks wrong with it, on a page or as JSON.
 
-use std::{fmt::Write, path::Path};
+use std::fmt::Write;
 
 use clap::Args;
 use pontoon::{
     error::{Error, ErrorKind, Result},
     math::format::{bytes, duration, metric_prefix, three_digits},
     preflight::{AbsorberSummary, BodyFlow, BodySummary, DiskUse, Finding, GeneratedWave, Severity},
-    run::{self, InspectOptions, InspectReport},
-    scene::Scene,
-    study::DEFAULT_SPEED,
+    run::{self, CostEstimate, InspectOptions, InspectReport, Inspection, LARGE},
 };
 
 use super::{
@@ -37,9 +35,6 @@ pub struct InspectArgs {
 /// The page, or the JSON.
 pub fn inspect(args: &InspectArgs) -> Result<String> {
     let found = scene_lookup::find_scene(&args.scene.scene)?;
-    if let Some(text) = found.with_scene_name(large_scene(found.path(), args))? {
-        return Ok(text);
-    }
     let asked = InspectOptions { overrides: args.scene.overrides(), threads: args.threads, timing: !args.no_timing };
     let report = found.with_scene_name(run::inspect(found.path(), &asked))?;
     if args.json {
@@ -47,48 +42,30 @@ pub fn inspect(args: &InspectArgs) -> Result<String> {
             serde_json::to_string_pretty(&report).map_err(|why| Error::new(ErrorKind::Usage, why.to_string()))?;
         return Ok(text + "\n");
     }
-    Ok(report_text(&report))
+    Ok(match &report {
+        Inspection::Report(report) => report_text(report),
+        Inspection::Estimate(size) => estimate_text(size),
+    })
 }
 
-/// Number of particles above which `inspect` estimates the cost from areas and volumes.
-const LARGE: f64 = 4e6;
-
-/// Approximate memory of a particle, B, in 2-D and 3-D: the memory of bundled scenes over their particles, rounded up.
-const PARTICLE_BYTES: [f64; 2] = [500.0, 700.0];
-
-/// Returns the cost of a scene of more than [`LARGE`] particles without creating them; `None` if it has fewer.
-fn large_scene(path: &Path, args: &InspectArgs) -> Result<Option<String>> {
-    let file = if path.is_dir() { path.join("scene.toml") } else { path.to_path_buf() };
-    let scene = Scene::read(&file, &args.scene.overrides())?;
-    let size = scene.estimate_size()?;
-    let all = size.fluid + size.boundary;
-    if all <= LARGE {
-        return Ok(None);
-    }
-    let memory = all * PARTICLE_BYTES[size.dimension - 2];
-    let per_step = size.fluid * size.passes / DEFAULT_SPEED[size.dimension - 2];
-    if args.json {
-        let value = serde_json::json!({
-            "title": scene.title, "estimate": true, "dimension": size.dimension, "fluid": size.fluid,
-            "boundary": size.boundary, "memory_bytes": memory, "dt_s": size.dt, "steps": size.steps,
-            "thread_seconds": per_step * size.steps,
-        });
-        return Ok(Some(format!("{value:#}\n")));
-    }
+/// What `inspect` prints about a scene whose particles it does not create.
+fn estimate_text(size: &CostEstimate) -> String {
     let row = |name: &str, text: String| vec![name.to_string(), text];
     let rows = [
         row("dimension", format!("{}-D", size.dimension)),
         row("water", format!("about {} particles", metric_prefix(size.fluid))),
         row("boundary", format!("about {} particles", metric_prefix(size.boundary))),
-        row("memory", format!("about {}", bytes(memory))),
-        row("time step", format!("at most {:.3e} s, by sound", size.dt)),
-        row("steps", format!("{} or more to {} s", metric_prefix(size.steps), scene.until)),
-        row("run time", format!("about {} on one thread", duration(per_step * size.steps))),
+        row("memory", format!("about {}", bytes(size.memory_bytes))),
+        row("time step", format!("at most {:.3e} s, by sound", size.dt_s)),
+        row("steps", format!("{} or more to {} s", metric_prefix(size.steps), size.until_s)),
+        row("run time", format!("about {} on one thread", duration(size.thread_seconds))),
     ];
-    let note = "note: an estimate from areas and volumes: the scene has more than 4 million particles, and inspect creates none\n  \
-                a run reports its warnings at the start; a larger dp shows them here\n";
-    let title = scene.title.as_deref().unwrap_or("untitled");
-    Ok(Some(format!("{title}\n{note}{}", table(&rows))))
+    let note = format!(
+        "note: an estimate from areas and volumes: the scene has more than {} million particles, and inspect creates none\n  \
+         a run reports its warnings at the start; a larger dp shows them here\n",
+        LARGE / 1e6
+    );
+    format!("{}\n{note}{}", size.title, table(&rows))
 }
 
 /// What `inspect` prints.

@@ -10,11 +10,12 @@ use pontoon::{
     error::{Error, ErrorKind, Result},
     math::format::{duration, metric_prefix},
     output::require_parent_folder,
+    preflight::DEFAULT_SPEED,
     report::PictureOptions,
     scene::Scene,
     study::{
-        DEFAULT_SPEED, Job, JobResult, JobState, ParameterGrid, REPEATS_NOTE, ResultRow, StudyResults, TimeEstimate,
-        VariedKey, distinguishing_labels, estimate_times, frame_interval, split_values, spread_table,
+        Job, JobResult, JobState, ParameterGrid, REPEATS_NOTE, ResultRow, StudyResults, TimeEstimate, VariedKey,
+        distinguishing_labels, estimate_times, frame_interval, split_values, spread_table,
     },
 };
 

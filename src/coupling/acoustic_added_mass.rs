@@ -23,7 +23,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     geometry::{Shape, thin::thin_place},
-    math::{Bivector, Matrix, Vector},
+    math::{Bivector, Matrix, Vector, rotated_tensor},
     solid::{FreeBody, Kinematics, Load, Role, Solid},
     sph::FluidProperties,
     system::System,
@@ -266,7 +266,7 @@ fn applied_share<const D: usize>(system: &System<D>, dt: f64) -> f64 {
 fn mass<const D: usize>(solid: &Solid<D>, body: &FreeBody<D>) -> Square {
     let mut all = Square::identity();
     let turn = &solid.kinematics.pose.rotation;
-    let inertia: Matrix<D> = if D == 2 { body.inertia } else { turn * body.inertia * turn.transpose() };
+    let inertia: Matrix<D> = if D == 2 { body.inertia } else { rotated_tensor(turn, &body.inertia) };
     for i in 0..D {
         all[(i, i)] = body.mass;
     }

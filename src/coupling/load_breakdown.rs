@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    math::{Bivector, Matrix, Vector},
+    math::{Bivector, Matrix, Vector, rotated_tensor},
     solid::{ContactForce, FreeBody, Kinematics, Load, constraint::assembly::ConstraintLoads},
     system::System,
 };
@@ -165,7 +165,7 @@ fn angular_momentum<const D: usize>(inertia: &Matrix<D>, rotation: &Matrix<D>, s
     if D == 2 {
         return *spin * inertia[(0, 0)];
     }
-    let world = rotation * inertia * rotation.transpose() * Vector::<D>::from_iterator(spin.axial());
+    let world = rotated_tensor(rotation, inertia) * Vector::<D>::from_iterator(spin.axial());
     Bivector::from_axial(world.as_slice())
 }
 

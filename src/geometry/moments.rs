@@ -6,7 +6,7 @@ use super::{
     Shape, VolumeProperties,
     wall::{wall_outline, wall_perimeter},
 };
-use crate::math::{Bounds, Matrix, Pose, Vector};
+use crate::math::{Bounds, Matrix, Pose, Vector, rotated_tensor};
 
 impl<const D: usize> Shape<D> {
     /// Returns the smallest axis-aligned box around the shape in its own frame, m.
@@ -140,8 +140,7 @@ fn sum<const D: usize>(parts: impl IntoIterator<Item = (f64, Pose<D>, VolumeProp
         let c = pose.point(&part.centroid);
         volume += sign * part.volume;
         first += c * (sign * part.volume);
-        let turned = pose.rotation * part.second_moment * pose.rotation.transpose();
-        second += (turned + c * c.transpose() * part.volume) * sign;
+        second += (rotated_tensor(&pose.rotation, &part.second_moment) + c * c.transpose() * part.volume) * sign;
     }
     let centroid = first / volume;
     VolumeProperties { volume, centroid, second_moment: second - centroid * centroid.transpose() * volume }

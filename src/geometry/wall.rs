@@ -46,6 +46,15 @@ pub(crate) fn wall_outline<const D: usize>(points: &[Vector<D>], thickness: f64)
     points.iter().rev().copied().chain(far_side(points, thickness)).collect()
 }
 
+/// Returns the closed lines around a wall, counter-clockwise around the solid: one around an open wall, two around a
+/// closed wall.
+pub(crate) fn wall_contours<const D: usize>(points: &[Vector<D>], thickness: f64) -> Vec<Vec<Vector<D>>> {
+    if !is_closed(points) {
+        return vec![wall_outline(points, thickness)];
+    }
+    vec![points[1..].iter().rev().copied().collect(), far_side(points, thickness)[1..].to_vec()]
+}
+
 /// Returns the length (m) of the outline of a wall.
 pub(super) fn wall_perimeter<const D: usize>(points: &[Vector<D>], thickness: f64) -> f64 {
     let length = |line: &[Vector<D>]| line.windows(2).map(|ab| (ab[1] - ab[0]).norm()).sum::<f64>();

@@ -12,4 +12,5 @@ pub mod time_series;
 mod vector;
 
 pub use config::{BoxConfig, NumberOrArray};
+pub(crate) use vector::rotated_tensor;
 pub use vector::{Bivector, Bounds, Matrix, Pose, Vector};

@@ -72,11 +72,12 @@ impl<const D: usize> Bivector<D> {
     }
 
     /// The rotation matrix of turning with this spin for a unit of time, exp Ω (Rodrigues).
+    #[inline(never)] // the tests see the only instance: see `rotated_tensor`
     pub fn exp(&self) -> Matrix<D> {
         let angle = (0.5 * self.0.norm_squared()).sqrt();
         let (a, b) =
             if angle < 1e-8 { (1.0, 0.5) } else { (angle.sin() / angle, (1.0 - angle.cos()) / (angle * angle)) };
-        // Column by column: as one sum of 3×3 products, rustc 1.95 (opt-level 3, SLP vectoriser) gets an entry wrong.
+        // Column by column: rustc 1.95 gets an entry of the sum of 3×3 products wrong, see decision 0130.
         let mut turned = Matrix::<D>::identity();
         for mut column in turned.column_iter_mut() {
             let once = self.0 * column.clone_owned();
@@ -84,6 +85,15 @@ impl<const D: usize> Bivector<D> {
         }
         turned
     }
+}
+
+/// A tensor in the axes of a frame that `rotation` turns into the world's, in the world's axes: R T Rᵀ.
+///
+/// rustc 1.95 can get sums of 3×3 products wrong, depending on the code around them (decision 0130). A function that is
+/// never inlined is compiled once, so that its test holds for every use.
+#[inline(never)]
+pub(crate) fn rotated_tensor<const D: usize>(rotation: &Matrix<D>, tensor: &Matrix<D>) -> Matrix<D> {
+    rotation * tensor * rotation.transpose()
 }
 
 impl<const D: usize> std::ops::Add for Bivector<D> {

@@ -2,8 +2,8 @@
 
 use super::{Finding, PreflightContext};
 use crate::{
-    geometry::hollow::{Enclosure, Hollow, Place, may_enclose},
-    math::{Bounds, Vector, format::three_digits},
+    geometry::hollow::{Enclosure, Hollow, Place},
+    math::{Vector, format::three_digits},
     solid::{
         Role, Solid,
         hydrostatics::{HollowWater, Hull},
@@ -21,21 +21,16 @@ pub(super) struct SolidHollows<const D: usize> {
 }
 
 impl<const D: usize> SolidHollows<D> {
-    /// The hollows of `solid` among the `water` (m), which lies in the box `around` (m), with particles of spacing `dp`
-    /// (m); `None` if there is none.
-    pub(super) fn of(solid: &Solid<D>, water: &[Vector<D>], around: &Bounds<D>, dp: f64) -> Option<Self> {
+    /// Counts the particles of the `water` (m) in the hollows of `solid`.
+    pub(super) fn new(enclosure: Enclosure<D>, solid: &Solid<D>, water: &[Vector<D>]) -> Self {
         let (shape, pose) = (&solid.spec.shape, &solid.kinematics.pose);
-        if !may_enclose(shape, solid.spec.may_be_hull(around)) {
-            return None;
-        }
-        let enclosure = Enclosure::of(shape, &pose.rotation, dp)?;
         let (bounds, mut particles) = (shape.bounds_at(pose), vec![0; enclosure.hollows.len()]);
         for x in water.iter().filter(|x| bounds.contains(x)) {
             if let Place::Hollow(hollow) = enclosure.place(shape, &pose.local(x)) {
                 particles[hollow] += 1;
             }
         }
-        Some(Self { enclosure, particles })
+        Self { enclosure, particles }
     }
 }
 

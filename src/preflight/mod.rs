@@ -36,15 +36,18 @@ pub(crate) use sound_speed::{SoundSpeed, StepSizeLimits};
 
 use crate::{
     error::Error,
-    math::Bounds,
     plan::Plan,
-    scene::{FileNote, RenamedName, StillWaterLevel},
+    scene::{FileNote, InitialWater, RenamedName, StillWaterLevel},
     simulation::Simulation,
     solid::{Role, Solid},
     system::System,
 };
 use hollows::SolidHollows;
 use surface_samples::SurfaceSample;
+
+/// The default speed in 2-D and 3-D: water particles × force passes per second on one thread. The speed is half the
+/// result of `pontoon bench` on a slow machine with the default models.
+pub const DEFAULT_SPEED: [f64; 2] = [4e6, 1.2e6];
 
 /// Number of findings of a kind that are listed individually, because many bodies have a finding each.
 const MOST: usize = 3;
@@ -175,12 +178,11 @@ struct PreflightContext<'a, const D: usize> {
 }
 
 /// Evaluates a simulation before its first step. `columns` is the number of columns that each probe of the plan writes,
-/// without the time. `overlapped` is the number of sites of the water lattice that solids cover.
+/// without the time.
 pub fn preflight<const D: usize>(
     sim: &Simulation<D>,
     plan: &Plan,
-    still: StillWaterLevel,
-    overlapped: usize,
+    initial: InitialWater<D>,
     columns: &[usize],
 ) -> Preflight {
     let system = sim.system();
@@ -188,14 +190,14 @@ pub fn preflight<const D: usize>(
     let g = if down > 0.9 * system.gravity().norm() { down } else { 0.0 };
     let (dp, reach) = (system.model().dp, system.model().support_radius());
     let samples = system.solids().iter().map(|s| surface_samples::of_solid(s, dp, reach)).collect();
-    let water = system.fluid().r;
-    let around = Bounds::around(water);
-    let hollows = system.solids().iter().map(|solid| SolidHollows::of(solid, water, &around, dp)).collect();
-    let look = PreflightContext { system, plan, still_water: still, g, surface_samples: samples, hollows };
+    let hollow =
+        |(solid, enclosure): (&Solid<D>, Option<_>)| Some(SolidHollows::new(enclosure?, solid, system.fluid().r));
+    let hollows = system.solids().iter().zip(initial.enclosures).map(hollow).collect();
+    let look = PreflightContext { system, plan, still_water: initial.still, g, surface_samples: samples, hollows };
     let mut findings = Vec::new();
     let sound = look.sound_speed(&mut findings);
     let step = look.step_size_limits(sim.spring_step_limit(), &mut findings);
-    let size = look.size(&step, columns, overlapped, &mut findings);
+    let size = look.size(&step, columns, initial.removed_by_solids, &mut findings);
     let gaps = look.gaps(&mut findings);
     hollows::check_hollows(&look, &mut findings);
     let bodies = look.bodies(&gaps.touching, &mut findings);

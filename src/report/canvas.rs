@@ -4,7 +4,7 @@ use tiny_skia::{Path, PathBuilder, Pixmap, PixmapPaint, Rect, Stroke, Transform}
 
 use super::{
     colour::{self, ColourMap},
-    picture::{ColourField, Panel},
+    picture::{ColourField, Panel, SolidLines},
     plot::round_step,
     text::{Anchor, TextRenderer, fill_path, solid_paint},
 };
@@ -45,37 +45,39 @@ impl PanelView {
         let Some(mut own) = Pixmap::new(self.size.0.ceil() as u32, self.size.1.ceil() as u32) else { return };
         let flat = panel.geometry.dimension == 2;
         let here = PanelView { corner: (0.0, 0.0), ..*self };
-        for (points, closed, moves) in panel.lines.iter().filter(|(_, _, moves)| !moves || !flat) {
-            here.draw_line(&mut own, points, *closed, (flat && !moves).then_some(WALL), 0.06);
+        for solid in panel.solids.iter().filter(|solid| !solid.moves || !flat) {
+            here.draw_solid(&mut own, solid, (flat && !solid.moves).then_some(WALL), 0.06);
         }
         let radius = (0.58 * panel.geometry.dp * self.scale) as f32;
         for (x, value) in &panel.points {
             let share = |value: &f64| colour::colour_at(map, (value - range[0]) / (range[1] - range[0]));
             draw_particle(&mut own, here.to_pixel(x), radius, value.as_ref().map_or(BODY, share), !flat);
         }
-        for (points, closed, _) in panel.lines.iter().filter(|(_, _, moves)| *moves && flat) {
-            here.draw_line(&mut own, points, *closed, Some(BODY), 0.12);
+        for solid in panel.solids.iter().filter(|solid| solid.moves && flat) {
+            here.draw_solid(&mut own, solid, Some(BODY), 0.12);
         }
         let (x, y) = (self.corner.0 as i32, self.corner.1 as i32);
         on.draw_pixmap(x, y, own.as_ref(), &PixmapPaint::default(), Transform::identity(), None);
     }
 
-    /// Returns the line through `points` as a path.
-    fn path(&self, points: &[[f64; 2]], closed: bool) -> Option<Path> {
+    /// Returns the lines of a solid as one path.
+    fn path(&self, solid: &SolidLines) -> Option<Path> {
         let mut path = PathBuilder::new();
-        for (i, x) in points.iter().enumerate() {
-            let (x, y) = self.to_pixel(x);
-            if i == 0 { path.move_to(x, y) } else { path.line_to(x, y) }
-        }
-        if closed {
-            path.close();
+        for (points, closed) in &solid.lines {
+            for (i, x) in points.iter().enumerate() {
+                let (x, y) = self.to_pixel(x);
+                if i == 0 { path.move_to(x, y) } else { path.line_to(x, y) }
+            }
+            if *closed {
+                path.close();
+            }
         }
         path.finish()
     }
 
-    /// Draws a line of width `thick`, in em.
-    fn draw_line(&self, on: &mut Pixmap, points: &[[f64; 2]], closed: bool, inside: Option<[u8; 3]>, thick: f32) {
-        let Some(path) = self.path(points, closed) else { return };
+    /// Draws the lines of a solid, of width `thick` in em.
+    fn draw_solid(&self, on: &mut Pixmap, solid: &SolidLines, inside: Option<[u8; 3]>, thick: f32) {
+        let Some(path) = self.path(solid) else { return };
         if let Some(colour) = inside {
             fill_path(on, &path, colour, 255);
         }

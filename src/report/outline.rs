@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::mesh_edges::mesh_lines;
 use crate::{
-    geometry::{Shape, wall::wall_outline},
+    geometry::{Shape, wall::wall_contours},
     math::{Pose, Vector},
 };
 
@@ -14,9 +14,12 @@ use crate::{
 const ROUND: usize = 48;
 
 /// A line of a drawing.
+///
+/// The closed lines of a solid in 2-D enclose its area by their winding numbers: counter-clockwise around the solid,
+/// clockwise around a hole.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Outline {
-    /// Whether the last point joins the first point; a closed line in 2-D encloses an area.
+    /// Whether the last point joins the first point.
     pub closed: bool,
     /// The points, m, in the local frame of the solid; in 2-D the third coordinate is zero.
     pub points: Vec<[f64; 3]>,
@@ -31,7 +34,9 @@ pub(crate) fn outlines<const D: usize>(shape: &Shape<D>) -> Vec<Outline> {
         Shape::Capsule { length, radius, axis } => capsule::<D>(*length, *radius, *axis),
         Shape::Cylinder { length, radius, axis } if D == 3 => cylinder(*length, *radius, *axis),
         Shape::Polygon { points } => vec![closed(points.iter().map(to_3d))],
-        Shape::Polyline { points, thickness } => vec![closed(wall_outline(points, *thickness).iter().map(to_3d))],
+        Shape::Polyline { points, thickness } => {
+            wall_contours(points, *thickness).iter().map(|line| closed(line.iter().map(to_3d))).collect()
+        }
         Shape::Tank { size, thickness } if D == 2 => vec![tank(size[0], size[1], *thickness)],
         Shape::Tank { size, .. } => box_lines(&Vector::zeros(), size),
         Shape::Mesh { mesh, .. } => mesh_lines(mesh),
@@ -104,6 +109,9 @@ fn stadium(length: f64, radius: f64, axis: usize, v: usize) -> Outline {
     let [low, high] = ends(length, axis);
     let mut points = end(&high, -0.5 * PI);
     points.extend(end(&low, 0.5 * PI));
+    if v < axis {
+        points.reverse(); // counter-clockwise
+    }
     Outline { closed: true, points }
 }
 

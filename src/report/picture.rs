@@ -8,7 +8,7 @@ use super::{
     animation::{points_of_solid, solid_placement},
     canvas::{PanelView, TITLE_COLOUR, draw_colour_bar},
     colour::{ColourMap, FIELD_COLOUR_MAPS},
-    run_data::{RunData, SceneGeometry},
+    run_data::{DrawnSolid, RunData, SceneGeometry},
     text::{Anchor, TextRenderer},
 };
 use crate::{
@@ -46,8 +46,13 @@ pub struct PictureOptions {
 /// The nearness of a point to the viewer, its position in the picture plane (m), and its value.
 type DepthPoint = (f64, [f64; 2], Option<f64>);
 
-/// A line in the picture plane (m), whether the line is closed, and whether its solid moves.
-type DrawnLine = (Vec<[f64; 2]>, bool, bool);
+/// The lines of a solid in the picture plane.
+pub(crate) struct SolidLines {
+    /// The points of each line, m, and whether the line is closed.
+    pub lines: Vec<(Vec<[f64; 2]>, bool)>,
+    /// Whether the solid moves.
+    pub moves: bool,
+}
 
 /// A frame of a run, prepared for drawing.
 pub(crate) struct Panel<'a> {
@@ -57,8 +62,8 @@ pub(crate) struct Panel<'a> {
     pub t: f64,
     /// The points in the picture plane (m) from back to front, with their values; points of bodies have no value.
     pub points: Vec<([f64; 2], Option<f64>)>,
-    /// The lines of the solids in the picture plane, with whether the line is closed and whether its solid moves.
-    pub lines: Vec<DrawnLine>,
+    /// The lines of the solids.
+    pub solids: Vec<SolidLines>,
 }
 
 impl ColourField {
@@ -152,8 +157,8 @@ fn read_panel(run: &RunData, t: f64, field: ColourField) -> Result<Panel<'_>> {
     }
     points.sort_by(|a, b| a.0.total_cmp(&b.0));
     let points = points.into_iter().map(|(_, on, value)| (on, value)).collect();
-    let lines = solid_lines(film, number, set, flat)?;
-    Ok(Panel { geometry: set, t: film.times()[number], points, lines })
+    let solids = solid_lines(film, number, set, flat)?;
+    Ok(Panel { geometry: set, t: film.times()[number], points, solids })
 }
 
 /// Returns the depth and position in the picture plane of the boundary particles of moving solids, in frame `number` of
@@ -167,18 +172,17 @@ fn solid_points(film: &FrameSequence, number: usize, set: &SceneGeometry) -> Res
 }
 
 /// Returns the lines of all solids in frame `number`.
-fn solid_lines(film: &FrameSequence, number: usize, set: &SceneGeometry, flat: bool) -> Result<Vec<DrawnLine>> {
+fn solid_lines(film: &FrameSequence, number: usize, set: &SceneGeometry, flat: bool) -> Result<Vec<SolidLines>> {
     let (first, now) = (film.solids(0)?, film.solids(number)?);
-    let mut lines = Vec::new();
-    for (i, solid) in set.solids.iter().enumerate() {
+    let drawn = |(i, solid): (usize, &DrawnSolid)| {
         let own = points_of_solid(&first, i);
         let fixed = solid.role == "fixed";
         let pose = solid_placement(fixed, &solid.start, &own, &first, &now);
-        for line in &solid.lines {
-            lines.push((line.points.iter().map(|x| project(&pose.to_world(x), flat).0).collect(), line.closed, !fixed));
-        }
-    }
-    Ok(lines)
+        let on_plane = |x: &[f64; 3]| project(&pose.to_world(x), flat).0;
+        let lines = solid.lines.iter().map(|line| (line.points.iter().map(on_plane).collect(), line.closed)).collect();
+        SolidLines { lines, moves: !fixed }
+    };
+    Ok(set.solids.iter().enumerate().map(drawn).collect())
 }
 
 /// Returns the position of a point in the picture plane (m) and its nearness to the viewer. A 3-D view is from the
@@ -219,8 +223,8 @@ fn bounds(rows: &[Vec<Panel>]) -> [[f64; 2]; 2] {
     for panel in rows.iter().flatten() {
         dp = dp.max(panel.geometry.dp);
         panel.points.iter().for_each(|(x, _)| take(x));
-        let moving = panel.lines.iter().filter(|(_, _, moves)| *moves || panel.geometry.dimension == 3);
-        moving.flat_map(|(points, ..)| points).for_each(&mut take);
+        let moving = panel.solids.iter().filter(|solid| solid.moves || panel.geometry.dimension == 3);
+        moving.flat_map(|solid| &solid.lines).flat_map(|(points, _)| points).for_each(&mut take);
     }
     if around[0][0] > around[1][0] {
         return [[0.0; 2], [1.0; 2]];

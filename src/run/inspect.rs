@@ -12,15 +12,21 @@ use crate::{
     math::Vector,
     model::Dimension,
     output::manifest::ValueInForce,
-    preflight::{self, Finding, Preflight},
+    preflight::{self, DEFAULT_SPEED, Finding, Preflight},
     probe,
-    scene::{BuiltScene, Scene},
+    scene::{BuiltScene, Scene, SizeEstimate},
     simulation::Simulation,
     solid::Dim,
 };
 
 /// Longest duration of a timing, s; no step begins after it.
 const LASTS: f64 = 1.0;
+
+/// Number of particles above which an inspection estimates the cost from areas and volumes.
+pub const LARGE: f64 = 4e6;
+
+/// Approximate memory of a particle, B, in 2-D and 3-D: the memory of bundled scenes over their particles, rounded up.
+const PARTICLE_BYTES: [f64; 2] = [500.0, 700.0];
 
 /// The options of an inspection in addition to its scene.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -34,6 +40,69 @@ pub struct InspectOptions {
 }
 
 /// The results of an inspection.
+#[derive(Clone, Debug, Serialize)]
+#[serde(untagged)]
+pub enum Inspection {
+    /// The facts and findings about the particles of the scene.
+    Report(Box<InspectReport>),
+    /// The cost of a scene with more than [`LARGE`] particles.
+    Estimate(CostEstimate),
+}
+
+/// The cost of a run, estimated from areas and volumes without particles.
+#[derive(Clone, Debug, Serialize)]
+pub struct CostEstimate {
+    /// Caption of the scene.
+    pub title: String,
+    /// Always true: it distinguishes an estimate from a report.
+    pub estimate: bool,
+    /// 2 or 3.
+    pub dimension: usize,
+    /// Number of water particles.
+    pub fluid: f64,
+    /// Number of boundary particles.
+    pub boundary: f64,
+    /// Memory, B.
+    pub memory_bytes: f64,
+    /// The largest time step that sound allows, s.
+    pub dt_s: f64,
+    /// Number of steps; a run takes slightly more.
+    pub steps: f64,
+    /// Simulated time at the end, s.
+    pub until_s: f64,
+    /// Wall time of the run on one thread, s.
+    pub thread_seconds: f64,
+}
+
+impl CostEstimate {
+    fn new(scene: &Scene, size: &SizeEstimate) -> Self {
+        let SizeEstimate { dimension, fluid, boundary, dt, steps, .. } = *size;
+        Self {
+            title: scene.title.clone().unwrap_or_else(|| "untitled".into()),
+            estimate: true,
+            dimension,
+            fluid,
+            boundary,
+            memory_bytes: (fluid + boundary) * PARTICLE_BYTES[dimension - 2],
+            dt_s: dt,
+            steps,
+            until_s: scene.until,
+            thread_seconds: size.particle_passes() / DEFAULT_SPEED[dimension - 2],
+        }
+    }
+}
+
+impl Inspection {
+    /// Returns the report, or `None` for an estimate.
+    pub fn report(self) -> Option<InspectReport> {
+        match self {
+            Self::Report(report) => Some(*report),
+            Self::Estimate(_) => None,
+        }
+    }
+}
+
+/// The facts and findings about a scene.
 #[derive(Clone, Debug, Serialize)]
 pub struct InspectReport {
     /// Caption of the scene.
@@ -117,11 +186,11 @@ pub struct StepTiming {
 }
 
 /// Reads, resolves and builds the scene at `path` with the options `asked`, and returns its inspection. It writes
-/// nothing.
+/// nothing, and creates no particles if there would be more than [`LARGE`].
 ///
 /// # Errors
 /// The errors that [`run`](super::run) would return before its first step.
-pub fn inspect(path: &Path, asked: &InspectOptions) -> Result<InspectReport> {
+pub fn inspect(path: &Path, asked: &InspectOptions) -> Result<Inspection> {
     let scene = Scene::read(&run_folder::scene_file(path), &asked.overrides)?;
     with_threads(asked.threads, || match scene.dimension {
         #[cfg(feature = "dim2")]
@@ -132,18 +201,23 @@ pub fn inspect(path: &Path, asked: &InspectOptions) -> Result<InspectReport> {
     })
 }
 
-fn build_report<const D: usize>(scene: &Scene, timed: bool) -> Result<InspectReport>
+fn build_report<const D: usize>(scene: &Scene, timed: bool) -> Result<Inspection>
 where
     Dim<D>: Dimension<D>,
 {
+    let parts = scene.parts::<D>()?;
+    let size = parts.estimated_size();
+    if size.fluid + size.boundary > LARGE {
+        return Ok(Inspection::Estimate(CostEstimate::new(scene, &size)));
+    }
     let values: Vec<ValueInForce> = scene.resolve()?.into_iter().map(ValueInForce::from).collect();
-    let BuiltScene { setup, plan, removed_by_solids, still_water, file_notes, .. } = scene.build::<D>()?;
+    let BuiltScene { setup, plan, initial_water, file_notes } = parts.fill()?;
     // The timing reports the first alarm; a run would return to an earlier state instead.
     let mut sim = Simulation::new(setup).map_err(|e| scene.with_location(e))?.without_rollback();
     let probes = probe_factory::probes_from_plan(&plan, &mut sim)?;
     probe_factory::checks_from_plan(&plan, &probes)?;
     let columns: Vec<usize> = probes.iter().map(|p| p.columns().len()).collect();
-    let preflight = preflight::preflight(&sim, &plan, still_water, removed_by_solids, &columns);
+    let preflight = preflight::preflight(&sim, &plan, initial_water, &columns);
     let mut preflight = preflight.with_file_notes(&file_notes);
     preflight.findings.extend(scene.renamed_names().iter().map(Finding::renamed_name));
     let solids = sim.system().solids().iter().map(|s| SolidSummary {
@@ -160,7 +234,9 @@ where
     // A value that the scene sets takes precedence over a derived value.
     let of_sound = values.iter().filter(|v| v.key == "model.c0" || v.key == "model.c0_factor");
     let sound_from = of_sound.min_by_key(|v| v.source.starts_with("default")).cloned();
-    Ok(InspectReport { title: plan.title, until_s: plan.until, preflight, sound_from, timing, solids, series, values })
+    let (title, until_s) = (plan.title, plan.until);
+    let report = InspectReport { title, until_s, preflight, sound_from, timing, solids, series, values };
+    Ok(Inspection::Report(Box::new(report)))
 }
 
 /// Times steps for up to a second. The first step is excluded because it begins with cold caches, unless it takes all

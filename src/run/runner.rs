@@ -59,12 +59,12 @@ where
     /// Builds the scene and, once all is known to be right, makes the run's folder or opens it again.
     pub(crate) fn new(scene: &Scene, origin: RunOrigin) -> Result<Self> {
         let (begun, begun_cpu) = (Instant::now(), ProcessorTime::now());
-        let BuiltScene { setup, plan, removed_by_solids, still_water, file_notes, .. } = scene.build::<D>()?;
+        let BuiltScene { setup, plan, initial_water, file_notes } = scene.build::<D>()?;
         let mut sim = Simulation::new(setup).map_err(|e| scene.with_location(e))?;
         let probes = probe_factory::probes_from_plan(&plan, &mut sim)?;
         let checks = probe_factory::checks_from_plan(&plan, &probes)?;
         let columns: Vec<usize> = probes.iter().map(|p| p.columns().len()).collect();
-        let preflight = preflight::preflight(&sim, &plan, still_water, removed_by_solids, &columns);
+        let preflight = preflight::preflight(&sim, &plan, initial_water, &columns);
         let mut warnings = preflight.with_file_notes(&file_notes).warnings();
         let notes = file_notes.iter().filter(|note| !note.is_warning);
         let notes = notes.map(|note| format!("{}: {}", note.what, note.remedy)).collect();

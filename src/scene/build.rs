@@ -2,7 +2,7 @@
 
 use super::{
     Scene,
-    afloat::placed_solids,
+    afloat::{PlacedSolids, placed_solids},
     context::{Context, FileNote},
     file_units::require_plausible_units,
     section::{
@@ -19,16 +19,17 @@ use crate::{
     geometry::{
         Shape,
         fill::{Filled, Filling, WaterRegion},
+        hollow::Enclosure,
     },
     math::{Bounds, Pose, Vector},
     model::{Model, TimeScheme},
     plan::Plan,
     simulation::Setup,
     solid::{
-        Constraints, InitialHold, Role, SolidSpec, TimedRemoval,
+        Constraints, InitialHold, Role, SolidSpec, TimeFunction, TimedRemoval,
         constraint::links::{check_force, check_rope, check_spring},
     },
-    system::periodic,
+    system::{Periodic, periodic},
 };
 
 /// Largest number of particles in a scene: they need about 100 GB of memory.
@@ -40,14 +41,37 @@ pub struct BuiltScene<const D: usize> {
     pub setup: Setup<D>,
     /// The probes, files, checks and statistics of a run.
     pub plan: Plan,
+    /// The water at the start, for the pre-flight.
+    pub initial_water: InitialWater<D>,
+    /// Notes about the files that the scene names.
+    pub file_notes: Vec<FileNote>,
+}
+
+/// The water of a scene at the start, without its particles.
+pub struct InitialWater<const D: usize> {
+    /// The water at rest.
+    pub still: StillWaterLevel,
     /// Number of lattice points without a particle because they lie in a solid.
     pub removed_by_solids: usize,
     /// Number of lattice points without a new particle because they lie in an earlier body of water.
     pub removed_by_water: usize,
-    /// Notes about the files that the scene names.
-    pub file_notes: Vec<FileNote>,
-    /// The water at rest.
-    pub still_water: StillWaterLevel,
+    /// The space that each solid encloses in its place.
+    pub(crate) enclosures: Vec<Option<Enclosure<D>>>,
+}
+
+/// All parts of a simulation except for the particles.
+pub(crate) struct SceneParts<const D: usize> {
+    /// The scene with all defaults.
+    scene: Scene,
+    water: Vec<WaterBody<D>>,
+    still: StillWaterLevel,
+    gravity_law: Vec<TimeFunction>,
+    model: Model,
+    placed: PlacedSolids<D>,
+    constraints: Constraints<D>,
+    domain: Option<Bounds<D>>,
+    periodic: Periodic<D>,
+    file_notes: Vec<FileNote>,
 }
 
 /// The data that a drawing of a scene needs: the solids, the model and the still water level.
@@ -93,6 +117,14 @@ impl Scene {
     /// `Usage` if `D` is not the scene's dimension; `Scene` if the scene is wrong, a shape is not valid,
     /// a body sinks that should float, or the particles are too many; `File` if a table cannot be read.
     pub fn build<const D: usize>(&self) -> Result<BuiltScene<D>> {
+        self.parts()?.fill()
+    }
+
+    /// Opens the files that the scene names, and returns all parts of the simulation except for the particles.
+    ///
+    /// # Errors
+    /// The errors of [`Scene::build`], except for those of the filling.
+    pub(crate) fn parts<const D: usize>(&self) -> Result<SceneParts<D>> {
         if self.dimension != D {
             return Err(Error::new(ErrorKind::Usage, format!("this scene is {}-D, not {D}-D", self.dimension)));
         }
@@ -105,7 +137,7 @@ impl Scene {
         let model = scene.model.build(ctx, &scene.time, &still)?;
         scene.model.require_stable_lattice::<D>(ctx, &model)?;
         require_depth(ctx, &still, &model)?;
-        let mut placed = placed_solids::<D>(&scene, ctx, &water, true)?;
+        let placed = placed_solids::<D>(&scene, ctx, &water, true)?;
         let solids = &placed.specs;
         require_plausible_units(ctx, &self.solid, &water, solids)?;
         let constraints = scene.constraints(ctx, solids, still.level)?;
@@ -116,75 +148,8 @@ impl Scene {
         let periodic = scene.periodic.clone().unwrap_or_default().build();
         periodic::check(&periodic, &model, solids, &constraints).map_err(|e| ctx.with_location(e, "periodic"))?;
         require_affordable(ctx, &water, solids)?;
-        let regions: Vec<WaterRegion<D>> =
-            water.iter().map(|b| WaterRegion { shape: b.region.shape.clone(), pose: b.region.pose }).collect();
-        // The initial position of a driven solid follows from its motion.
-        let starts: Vec<Pose<D>> = solids.iter().map(|s| s.initial_kinematics().pose).collect();
-        let rests = |s: &SolidSpec<D>| !matches!(s.role, Role::Free(_));
-        let solid_shapes: Vec<(&Shape<D>, &Pose<D>, bool)> =
-            solids.iter().zip(&starts).map(|(s, start)| (&s.shape, start, rests(s))).collect();
-        let spaces = placed.spaces(&starts);
-        let inside = water.iter().map(|body| body.inside).collect();
-        let filling = Filling { regions: &regions, inside, solids: &solid_shapes, spaces: &spaces };
-        let Filled { water: mut filled, mut home, has_own_water } =
-            filling.fill(scene.dp).map_err(|e| ctx.with_location(e, "water"))?;
-        if scene.water.iter().any(|w| w.level.is_some() && w.fill.shape.is_some()) {
-            let below = |x: &Vector<D>| water.iter().any(|body| body.contains(x) && x[D - 1] < body.level);
-            let (r, own) = filled.r.iter().zip(&home).filter(|(x, _)| below(x)).unzip();
-            (filled.r, home) = (r, own);
-        }
-        if filled.r.is_empty() {
-            return Err(no_water_error(ctx, &water, solids));
-        }
-        let own_water: Vec<usize> =
-            spaces.iter().zip(has_own_water).filter(|(_, own)| *own).map(|(space, _)| space.solid).collect();
-        let plan = scene.resolved_plan(ctx, &still)?;
-        // The packing algorithm can move a particle slightly out of its body of water.
-        let nearest = |(x, home): (&Vector<D>, &usize)| match &water[*home] {
-            own if own.inside.is_some() => Some(own),
-            _ => {
-                let open = water.iter().filter(|body| body.inside.is_none());
-                open.min_by(|a, b| a.distance(x).total_cmp(&b.distance(x)))
-            }
-        };
-        let origins: Vec<_> = filled.r.iter().zip(&home).map(nearest).collect();
-        let levels = origins.iter().map(|body| body.map_or(still.level, |body| body.level)).collect();
-        let flow =
-            |(x, body): (&Vector<D>, &Option<&WaterBody<D>>)| body.map_or((Vector::zeros(), 0.0), |b| b.flow.at(x));
-        let moves = scene.water.iter().any(|water| water.velocity.is_some() || water.pressure.is_some());
-        let (velocity, pressure) = filled.r.iter().zip(&origins).filter(|_| moves).map(flow).unzip();
-        if let Some(part) = scene.jitter {
-            jitter(&mut filled.r, part * scene.dp);
-        }
-        let limits = scene.guard.clone().unwrap_or_default().build();
-        let sponge_layers = scene.damping.iter().map(|layer| layer.build(ctx, &still)).collect();
-        // Water in a hull that does not reach around it is meant.
-        own_water.into_iter().for_each(|i| {
-            placed.specs[i].dry.get_or_insert(false);
-        });
-        let solids = placed.specs;
-        let setup = Setup {
-            model,
-            gravity_law,
-            water: filled.r,
-            surface_levels: levels,
-            velocity,
-            pressure,
-            solids,
-            constraints,
-            domain,
-            periodic,
-            limits,
-            sponge_layers,
-        };
-        Ok(BuiltScene {
-            setup,
-            plan,
-            removed_by_solids: filled.removed_in_solids,
-            removed_by_water: filled.removed_in_regions,
-            file_notes: ctx.file_notes.take(),
-            still_water: still,
-        })
+        let file_notes = ctx.file_notes.take();
+        Ok(SceneParts { scene, water, still, gravity_law, model, placed, constraints, domain, periodic, file_notes })
     }
 
     /// Returns the solids and the water at rest without creating particles.
@@ -228,10 +193,21 @@ impl Scene {
         let solids = placed_solids::<D>(self, ctx, &water, false)?.specs;
         require_plausible_units(ctx, &self.solid, &water, &solids)?;
         require_affordable(ctx, &water, &solids)?;
-        let (fluid, boundary) = estimated_counts(ctx, &water, &solids);
+        Ok(self.size_estimate(ctx, &water, &model, &solids))
+    }
+
+    /// Returns the estimated size of a run with this water and these solids.
+    fn size_estimate<const D: usize>(
+        &self,
+        ctx: &Context,
+        water: &[WaterBody<D>],
+        model: &Model,
+        solids: &[SolidSpec<D>],
+    ) -> SizeEstimate {
+        let (fluid, boundary) = estimated_counts(ctx, water, solids);
         let dt = (model.cfl * model.h / model.c0).min(model.dt_max);
         let passes = if matches!(model.scheme, TimeScheme::Verlet { .. }) { 1.0 } else { 2.0 };
-        Ok(SizeEstimate { dimension: D, fluid, boundary, dt, steps: (self.until / dt).ceil(), passes })
+        SizeEstimate { dimension: D, fluid, boundary, dt, steps: (self.until / dt).ceil(), passes }
     }
 
     /// Returns the approximate number of water particles, without the volume of the solids, or 0 if the water cannot be
@@ -334,6 +310,96 @@ impl Scene {
                 .map(|(i, statistic)| statistic.build(ctx, &format!("statistic.{i}"), &series, still))
                 .collect::<Result<_>>()?,
             folder: self.origin.folder.clone(),
+        })
+    }
+}
+
+impl<const D: usize> SceneParts<D> {
+    /// Returns the estimated size of a run.
+    pub(crate) fn estimated_size(&self) -> SizeEstimate {
+        self.scene.size_estimate(&self.scene.context(), &self.water, &self.model, &self.placed.specs)
+    }
+
+    /// Creates the water particles.
+    ///
+    /// # Errors
+    /// `Scene` if no water is left, or the plan of the run is wrong; `File` if a table cannot be read.
+    pub(crate) fn fill(self) -> Result<BuiltScene<D>> {
+        let Self { scene, water, still, gravity_law, model, mut placed, constraints, domain, periodic, file_notes } =
+            self;
+        let (ctx, solids) = (&scene.context(), &placed.specs);
+        ctx.add_file_notes(file_notes);
+        let regions: Vec<WaterRegion<D>> =
+            water.iter().map(|b| WaterRegion { shape: b.region.shape.clone(), pose: b.region.pose }).collect();
+        // The initial position of a driven solid follows from its motion.
+        let starts: Vec<Pose<D>> = solids.iter().map(|s| s.initial_kinematics().pose).collect();
+        let rests = |s: &SolidSpec<D>| !matches!(s.role, Role::Free(_));
+        let solid_shapes: Vec<(&Shape<D>, &Pose<D>, bool)> =
+            solids.iter().zip(&starts).map(|(s, start)| (&s.shape, start, rests(s))).collect();
+        let spaces = placed.spaces(&starts);
+        let inside = water.iter().map(|body| body.inside).collect();
+        let filling = Filling { regions: &regions, inside, solids: &solid_shapes, spaces: &spaces };
+        let Filled { water: mut filled, mut home, has_own_water } =
+            filling.fill(scene.dp).map_err(|e| ctx.with_location(e, "water"))?;
+        if scene.water.iter().any(|w| w.level.is_some() && w.fill.shape.is_some()) {
+            let below = |x: &Vector<D>| water.iter().any(|body| body.contains(x) && x[D - 1] < body.level);
+            let (r, own) = filled.r.iter().zip(&home).filter(|(x, _)| below(x)).unzip();
+            (filled.r, home) = (r, own);
+        }
+        if filled.r.is_empty() {
+            return Err(no_water_error(ctx, &water, solids));
+        }
+        let own_water: Vec<usize> =
+            spaces.iter().zip(has_own_water).filter(|(_, own)| *own).map(|(space, _)| space.solid).collect();
+        let plan = scene.resolved_plan(ctx, &still)?;
+        // The packing algorithm can move a particle slightly out of its body of water.
+        let nearest = |(x, home): (&Vector<D>, &usize)| match &water[*home] {
+            own if own.inside.is_some() => Some(own),
+            _ => {
+                let open = water.iter().filter(|body| body.inside.is_none());
+                open.min_by(|a, b| a.distance(x).total_cmp(&b.distance(x)))
+            }
+        };
+        let origins: Vec<_> = filled.r.iter().zip(&home).map(nearest).collect();
+        let levels = origins.iter().map(|body| body.map_or(still.level, |body| body.level)).collect();
+        let flow =
+            |(x, body): (&Vector<D>, &Option<&WaterBody<D>>)| body.map_or((Vector::zeros(), 0.0), |b| b.flow.at(x));
+        let moves = scene.water.iter().any(|water| water.velocity.is_some() || water.pressure.is_some());
+        let (velocity, pressure) = filled.r.iter().zip(&origins).filter(|_| moves).map(flow).unzip();
+        if let Some(part) = scene.jitter {
+            jitter(&mut filled.r, part * scene.dp);
+        }
+        let limits = scene.guard.clone().unwrap_or_default().build();
+        let sponge_layers = scene.damping.iter().map(|layer| layer.build(ctx, &still)).collect();
+        // Water in a hull that does not reach around it is meant.
+        own_water.into_iter().for_each(|i| {
+            placed.specs[i].dry.get_or_insert(false);
+        });
+        let solids = placed.specs;
+        let setup = Setup {
+            model,
+            gravity_law,
+            water: filled.r,
+            surface_levels: levels,
+            velocity,
+            pressure,
+            solids,
+            constraints,
+            domain,
+            periodic,
+            limits,
+            sponge_layers,
+        };
+        Ok(BuiltScene {
+            setup,
+            plan,
+            initial_water: InitialWater {
+                still,
+                removed_by_solids: filled.removed_in_solids,
+                removed_by_water: filled.removed_in_regions,
+                enclosures: placed.enclosures,
+            },
+            file_notes: ctx.file_notes.take(),
         })
     }
 }

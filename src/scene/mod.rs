@@ -65,7 +65,7 @@ pub use context::FileNote;
 pub(crate) use section::shape::world_bounds;
 pub use {
     crate::probe::ProbeConfig,
-    build::BuiltScene,
+    build::{BuiltScene, InitialWater},
     bundled::{BundledScene, bundled_scenes},
     schema::schema,
     section::ballast::BallastConfig,
@@ -109,7 +109,9 @@ pub use {
     },
     toml_source::current_key,
     toml_source::{RenamedName, ValueSource},
-    untagged::{DraftChoice, FieldFormulaConfig, LengthUnit, PolylineConfig, TimeFunctionConfig, TimeVectorConfig},
+    untagged::{
+        AxesConfig, DraftChoice, FieldFormulaConfig, LengthUnit, PolylineConfig, TimeFunctionConfig, TimeVectorConfig,
+    },
 };
 
 /// Largest size of the text of a scene, B. The longest bundled scene has 3,000 B.

@@ -1,5 +1,6 @@
-//! Outlines from a drawing in SVG: one closed path, its curves drawn by straight lines.
+//! Outlines from a drawing in SVG: one closed path or basic shape, its curves drawn by straight lines.
 
+mod element;
 mod size;
 mod style;
 
@@ -15,6 +16,7 @@ use super::{
     untagged::LengthUnit,
 };
 use crate::error::{Error, Result};
+use element::{DRAWN, element_path};
 use style::StyleSheets;
 
 /// Most elements of a drawing, and most paths that references draw.
@@ -77,7 +79,7 @@ pub(crate) fn outline(path: &Path, options: &DrawingOptions) -> Result<(Vec<[f64
         return Err(refuse(format!("this is no SVG: its root is <{}>", root.tag_name().name()), "give an SVG file"));
     }
     let bad = |why: String| {
-        refuse(format!("the path cannot be read: {why}"), "draw one closed path, and export it as plain SVG")
+        refuse(format!("the outline cannot be read: {why}"), "draw one closed path, and export it as plain SVG")
     };
     let sheets = StyleSheets::of(&drawing);
     let mut search = Search { drawing: &drawing, sheets: &sheets, found: Vec::new() };
@@ -87,13 +89,23 @@ pub(crate) fn outline(path: &Path, options: &DrawingOptions) -> Result<(Vec<[f64
         let exists = |id: &str| drawing.descendants().any(|node| node.attribute("id") == Some(id));
         let what = match (chosen.len(), options.id) {
             (0, Some(id)) if exists(id) => {
-                format!("the element with the id \"{id}\" is hidden, a definition, or neither path nor polygon")
+                format!("the element with the id \"{id}\" is hidden, a definition, or neither a path nor a basic shape")
             }
-            (0, Some(id)) => format!("there is no path with the id \"{id}\""),
-            (0, None) => "there is no path in this drawing".into(),
-            (n, _) => format!("there are {n} paths in this drawing"),
+            (0, Some(id)) => format!("there is no path or basic shape with the id \"{id}\""),
+            (0, None) => "there is no path or basic shape in this drawing".into(),
+            (n, _) => {
+                let names: Vec<&str> = chosen.iter().map(|drawn| drawn.node.tag_name().name()).collect();
+                let count = |name: &&str| names.iter().filter(|own| *own == name).count();
+                let kinds: Vec<String> = DRAWN
+                    .iter()
+                    .map(|name| (count(name), name))
+                    .filter(|(n, _)| *n > 0)
+                    .map(|(n, name)| format!("{n} <{name}>"))
+                    .collect();
+                format!("there are {n} paths and basic shapes in this drawing: {}", kinds.join(", "))
+            }
         };
-        let help = "draw one path or polygon (other objects: \"convert to path\"), or name one:  id = \"hull\"";
+        let help = "draw one path or basic shape (other objects: \"convert to path\"), or name one:  id = \"hull\"";
         return Err(refuse(what, help));
     };
     if let Some(why) = &drawn.place.unread {
@@ -102,7 +114,8 @@ pub(crate) fn outline(path: &Path, options: &DrawingOptions) -> Result<(Vec<[f64
     let (unit, notes) =
         unit(path, &root, options).map_err(|why| refuse(why, "give width and height as in  width=\"540mm\""))?;
     let to_metres = Affine::scale_non_uniform(unit[0] * options.scale, -unit[1] * options.scale);
-    let curve = to_metres * drawn.place.transform * element_path(&drawn.node).map_err(bad)?;
+    let curve =
+        to_metres * drawn.place.transform * element_path(&drawn.node, &sheets.style(&drawn.node)).map_err(bad)?;
     let size = curve.control_box();
     if !curve.is_finite() || size.width().max(size.height()) > LARGEST * options.tolerance {
         return Err(bad("its coordinates are not finite, or far too large for dp".into()));
@@ -162,13 +175,13 @@ struct Place {
     unread: Option<String>,
 }
 
-/// A path or polygon that is drawn.
+/// A path or basic shape that is drawn.
 struct Drawn<'a, 'i> {
     node: Node<'a, 'i>,
     place: Place,
 }
 
-/// Collects the paths that are drawn.
+/// Collects the paths and basic shapes that are drawn.
 struct Search<'a, 'i> {
     drawing: &'a roxmltree::Document<'i>,
     sheets: &'a StyleSheets,
@@ -205,8 +218,11 @@ impl<'a, 'i> Search<'a, 'i> {
             Err(why) => place.unread = place.unread.or(Some(why)),
         }
         match node.tag_name().name() {
-            "path" | "polygon" if !place.is_hidden => self.found.push(Drawn { node, place }),
-            "path" | "polygon" => {}
+            name if DRAWN.contains(&name) => {
+                if !place.is_hidden {
+                    self.found.push(Drawn { node, place });
+                }
+            }
             "use" => self.follow(node, place)?,
             name => {
                 let own_view = ["x", "y", "width", "height", "viewBox"].iter().any(|key| node.has_attribute(*key));
@@ -256,19 +272,6 @@ fn chosen<'s, 'a, 'i>(found: &'s [Drawn<'a, 'i>], id: Option<&str>) -> Vec<&'s D
     let ways: [&dyn Fn(&Drawn) -> bool; 3] = [&direct, &referred, &own];
     let by = |way: &dyn Fn(&Drawn) -> bool| found.iter().filter(|drawn| way(drawn)).collect::<Vec<_>>();
     ways.into_iter().map(by).find(|chosen| !chosen.is_empty()).unwrap_or_default()
-}
-
-/// The path of the element.
-fn element_path(node: &roxmltree::Node) -> std::result::Result<BezPath, String> {
-    if let Some(points) = node.attribute("points") {
-        let mut path = BezPath::new();
-        for (i, (x, y)) in svgtypes::PointsParser::from(points).enumerate() {
-            path.push(if i == 0 { PathEl::MoveTo(Point::new(x, y)) } else { PathEl::LineTo(Point::new(x, y)) });
-        }
-        path.push(PathEl::ClosePath);
-        return Ok(path);
-    }
-    BezPath::from_svg(node.attribute("d").unwrap_or("")).map_err(|why| why.to_string())
 }
 
 /// The corners of the closed path within `tolerance`, without repeated points.

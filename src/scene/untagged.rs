@@ -5,12 +5,16 @@ use std::fmt;
 use schemars::JsonSchema;
 use serde::{
     Deserialize, Deserializer, Serialize, Serializer,
-    de::{self, MapAccess, SeqAccess, Visitor, value::MapAccessDeserializer, value::SeqAccessDeserializer},
+    de::{
+        self, IntoDeserializer, MapAccess, SeqAccess, Visitor, value::MapAccessDeserializer,
+        value::SeqAccessDeserializer,
+    },
 };
 
 use super::{
     context::{Context, Defaults, quoted_list, set_keys},
     files, record,
+    section::shape::AxisName,
 };
 use crate::{
     error,
@@ -49,6 +53,40 @@ impl<'de> Deserialize<'de> for FieldFormulaConfig {
             }
             fn visit_i64<E: de::Error>(self, x: i64) -> Result<FieldFormulaConfig, E> {
                 Ok(FieldFormulaConfig(x.to_string()))
+            }
+        }
+        deserializer.deserialize_any(Form)
+    }
+}
+
+/// One axis, or several.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct AxesConfig(#[schemars(with = "OneOrSeveralAxes")] pub Vec<AxisName>);
+
+/// How axes may be written, for the schema.
+#[derive(JsonSchema)]
+#[schemars(untagged)]
+#[allow(dead_code, reason = "only its shape counts")]
+enum OneOrSeveralAxes {
+    /// One axis.
+    One(AxisName),
+    /// Several axes.
+    Several(Vec<AxisName>),
+}
+
+impl<'de> Deserialize<'de> for AxesConfig {
+    fn deserialize<De: Deserializer<'de>>(deserializer: De) -> Result<Self, De::Error> {
+        struct Form;
+        impl<'de> Visitor<'de> for Form {
+            type Value = AxesConfig;
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                write!(f, "an axis, or a list of axes such as [\"x\", \"y\"]")
+            }
+            fn visit_str<E: de::Error>(self, name: &str) -> Result<AxesConfig, E> {
+                Ok(AxesConfig(vec![AxisName::deserialize(name.into_deserializer())?]))
+            }
+            fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<AxesConfig, A::Error> {
+                Ok(AxesConfig(Vec::deserialize(SeqAccessDeserializer::new(list))?))
             }
         }
         deserializer.deserialize_any(Form)

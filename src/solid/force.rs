@@ -1,7 +1,7 @@
 //! Prescribed forces and torques on a free solid, such as wind or a thruster.
 
 use crate::{
-    math::{Bivector, Vector},
+    math::{Bivector, Vector, rotated_tensor},
     solid::{Kinematics, Lifetime, Load, TimeFunction},
 };
 
@@ -92,7 +92,7 @@ impl<const D: usize> ForceSpec<D> {
         let mut torque = Bivector::from_axial(&turns);
         if self.rotates_with_solid {
             let turn = now.pose.rotation * start.pose.rotation.transpose();
-            (force, torque) = (turn * force, Bivector(turn * torque.0 * turn.transpose()));
+            (force, torque) = (turn * force, Bivector(rotated_tensor(&turn, &torque.0)));
         }
         let at = self.at.map_or(now.centre, |at| now.pose.point(&start.pose.local(&at)));
         Load { force, torque: torque + Bivector::torque(&(at - now.centre), &force) }

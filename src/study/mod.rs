@@ -24,6 +24,6 @@ pub use repeat_spread::{REPEATS_NOTE, Spread, spread_table};
 pub use result_rows::ResultRow;
 pub(crate) use result_rows::rows_to_csv;
 pub use results::StudyResults;
-pub use time_estimate::{DEFAULT_SPEED, TimeEstimate, estimate_times};
+pub use time_estimate::{TimeEstimate, estimate_times};
 pub use validation::Validation;
 pub use validation_cases::{ValidationCase, select_cases, validation_cases};

@@ -1,11 +1,7 @@
 //! Estimates the duration of a list of runs from the finished runs, or from a default speed.
 
 use super::{Job, JobResult, JobState};
-use crate::{error::Result, scene::SizeEstimate};
-
-/// The default speed in 2-D and 3-D: water particles × force passes per second on one thread. The speed is half the
-/// result of `pontoon bench` on a slow machine with the default models.
-pub const DEFAULT_SPEED: [f64; 2] = [4e6, 1.2e6];
+use crate::{error::Result, preflight::DEFAULT_SPEED, scene::SizeEstimate};
 
 /// An estimate of a job before its run.
 #[derive(Clone, Debug, PartialEq)]

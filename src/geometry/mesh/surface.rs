@@ -27,8 +27,8 @@ pub(crate) struct Surface {
 /// The completion of a surface that is not closed, and the tolerance of crossings.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Completion {
-    /// The number of the axis along which the surface is mirrored at 0.
-    pub(crate) mirror: Option<usize>,
+    /// Whether the surface is mirrored at 0 along each axis.
+    pub(crate) mirror: [bool; 3],
     /// The number of the axis normal to the plane in which open edges are closed.
     pub(crate) cap: Option<usize>,
     /// Thickness (m) of a plate around the surface.
@@ -68,7 +68,7 @@ impl Surface {
 
     /// Mirrors, caps and thickens the surface, in this order.
     fn complete(&mut self, completion: &Completion, notes: &mut Vec<String>) -> Result<()> {
-        if let Some(axis) = completion.mirror {
+        for axis in (0..3).filter(|axis| completion.mirror[*axis]) {
             completion::mirror(self, axis, notes)?;
             self.unify_orientation();
         }

@@ -19,7 +19,7 @@ use crate::{
         context::{Context, Defaults, quoted_list, set_keys},
         files,
         mesh::{self, MeshOptions},
-        untagged::{DraftChoice, LengthUnit, PolylineConfig},
+        untagged::{AxesConfig, DraftChoice, LengthUnit, PolylineConfig},
     },
 };
 
@@ -101,8 +101,9 @@ pub struct MeshConfig {
     pub unit: Option<LengthUnit>,
     /// `true`: reverses the facets.
     pub flip: Option<bool>,
-    /// Adds the mirror image across the plane through the origin normal to this axis, for half a hull.
-    pub mirror: Option<AxisName>,
+    /// Adds the mirror image across the plane through the origin normal to this axis, for half a hull; across several
+    /// planes one after the other, for a quarter.
+    pub mirror: Option<AxesConfig>,
     /// Closes open edges that lie in planes normal to this axis, as of panels that end at the waterline.
     pub cap: Option<AxisName>,
     /// Makes a plate of this thickness (m) around the surface, half of it on each side.
@@ -365,10 +366,11 @@ impl ShapeConfig {
 fn mesh_shape<const D: usize>(ctx: &Context, config: &MeshConfig) -> Result<Shape<D>> {
     let path = files::path_beside(ctx.folder(), &config.file)?;
     let unit = config.scale.unwrap_or(1.0) * config.unit.unwrap_or_default().metres();
-    let number = |axis: Option<AxisName>| axis.map(|axis| axis as usize);
+    let mut mirror = [false; 3];
+    config.mirror.iter().flat_map(|axes| &axes.0).for_each(|axis| mirror[*axis as usize] = true);
     let completion = Completion {
-        mirror: number(config.mirror),
-        cap: number(config.cap),
+        mirror,
+        cap: config.cap.map(|axis| axis as usize),
         thickness: config.thickness,
         ..Completion::default()
     };

@@ -5,6 +5,8 @@ use svgtypes::{Align, AspectRatio, Length, LengthUnit, ViewBox};
 
 /// Metres of an inch.
 const INCH: f64 = 0.0254;
+/// Metres of a px.
+pub(super) const PIXEL: f64 = INCH / 96.0;
 
 /// Returns the lengths (m) of a unit of the drawing along x and y, or `None` if the drawing does not give its size. A
 /// drawing gives its size if its width or height has a unit. Without a viewBox, its unit is the px, 1/96 inch.
@@ -26,7 +28,7 @@ pub(super) fn own_unit(root: &Node) -> Result<Option<[f64; 2]>, String> {
     if !has_unit(&width) && !has_unit(&height) {
         return Ok(None);
     }
-    let Some(text) = root.attribute("viewBox") else { return Ok(Some([INCH / 96.0; 2])) };
+    let Some(text) = root.attribute("viewBox") else { return Ok(Some([PIXEL; 2])) };
     let view: ViewBox = text.parse().map_err(|_| format!("its viewBox \"{text}\" is not four numbers with a size"))?;
     let x = width.and_then(metres).map(|width| width / view.w);
     let y = height.and_then(metres).map(|height| height / view.h);
@@ -47,9 +49,9 @@ pub(super) fn own_unit(root: &Node) -> Result<Option<[f64; 2]>, String> {
 }
 
 /// Returns the length in metres, or `None` if it is relative. A number without a unit is one in px.
-fn metres(length: Length) -> Option<f64> {
+pub(super) fn metres(length: Length) -> Option<f64> {
     let unit = match length.unit {
-        LengthUnit::None | LengthUnit::Px => INCH / 96.0,
+        LengthUnit::None | LengthUnit::Px => PIXEL,
         LengthUnit::In => INCH,
         LengthUnit::Cm => 0.01,
         LengthUnit::Mm => 0.001,

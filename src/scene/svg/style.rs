@@ -7,9 +7,27 @@ use roxmltree::Node;
 const UNITS: [(&str, f64); 6] =
     [("px", 1.0), ("mm", 96.0 / 25.4), ("cm", 96.0 / 2.54), ("in", 96.0), ("pt", 96.0 / 72.0), ("pc", 16.0)];
 
-/// Properties that place or hide a path.
-const PROPERTIES: [&str; 9] =
-    ["display", "visibility", "transform", "transform-origin", "transform-box", "translate", "rotate", "scale", "d"];
+/// Properties that hide, place or size a shape.
+const PROPERTIES: [&str; 18] = [
+    "display",
+    "visibility",
+    "transform",
+    "transform-origin",
+    "transform-box",
+    "translate",
+    "rotate",
+    "scale",
+    "d",
+    "x",
+    "y",
+    "width",
+    "height",
+    "cx",
+    "cy",
+    "r",
+    "rx",
+    "ry",
+];
 
 /// The rules of the style sheets of a drawing, weakest first.
 #[derive(Default)]

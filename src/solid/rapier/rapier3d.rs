@@ -48,7 +48,7 @@ use rapier::{
 use crate::{
     error::{Error, Result},
     geometry::{ContactGeometry, Mesh, Shape},
-    math::{Bivector, Matrix, Vector},
+    math::{Bivector, Matrix, Vector, rotated_tensor},
     solid::FreeBody,
 };
 
@@ -94,8 +94,8 @@ fn inverse_inertia(inverse: &AngularInertia) -> Matrix<3> {
 /// inertia about the world's axes at the start: rapier would turn them into spurious rates of the free axes.
 fn mass_properties(body: &FreeBody<D>, start: &Matrix<D>) -> MassProperties {
     let inertia = if body.locked_rotations.contains(&true) {
-        let world = start * body.inertia * start.transpose();
-        start.transpose() * Matrix::from_diagonal(&world.diagonal()) * start
+        let world = rotated_tensor(start, &body.inertia);
+        rotated_tensor(&start.transpose(), &Matrix::from_diagonal(&world.diagonal()))
     } else {
         body.inertia
     };

@@ -223,7 +223,7 @@ fn inspect_tells_the_mass_at_the_start_and_the_largest() -> Result<()> {
     );
     let folder = TestFolder::with_scene("ballast-inspect", &text);
     let found = run::inspect(&folder.join("scene.toml"), &run::InspectOptions::default())?;
-    let body = &found.preflight.bodies[0];
+    let body = &found.report().unwrap().preflight.bodies[0];
     // 20 kg/m at a draft of 0.1 m.
     assert!((body.mass_kg - 20.0).abs() < 1e-12 && (body.largest_mass_kg.unwrap() - 20.0).abs() < 1e-12, "{body:?}");
     assert!((body.draft_m - 0.1).abs() < 1e-9 && (body.afloat.as_ref().unwrap().draft_m - 0.1).abs() < 1e-9);

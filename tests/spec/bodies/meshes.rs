@@ -124,6 +124,8 @@ fn mesh_files_without_a_closed_solid_are_refused_with_the_reason() {
     assert!(mesh("file = \"inside_out.stl\", flip = true", &folder).is_ok());
     assert_refused("file = \"open.stl\", thickness = -0.1", &["thickness"]);
     assert_refused("file = \"open.stl\", mirror = \"w\"", &["mirror", "known: x, y, z"]);
+    assert_refused("file = \"open.stl\", mirror = [\"x\", \"w\"]", &["mirror", "known: x, y, z"]);
+    assert_refused("file = \"open.stl\", mirror = 1", &["mirror", "a list of axes"]);
     assert_refused("file = \"mesh.ply\"", &["neither .stl nor .obj"]);
     assert_refused("file = \"cut.stl\"", &["cut.stl cannot be read"]);
     assert_refused("file = \"too_many.stl\"", &["too_many.stl cannot be read"]);
@@ -205,14 +207,24 @@ fn drawings_without_exactly_one_closed_outline_are_refused_with_the_reason() {
         assert!(message.contains(part), "no \"{part}\" in: {message}");
     };
     let two = "<svg><path id='a' d='M0,0 L1,0 1,1 z'/><polygon id='b' points='0,0 0.5,0 0.5,0.5'/></svg>";
-    assert_message(two, "", "there are 2 paths");
-    assert_message(two, ", id = \"c\"", "no path with the id \"c\"");
+    assert_message(two, "", "there are 2 paths and basic shapes in this drawing: 1 <path>, 1 <polygon>");
+    assert_message(two, ", id = \"c\"", "no path or basic shape with the id \"c\"");
     assert_message(two, ", id = \"b\"", "");
-    assert_message("<svg><rect width='1' height='1'/></svg>", "", "no path in this drawing");
+    assert_message("<svg><text>hull</text></svg>", "", "no path or basic shape in this drawing");
+    // A frame around the hull is no reason to guess which of them is meant.
+    let framed = "<svg><rect width='9' height='9'/><path id='a' d='M0,0 L1,0 1,1 z'/></svg>";
+    assert_message(framed, "", "1 <path>, 1 <rect>");
+    assert_message(framed, ", id = \"a\"", "");
+    assert_message("<svg><line x2='1'/></svg>", "", "it is not closed");
+    assert_message("<svg><polyline points='0,0 1,0 1,1'/></svg>", "", "it is not closed");
+    assert_message("<svg><rect width='1'/></svg>", "", "its height is not positive");
+    assert_message("<svg><rect width='1' height='1' rx='-1'/></svg>", "", "negative radius");
+    assert_message("<svg><circle r='50%'/></svg>", "", "its r \"50%\" is not a number");
+    assert_message("<svg><ellipse rx='0'/></svg>", "", "its radii are not positive");
     assert_message("<svg><path d='M0,0 L1,0 1,1'/></svg>", "", "it is not closed");
     assert_message("<svg><path d='M0,0 L1,0 1,1 z M2,0 L3,0 3,1 z'/></svg>", "", "it has 2 outlines");
     assert_message("<svg><path d='M0,0 L1,0 1e300,1 z'/></svg>", "", "far too large");
-    assert_message("<svg><path d='nonsense'/></svg>", "", "the path cannot be read");
+    assert_message("<svg><path d='nonsense'/></svg>", "", "the outline cannot be read");
     assert_message("svg", "", "this is no SVG");
     assert_message("<svg><path d='M0,0 L1,1 1,0 0,1 z'/></svg>", "", "crosses itself");
     assert_message(two, ", id = \"b\", scale = 0.0", "scale");
@@ -299,7 +311,7 @@ fn notes_about_mesh_and_drawing_files_are_findings_of_an_inspection() {
          [[solid]]\nname = \"body\"\nshape = { mesh = { file = \"near.stl\" } }\nat = { x = 0.3, y = 0.3, z = 0.0 }\nfixed = true\n",
     )
     .unwrap();
-    let report = pontoon::run::inspect(&folder.join("scene.toml"), &Default::default()).unwrap();
+    let report = pontoon::run::inspect(&folder.join("scene.toml"), &Default::default()).unwrap().report().unwrap();
     let finding = report.preflight.findings.iter().find(|finding| finding.topic == "mesh").unwrap();
     assert!(finding.what.starts_with("near.stl: 1 corner is joined"), "{}", finding.what);
 }

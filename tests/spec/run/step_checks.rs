@@ -229,7 +229,7 @@ fn a_timing_stops_at_the_first_alarm_and_reports_it() {
         driven = { along = [1.0, 0.0], distance = { formula = \"0.1*sin(300*t)\" } }\n";
     let home = TestFolder::with_scene("timing-alarm", scene);
     let asked = InspectOptions { threads: Some(1), timing: true, ..InspectOptions::default() };
-    let report = run::inspect(&home.join("scene.toml"), &asked).unwrap();
+    let report = run::inspect(&home.join("scene.toml"), &asked).unwrap().report().unwrap();
     let finding =
         report.preflight.findings.iter().find(|finding| finding.topic == "breaks_down").expect("the run fails");
     let after = |word: &str| finding.what.split(word).nth(1).and_then(|rest| rest.split([' ', ',']).next());

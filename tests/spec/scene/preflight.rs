@@ -6,7 +6,7 @@ use std::{f64::consts::PI, path::Path};
 use pontoon::{
     model::Dimension,
     preflight::{self, BodySummary, Preflight, Severity},
-    run::{self, Progress, RunOptions},
+    run::{self, Inspection, Progress, RunOptions},
     scene::{BuiltScene, Scene, bundled_scenes},
     simulation::Simulation,
     solid::Dim,
@@ -62,9 +62,9 @@ fn preflight_report<const D: usize>(scene: &Scene) -> Preflight
 where
     Dim<D>: Dimension<D>,
 {
-    let BuiltScene { setup, plan, removed_by_solids, still_water, .. } = scene.build::<D>().unwrap();
+    let BuiltScene { setup, plan, initial_water, .. } = scene.build::<D>().unwrap();
     let sim = Simulation::new(setup).unwrap();
-    preflight::preflight(&sim, &plan, still_water, removed_by_solids, &[1, 2])
+    preflight::preflight(&sim, &plan, initial_water, &[1, 2])
 }
 
 fn report(sets: &[(&str, &str)]) -> Preflight {
@@ -357,13 +357,38 @@ fn the_bundled_scenes_have_no_warnings_except_documented_ones() {
 }
 
 #[test]
+fn a_scene_of_more_than_four_million_particles_is_estimated_without_particles() {
+    let home = TestFolder::new("large");
+    let scene = home.join("scene.toml");
+    std::fs::write(&scene, GOOD).unwrap();
+    let inspected = |sets: &[(&str, &str)]| {
+        let overrides = sets.iter().map(|(k, v)| (k.to_string(), v.to_string())).collect();
+        run::inspect(&scene, &run::InspectOptions { overrides, ..Default::default() })
+    };
+    let Inspection::Estimate(size) = inspected(&[("dp", "0.0004")]).unwrap() else { panic!("particles were created") };
+    // 1.9 m × 0.4 m of water.
+    assert_close(size.fluid, 0.76 / 0.0004_f64.powi(2), 1e-9);
+    assert_eq!((size.title.as_str(), size.dimension, size.until_s), ("A box afloat", 2, 2.0));
+    let report = inspected(&[]).unwrap().report().expect("10,000 particles are created");
+    assert_eq!(report.preflight.size.dimension, 2);
+    // Whole steps.
+    assert!((size.steps - 2.0 / size.dt_s).abs() < 1.0, "{size:?}");
+    // What a run would refuse is refused without particles too.
+    let refused = inspected(&[("dp", "0.0004"), ("domain.min", "[0.0, 0.0]"), ("domain.max", "[1.0, 1.0]")]);
+    assert!(refused.unwrap_err().to_string().contains("not wholly inside the domain"));
+}
+
+#[test]
 fn the_estimated_output_size_agrees_with_a_run() {
     let home = TestFolder::new("preflight");
     let out = home.join("run");
     let sets = [("until", "0.05"), ("frames.every", "0.01"), ("checkpoint.every", "0.04")];
     let sets: Vec<(String, String)> = sets.iter().map(|(k, v)| (k.to_string(), v.to_string())).collect();
     let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/raft");
-    let report = run::inspect(&scene, &run::InspectOptions { overrides: sets.clone(), ..Default::default() }).unwrap();
+    let report = run::inspect(&scene, &run::InspectOptions { overrides: sets.clone(), ..Default::default() })
+        .unwrap()
+        .report()
+        .unwrap();
     assert_eq!(report.timing, None, "timing is off by default");
     let options = RunOptions { out: Some(out.clone()), overrides: sets, threads: None };
     run::run(&scene, &options, &mut |_: &Progress| true).unwrap();

@@ -34,7 +34,7 @@ fn folder(name: &str, law: &str, record: impl AsRef<[u8]>) -> TestFolder {
 
 fn inspected(folder: &Path) -> pontoon::Result<Preflight> {
     let options = InspectOptions { threads: Some(1), ..InspectOptions::default() };
-    Ok(run::inspect(&folder.join("scene.toml"), &options)?.preflight)
+    Ok(run::inspect(&folder.join("scene.toml"), &options)?.report().unwrap().preflight)
 }
 
 /// Findings of the kinds that concern records: severity, topic, text with its remedy.

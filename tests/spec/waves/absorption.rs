@@ -141,8 +141,8 @@ fn invalid_absorption_keys_are_refused_with_the_key_and_a_remedy() {
 #[test]
 fn preflight_reports_the_absorbing_paddles() {
     let absorbers = |end: &str| {
-        let BuiltScene { setup, plan, removed_by_solids, still_water, .. } = built(end).unwrap();
-        preflight::preflight(&Simulation::new(setup).unwrap(), &plan, still_water, removed_by_solids, &[]).absorbers
+        let BuiltScene { setup, plan, initial_water, .. } = built(end).unwrap();
+        preflight::preflight(&Simulation::new(setup).unwrap(), &plan, initial_water, &[]).absorbers
     };
     assert!(absorbers("fixed = true").is_empty());
     let own = &absorbers(ABSORBER)[0];

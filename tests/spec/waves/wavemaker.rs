@@ -54,8 +54,8 @@ fn preflight_report<const D: usize>(built: BuiltScene<D>) -> Preflight
 where
     Dim<D>: Dimension<D>,
 {
-    let BuiltScene { setup, plan, removed_by_solids, still_water, .. } = built;
-    preflight::preflight(&Simulation::new(setup).unwrap(), &plan, still_water, removed_by_solids, &[])
+    let BuiltScene { setup, plan, initial_water, .. } = built;
+    preflight::preflight(&Simulation::new(setup).unwrap(), &plan, initial_water, &[])
 }
 
 fn report(driven: &str) -> Preflight {

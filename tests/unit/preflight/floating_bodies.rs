@@ -15,9 +15,9 @@ fn judged(sections: &str) -> Preflight {
          [[water]]\nfill = {{ box = {{ min = [0.0, 0.0], max = [1.6, 0.7] }} }}\n\
          [[solid]]\nname = \"tank\"\nfixed = true\nshape = {{ tank = {{ size = [1.6, 1.2] }} }}\n{sections}"
     );
-    let BuiltScene { setup, plan, removed_by_solids, still_water, .. } =
+    let BuiltScene { setup, plan, initial_water, .. } =
         Scene::parse(&text, Path::new(""), &[]).unwrap().build::<2>().unwrap();
-    preflight(&Simulation::new(setup).unwrap(), &plan, still_water, removed_by_solids, &[])
+    preflight(&Simulation::new(setup).unwrap(), &plan, initial_water, &[])
 }
 
 fn solid(name: &str, [wide, high]: [f64; 2], density: f64, at: &str) -> String {

@@ -15,10 +15,10 @@ fn judged<const D: usize>(text: &str) -> (Preflight, Vec<crate::math::Vector<D>>
 where
     Dim<D>: Dimension<D>,
 {
-    let BuiltScene { setup, plan, removed_by_solids, still_water, .. } =
+    let BuiltScene { setup, plan, initial_water, .. } =
         Scene::parse(text, Path::new(""), &[]).unwrap().build::<D>().unwrap();
     let sim = Simulation::new(setup).unwrap();
-    let found = preflight(&sim, &plan, still_water, removed_by_solids, &[]);
+    let found = preflight(&sim, &plan, initial_water, &[]);
     let water = sim.system().fluid().r.to_vec();
     (found, water)
 }

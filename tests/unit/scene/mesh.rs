@@ -299,7 +299,7 @@ fn half_boat() -> Vec<[[f64; 3]; 3]> {
 
 #[test]
 fn half_a_hull_without_deck_becomes_a_hull() {
-    let both = Completion { mirror: Some(1), cap: Some(2), ..Completion::default() };
+    let both = Completion { mirror: [false, true, false], cap: Some(2), ..Completion::default() };
     let text = solid("half", &half_boat());
     assert_eq!(assert_volume("stl", text.as_bytes(), both, 0.008, 1e-14), "");
     // A centre line 1e-5 m from the plane is moved into it.
@@ -308,14 +308,42 @@ fn half_a_hull_without_deck_becomes_a_hull() {
     assert_parts(&notes, &["moved into the plane y = 0, by 1.0e-5 m"]);
     // A closed half has a wall in the plane, which disappears.
     let closed = solid("half", &facets([-0.2, 0.0, -0.1], [0.2, 0.1, 0.0]));
-    assert_volume("stl", closed.as_bytes(), Completion { mirror: Some(1), ..Completion::default() }, 0.008, 1e-14);
-    let mirror = Completion { mirror: Some(1), ..Completion::default() };
+    assert_volume(
+        "stl",
+        closed.as_bytes(),
+        Completion { mirror: [false, true, false], ..Completion::default() },
+        0.008,
+        1e-14,
+    );
+    let mirror = Completion { mirror: [false, true, false], ..Completion::default() };
     assert_parts(&refusal("stl", text.as_bytes(), mirror), &["the mesh is open", "cap = \"z\""]);
     assert_parts(&refusal("stl", solid("a", &hull()).as_bytes(), mirror), &["reaches from y = -0.1000 to 0.1000"]);
     let away = text.replace(" 0 ", " 0.01 ");
     assert_parts(&refusal("stl", away.as_bytes(), mirror), &["1.000e-2 m from the plane y = 0"]);
-    let cap_x = Completion { mirror: Some(1), cap: Some(0), ..Completion::default() };
+    let cap_x = Completion { mirror: [false, true, false], cap: Some(0), ..Completion::default() };
     assert_parts(&refusal("stl", text.as_bytes(), cap_x), &["reaches from x = -0.2000 to 0.2000"]);
+}
+
+#[test]
+fn a_quarter_of_a_hull_becomes_a_hull() {
+    // 0.4 × 0.2 × 0.1 m: the part at x > 0 and y > 0, without deck and without its sides in the planes of symmetry.
+    let all = facets([0.0, 0.0, -0.1], [0.2, 0.1, 0.0]);
+    let in_plane = |f: &[[f64; 3]; 3]| (0..3).any(|axis| f.iter().all(|p| p[axis] == 0.0));
+    let open: Vec<_> = all.iter().copied().filter(|f| !in_plane(f)).collect();
+    let quarter = Completion { mirror: [true, true, false], cap: Some(2), ..Completion::default() };
+    assert_eq!(assert_volume("stl", solid("quarter", &open).as_bytes(), quarter, 0.008, 1e-14), "");
+    // A closed quarter has walls in both planes, which disappear.
+    let closed = Completion { cap: None, ..quarter };
+    assert_volume("stl", solid("quarter", &all).as_bytes(), closed, 0.008, 1e-14);
+    // An eighth, by three planes.
+    let eighth = Completion { mirror: [true; 3], ..Completion::default() };
+    assert_volume("stl", solid("eighth", &open).as_bytes(), eighth, 0.016, 1e-14);
+    // One plane leaves the edges in the other open.
+    let half = Completion { mirror: [true, false, false], ..quarter };
+    assert_parts(
+        &refusal("stl", solid("quarter", &open).as_bytes(), half),
+        &["cap = \"z\" closes open edges in a plane"],
+    );
 }
 
 #[test]

@@ -1,21 +1,30 @@
 //! Drawings as programs write them: exact sizes, transforms, hidden paths and references.
 
 use std::{
+    f64::consts::PI,
     fs,
     sync::atomic::{AtomicUsize, Ordering},
 };
 
 use super::*;
 
-/// Writes a drawing and returns the extent (m) of its outline along x and y, and its notes.
-fn extent(svg: &str, id: Option<&str>, unit: Option<LengthUnit>) -> Result<([f64; 2], String)> {
+/// Largest distance of an outline from its curves, m.
+const TOLERANCE: f64 = 1e-4;
+
+/// Writes a drawing and returns its outline (m), and the notes about it.
+fn outline_of(svg: &str, id: Option<&str>, unit: Option<LengthUnit>) -> Result<(Vec<[f64; 2]>, Vec<FileNote>)> {
     static NUMBER: AtomicUsize = AtomicUsize::new(0);
     let number = NUMBER.fetch_add(1, Ordering::Relaxed);
     let path = std::env::temp_dir().join(format!("pontoon-svg-{}-{number}.svg", std::process::id()));
     fs::write(&path, svg).unwrap();
-    let result = outline(&path, &DrawingOptions { id, scale: 1.0, unit, tolerance: 1e-4 });
+    let result = outline(&path, &DrawingOptions { id, scale: 1.0, unit, tolerance: TOLERANCE });
     fs::remove_file(&path).unwrap();
-    let (points, notes) = result?;
+    result
+}
+
+/// Returns the extent (m) of the outline in a drawing along x and y, and the notes.
+fn extent(svg: &str, id: Option<&str>, unit: Option<LengthUnit>) -> Result<([f64; 2], String)> {
+    let (points, notes) = outline_of(svg, id, unit)?;
     let range = |i: usize| {
         let values = || points.iter().map(|p| p[i]);
         values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min)
@@ -179,6 +188,38 @@ fn references_draw_the_path_to_which_they_refer() {
     assert!(refusal(&drawing(size, &deep), None).contains("too deep"));
     let nested = format!("<svg x='1' width='10' viewBox='0 0 1 1'>{RECTANGLE}</svg>");
     assert!(refusal(&drawing(size, &nested), None).contains("a <svg> with its own size"));
+}
+
+#[test]
+fn basic_shapes_are_outlines_of_their_exact_size() {
+    let size = "width='540mm' height='120mm' viewBox='0 0 540 120'";
+    let (rectangle, ellipse) = (0.2 * 0.1, PI * 0.1 * 0.05);
+    // Quarters of ellipses of 20 × 10 mm at the corners.
+    let rounded = rectangle - (4.0 - PI) * 0.02 * 0.01;
+    for (shape, area) in [
+        ("<polyline points='10,10 210,10 210,110 10,110 10,10'/>", rectangle),
+        ("<rect x='10' y='10' width='200' height='100'/>", rectangle),
+        ("<rect style='width: 200px; height: 100px' rx='0' ry='5'/>", rectangle),
+        ("<style>.hull { width: 200px }</style><rect class='hull' width='1' height='100'/>", rectangle),
+        ("<rect width='200' height='100' rx='20' ry='10'/>", rounded),
+        ("<rect width='100' height='100' transform='scale(2 1)' rx='10'/>", rounded),
+        ("<rect width='200' height='100' rx='900' ry='900'/>", ellipse),
+        ("<ellipse cx='120' cy='60' rx='100' ry='50'/>", ellipse),
+        ("<circle cx='5' r='50' transform='scale(2 1)'/>", ellipse),
+        ("<defs><ellipse id='hull' rx='100' ry='50'/></defs><use href='#hull' x='150'/>", ellipse),
+    ] {
+        let svg = drawing(size, shape);
+        let ([x, y], _) = extent(&svg, None, None).unwrap_or_else(|e| panic!("{e}: {svg}"));
+        // Chords end on the curve and leave it by the tolerance at most; the curve is accurate to 10⁻⁶ of the radius.
+        assert!((0.2 - 2.0 * TOLERANCE..0.2 + 1e-6).contains(&x), "{x} m: {svg}");
+        assert!((0.1 - 2.0 * TOLERANCE..0.1 + 1e-6).contains(&y), "{y} m: {svg}");
+        let (points, _) = outline_of(&svg, None, None).unwrap();
+        let pairs = points.iter().zip(points.iter().cycle().skip(1));
+        let found = 0.5 * pairs.map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum::<f64>();
+        // The perimeter is at most 0.6 m.
+        assert!((found - area).abs() < 0.6 * TOLERANCE, "{found} m², not {area}: {svg}");
+        assert!(area == rectangle || found < area + 1e-6, "chords lie within: {svg}");
+    }
 }
 
 #[test]
