@@ -38,15 +38,22 @@ static COUNTING: Counting = Counting;
 /// Memory of the program itself in the estimate, B: the allocator counts none of it.
 const PROGRAM: f64 = 14e6;
 
-/// What a run of `scene` with these keys allocates at most beyond what is in use before it, B.
+/// What a run of `scene` with these keys allocates at most, from its first report of progress on, beyond what is in use before it, B. The
+/// packing of the water, before that, takes more for a while.
 fn peak(scene: &str, sets: &[(String, String)]) -> f64 {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(scene);
     let out = std::env::temp_dir().join(format!("pontoon-memory-{}", std::process::id()));
     let _ = std::fs::remove_dir_all(&out);
     let options = RunOptions { out: Some(out.clone()), overrides: sets.to_vec(), threads: Some(1) };
-    let before = NOW.load(Relaxed);
-    PEAK.store(before, Relaxed);
-    run::run(&path, &options, &mut |_: &Progress| true).unwrap();
+    let (before, mut begun) = (NOW.load(Relaxed), false);
+    let mut report = |_: &Progress| {
+        if !begun {
+            begun = true;
+            PEAK.store(NOW.load(Relaxed), Relaxed);
+        }
+        true
+    };
+    run::run(&path, &options, &mut report).unwrap();
     let used = PEAK.load(Relaxed) - before;
     std::fs::remove_dir_all(&out).unwrap();
     used as f64
