@@ -24,6 +24,7 @@ use serde::{Deserialize, Serialize};
 use crate::{
     geometry::{Shape, thin::thin_place},
     math::{Bivector, Matrix, Vector, rotated_tensor},
+    model::TimeScheme,
     solid::{FreeBody, Kinematics, Load, Role, Solid},
     sph::FluidProperties,
     system::System,
@@ -162,7 +163,10 @@ impl<const D: usize> AcousticAddedMass<D> {
         let mut join = Six::zeros();
         if theta * fresh > 0.0 {
             let motion = to_six(&Load { force: solid.kinematics.velocity, torque: solid.kinematics.spin });
-            let closing = water * motion - self.flow(system, body) * time2;
+            // The water is at the end of the step, boundary particles are half a step (Verlet: a step) behind.
+            let behind = if system.model().scheme == TimeScheme::Symplectic { 0.5 * dt } else { dt };
+            let way = solid.kinematics.velocity * behind;
+            let closing = water * motion - self.flow(system, body, &way) * time2;
             join = answer(closing * (-theta * fresh)).unwrap_or(join);
             lock(body, |i| join[i] = 0.0);
         }
@@ -207,12 +211,15 @@ impl<const D: usize> AcousticAddedMass<D> {
         sum * stiffness(system)
     }
 
-    /// Returns K v_w of the springs that are wet at present, N/s and N m/s.
-    fn flow(&self, system: &System<D>, body: &FreeBody<D>) -> Six {
+    /// Returns K v_w of the springs that are wet at present, N/s and N m/s; `way` (m) leads from them to where the body is when the
+    /// water is where it is.
+    fn flow(&self, system: &System<D>, body: &FreeBody<D>, way: &Vector<D>) -> Six {
         let mut sum = Six::zeros();
         self.for_each_wet(system, |part, x, normal, along| {
             let (mut weight, mut flow) = (0.0, Vector::<D>::zeros());
-            system.visit_fluid_near(x, &mut |i, _, w| (weight, flow) = (weight + w, flow + system.fluid().v[i] * w));
+            system.visit_fluid_near(&(x + way), &mut |i, _, w| {
+                (weight, flow) = (weight + w, flow + system.fluid().v[i] * w)
+            });
             if weight > 0.0 {
                 sum += along * (part * normal.dot(&flow) / weight);
             }
