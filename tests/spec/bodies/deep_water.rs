@@ -51,10 +51,12 @@ fn the_default_viscosity_does_not_grow_with_the_depth() -> Result<()> {
 
 #[test]
 fn bench_states_the_effective_viscosity_of_the_shipped_default() -> Result<()> {
-    // α c₀ h/(4 (D + 2)) with α = 0.02, c₀ = 10 √(g d) in water 0.6 m deep, and h = 1.7 dp in 2-D and 1.5 dp in 3-D.
-    let c0 = 10.0 * (9.81_f64 * 0.6).sqrt();
+    // α c₀ h/(4 (D + 2)) with α = 0.02, c₀ = 10 √(g d) in water 0.6 m deep up to half a dp, and h = 1.7 dp in 2-D and
+    // 1.5 dp in 3-D.
     for (dimension, h_over_dp, dp) in [(2, 1.7, 1.0 / 323.0), (3, 1.5, 1.0 / 47.0)] {
         let found = bench::default_viscosity(dimension, 50_000)?;
+        assert!((found.depth_m - 0.6).abs() < 0.5 * dp, "{found:?}");
+        let c0 = 10.0 * (9.81 * found.depth_m).sqrt();
         let exact = 0.02 * c0 * h_over_dp * dp / (4.0 * (dimension as f64 + 2.0));
         assert!((found.viscosity_m2ps / exact - 1.0).abs() < 1e-9, "{found:?}, exactly {exact} m²/s");
     }
