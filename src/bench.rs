@@ -181,16 +181,16 @@ impl BenchCase {
 pub fn default_viscosity(dimension: usize, water: usize) -> Result<DefaultViscosity> {
     let case = BenchCase::standard(dimension, water);
     let scene = case.scene_with("")?;
-    let model = match dimension {
+    let (model, depth_m) = match dimension {
         #[cfg(feature = "dim2")]
-        2 => scene.layout::<2>()?.model,
+        2 => scene.layout::<2>().map(|layout| (layout.model, layout.still_water.depth))?,
         #[cfg(feature = "dim3")]
-        3 => scene.layout::<3>()?.model,
+        3 => scene.layout::<3>().map(|layout| (layout.model, layout.still_water.depth))?,
         n => return Err(missing_dimension(n)),
     };
     let (c0_mps, h_m) = (model.c0, model.h);
     let viscosity_m2ps = model.viscosity.effective(c0_mps, h_m, dimension);
-    Ok(DefaultViscosity { dimension, dp_m: case.dp(), depth_m: DEPTH, c0_mps, h_m, viscosity_m2ps })
+    Ok(DefaultViscosity { dimension, dp_m: case.dp(), depth_m, c0_mps, h_m, viscosity_m2ps })
 }
 
 fn missing_dimension(dimension: usize) -> Error {

@@ -225,7 +225,6 @@ fn a_box_heaves_in_a_current_through_the_sides_as_in_still_water() {
     assert!(rest.abs() < 0.02, "{rest} m");
     assert!((way - 2.2).abs() < 0.05, "it crosses the side at 0.6 and 1.8 m: {way} m");
     let off = still.iter().zip(&moving).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-    println!("OFF {off} {way} {rest}");
     // The bed is not smooth for water that slides along it.
     assert!(off < 0.002, "{off} m, a tenth of the first displacement");
 }
