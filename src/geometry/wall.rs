@@ -48,6 +48,7 @@ pub(crate) fn wall_outline<const D: usize>(points: &[Vector<D>], thickness: f64)
 
 /// Returns the closed lines around a wall, counter-clockwise around the solid: one around an open wall, two around a
 /// closed wall.
+#[cfg(feature = "cli")]
 pub(crate) fn wall_contours<const D: usize>(points: &[Vector<D>], thickness: f64) -> Vec<Vec<Vector<D>>> {
     if !is_closed(points) {
         return vec![wall_outline(points, thickness)];
