@@ -120,7 +120,7 @@ impl<const D: usize> WallExtrapolation<f64, D> {
 pub struct WallTarget {
     /// ρ(P_w), kg/m³.
     pub density: f64,
-    /// Share of an increase that is applied at all, –: [`SupportCoverage::fraction`].
+    /// Share of an increase that is applied at all, –: [`Cover::fraction`].
     pub increase: f64,
     /// Share of a decrease that is applied at once, –; the rest within τ.
     pub prompt_decrease: f64,
