@@ -16,7 +16,7 @@ use crate::{
         boundary::Repulsion,
         continuity::Continuity,
         density_diffusion::Fourtakas,
-        gradient_correction::{CorrectedGradientTerm, RenormalizationTerm},
+        gradient_correction::CorrectedGradientTerm,
         kernel::{self, Kernel as _, SUPPORT_RATIO},
         particle_shifting::{Shift, ShiftTerm, ShiftingSuppressionTerm},
         pressure::{Pressure, Tensile},
@@ -51,7 +51,10 @@ pub enum PressureGradient {
     /// The plain kernel gradient.
     #[default]
     Plain,
-    /// Corrected for the arrangement of the neighbours (Bonet & Lok 1999); with the Wendland kernel and without shifting.
+    /// Corrected for the arrangement of the neighbours (Bonet & Lok 1999) near the surface, to some 8 dp below it; with the Wendland
+    /// kernel and without shifting.
+    NearSurface,
+    /// Corrected at every depth, which stirs still water; with the Wendland kernel and without shifting.
     Corrected,
 }
 
@@ -384,7 +387,7 @@ impl Model {
     pub fn conflict(&self) -> Option<&'static str> {
         let alone = matches!(self.kernel, KernelKind::Wendland) && self.shifting == Shifting::None;
         let clash = "corrected gradients are made for the Wendland kernel without shifting";
-        (self.gradient == PressureGradient::Corrected && !alone).then_some(clash)
+        (self.gradient != PressureGradient::Plain && !alone).then_some(clash)
     }
 
     /// The shifting parameters, if any.
@@ -431,10 +434,10 @@ impl Model {
         match self.kernel {
             KernelKind::Wendland => match self.gradient {
                 PressureGradient::Plain => make.with_shifting(kernel::Wendland::new(h, D), plain),
-                PressureGradient::Corrected => make.with_viscosity(
+                PressureGradient::NearSurface | PressureGradient::Corrected => make.with_viscosity(
                     kernel::Wendland::new(h, D),
                     ((Pressure, CorrectedGradientTerm), Continuity),
-                    ((Pressure, RenormalizationTerm), Continuity),
+                    plain,
                 ),
             },
             KernelKind::Cubic { tensile: false } => make.with_shifting(kernel::Cubic::new(h, D), plain),

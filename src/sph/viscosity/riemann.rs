@@ -1,5 +1,5 @@
-//! Dissipation of a limited Riemann solver:  dv_a/dt = −Σ m_b (ρ̄ q_ab)/(ρ_a ρ_b) ∇_a W,  q_ab = c₀ u min(η u/c₀, 1) for
-//! particles that approach with u = −v_ab·r_ab/|r_ab|, else 0.
+//! Dissipation of a limited Riemann solver:  dv_a/dt = −Σ m_b (q_ab/ρ₀) ∇_a W,  q_ab = min(η u², c₀²/η) for particles that approach
+//! with u = −v_ab·r_ab/|r_ab|, else 0.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -7,7 +7,8 @@ use serde::{Deserialize, Serialize};
 use crate::sph::{FluidProperties, Num, Pair, Term};
 
 /// The dissipation of the low-dissipation Riemann solver, limiter η @zhang2017: quadratic in the approach, so that it stops
-/// impacts and hardly damps a wave; at u ≥ c₀/η it is that of the acoustic solver, ρ̄ c₀ u.
+/// impacts and hardly damps a wave. The source limits q at u = c₀/η to the linear c₀ u; here it is constant from there on, which
+/// needs no root: no flow of weakly compressible water approaches so fast.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Riemann {
@@ -25,7 +26,7 @@ impl Default for Riemann {
 impl Riemann {
     /// The law in water of the given constants; `share` (–) of it acts.
     pub fn term<const D: usize>(&self, properties: &FluidProperties<D>, share: f64) -> RiemannTerm {
-        RiemannTerm { eta: self.eta * share, c0: properties.c0 * share }
+        RiemannTerm { eta: self.eta * share, most: share * properties.c0 * properties.c0 / self.eta }
     }
 }
 
@@ -33,7 +34,7 @@ impl Riemann {
 #[derive(Clone, Copy, Debug)]
 pub struct RiemannTerm {
     eta: f64,
-    c0: f64,
+    most: f64,
 }
 
 impl<const D: usize> Term<D> for RiemannTerm {
@@ -41,7 +42,6 @@ impl<const D: usize> Term<D> for RiemannTerm {
     fn along_r<N: Num>(&self, ab: &Pair<N, D>, sum: N) -> N {
         // u = −v_ab·r_ab/|r_ab|, so that u² = (v_ab·r_ab)²/r².
         let approach = ab.velocity_along_r.min(ab.constant(0.0));
-        let square = approach * approach * ab.inv_r2;
-        sum - (square * ab.constant(self.eta)).min(square.sqrt() * ab.constant(self.c0))
+        sum - (approach * approach * ab.inv_r2 * ab.constant(self.eta)).min(ab.constant(self.most))
     }
 }
