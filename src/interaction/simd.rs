@@ -19,8 +19,8 @@ use super::{
     simd_layout::{PackedCluster, PackedParticles, clusters},
 };
 use crate::{
-    math::{Matrix, Vector},
     math::simd::{self, LANES, LaneRow, Level, Simd, SimdTask, f32x8, i32x8},
+    math::{Matrix, Vector},
     neighbours::{Clusters, ListPart, NeighbourLists, Slab},
     particles::PARTICLES_PER_TASK,
     sph::{AuxiliarySums, FluidProperties, Pair, PairSide, Term, Units, boundary::WallExtrapolation, kernel::Kernel},
@@ -358,12 +358,14 @@ impl<S: Simd, K: Kernel, const D: usize> SlabInput<'_, S, K, D> {
     fn particle_in_lane(&self, c: usize, l: usize) -> BroadcastParticle<S, D> {
         let PackedCluster { x, v, s } = &self.clusters[c];
         let all = |x: f32| f32x8::splat(self.simd, x);
-        let mut one = BroadcastParticle {
-            cluster: c,
-            x: [i32x8::splat(self.simd, 0); D],
-            v: [self.zero; D],
-            side: self.pair_side::<true>(c, [all(s[0][l]), all(s[1][l]), all(s[2][l]), all(s[3][l])], |row| all(row[l])),
-        };
+        let mut one =
+            BroadcastParticle {
+                cluster: c,
+                x: [i32x8::splat(self.simd, 0); D],
+                v: [self.zero; D],
+                side: self
+                    .pair_side::<true>(c, [all(s[0][l]), all(s[1][l]), all(s[2][l]), all(s[3][l])], |row| all(row[l])),
+            };
         for k in 0..D {
             one.x[k] = i32x8::splat(self.simd, x[k][l]);
             one.v[k] = all(v[k][l]);

@@ -83,10 +83,12 @@ impl Viscosity {
 
     /// The effective kinematic viscosity ν (m²/s) of a shear flow in water with speed of sound `c0` (m/s) and smoothing length `h`
     /// (m), in `dimension` D: ν₀, or α c₀ h/(4 (D + 2)) of the artificial viscosity, which acts on approaching pairs only
-    /// @monaghan2005; 0 of the Riemann dissipation, which falls with the square of the shear. The eddy viscosity of SPS is not part of it.
-    pub fn effective(&self, c0: f64, h: f64, dimension: usize) -> f64 {
+    /// @monaghan2005; of the Riemann dissipation at the rate of `shear` (1/s) see [`Riemann::effective`]. The eddy viscosity of SPS is
+    /// not part of it.
+    pub fn effective(&self, c0: f64, h: f64, dimension: usize, shear: f64) -> f64 {
         match self {
-            Self::None | Self::Riemann(_) => 0.0,
+            Self::None => 0.0,
+            Self::Riemann(law) => law.effective(h, dimension, shear),
             Self::Artificial(law) => law.alpha * c0 * h / (4.0 * (dimension as f64 + 2.0)),
             Self::Laminar(law) => law.nu0,
             Self::Sps(law) => law.nu0,
