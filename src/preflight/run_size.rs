@@ -5,6 +5,7 @@ use serde::Serialize;
 use super::{Finding, PreflightContext, StepSizeLimits};
 use crate::{
     math::format::{bytes, three_digits, two_digits_up},
+    model::PressureGradient,
     output::frame::particle_bytes,
 };
 
@@ -122,11 +123,15 @@ impl<const D: usize> PreflightContext<'_, D> {
         let frames = self.plan.frames.as_ref().map_or(0.0, |f| count(f.every));
         let (water, solids) = self.plan.frames.as_ref().map_or((0.0, 0.0), |frames| particle_bytes(&frames.fields));
         let d = D as f64;
+        // Gradient corrections; those far from the surface are zeros.
+        let plain = self.system.model().gradient == PressureGradient::Plain;
+        let corrections = if plain { 0.0 } else { 4.0 * d * d };
         DiskUse {
             tables_bytes,
             frames: frames as usize,
             frames_bytes: frames * (fluid * water + boundary * solids),
-            checkpoint_bytes: fluid * (3.0 * d * 8.0 + 11.0) + self.system.boundary_near_fluid_count() as f64 * 11.0,
+            checkpoint_bytes: fluid * (3.0 * d * 8.0 + 11.0 + corrections)
+                + self.system.boundary_near_fluid_count() as f64 * 11.0,
         }
     }
 }

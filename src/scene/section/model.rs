@@ -13,8 +13,8 @@ use crate::{
     scene::context::{Context, Defaults},
 };
 
-/// Largest Courant number: still water around a float is at rest at 0.8 and unstable at 1.0, without another sign.
-const CFL_MAX: f64 = 0.8;
+/// Largest Courant number: still water around a float is at rest at 0.6 and boils at 0.8, without another sign.
+const CFL_MAX: f64 = 0.6;
 
 /// Least stiffness μ of the lattice, –: below, still water around a float reached 0.07 to 0.13 √(g depth) within a second,
 /// above at most 0.08 (docs/explanation/stability.md).

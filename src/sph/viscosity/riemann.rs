@@ -1,5 +1,5 @@
-//! Dissipation of a limited Riemann solver:  dv_a/dt = −Σ m_b (q_ab/ρ₀) ∇_a W,  q_ab = min(η u², c₀²/η) for particles that approach
-//! with u = −v_ab·r_ab/|r_ab|, else 0.
+//! Dissipation of a limited Riemann solver:  dv_a/dt = −Σ m_b (q_ab/ρ₀) ∇_a W,  q_ab = min(η u², c₀²) for particles that approach with
+//! u = −v_ab·r_ab/|r_ab|, else 0.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 use crate::sph::{FluidProperties, Num, Pair, Term};
 
 /// The dissipation of the low-dissipation Riemann solver, limiter η @zhang2017: quadratic in the approach, so that it stops
-/// impacts and hardly damps a wave. The source limits q at u = c₀/η to the linear c₀ u; here it is constant from there on, which
-/// needs no root: no flow of weakly compressible water approaches so fast.
+/// impacts and hardly damps a wave. The source goes on with the linear c₀ u from u = c₀/η on; here q stays quadratic up to the
+/// c₀² that the source reaches at u = c₀, which needs no root.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Riemann {
@@ -35,7 +35,7 @@ impl Riemann {
 
     /// The law in water of the given constants; `share` (–) of it acts.
     pub fn term<const D: usize>(&self, properties: &FluidProperties<D>, share: f64) -> RiemannTerm {
-        RiemannTerm { eta: self.eta * share, most: share * properties.c0 * properties.c0 / self.eta }
+        RiemannTerm { eta: self.eta * share, most: share * properties.c0 * properties.c0 }
     }
 }
 

@@ -100,8 +100,8 @@ fn a_disc_that_is_lifted_and_released_swings_through_its_rest_as_in_linear_theor
             trough = (height, sim.time());
         }
     }
-    // The bound is that of the project for ten rows; a trough below the exact one would take energy from the walls.
-    assert!((-0.5754..-0.51).contains(&trough.0), "the first trough is {} of the lift, exact -0.5754", trough.0);
+    // 5 % at ten rows. With twenty rows it is -0.561, and -0.573 at a third of the lift, where linear theory holds best.
+    assert!((trough.0 / -0.5754 - 1.0).abs() < 0.05, "the first trough is {} of the lift, exact -0.5754", trough.0);
     assert!((trough.1 / 0.456 - 1.0).abs() < 0.05, "at {} s, exact 0.456 s", trough.1);
     Ok(())
 }
