@@ -28,6 +28,7 @@ use crate::{
     solid::{
         Constraints, InitialHold, Role, SolidSpec, TimeFunction, TimedRemoval,
         constraint::links::{check_force, check_rope, check_spring},
+        mooring::check_mooring,
     },
     system::{Periodic, periodic},
 };
@@ -271,6 +272,11 @@ impl Scene {
             let rope = rope.build(&self.solid);
             check_rope(&rope, solids).map_err(|e| ctx.with_location(e, &format!("rope.{i}")))?;
             constraints.ropes.push(rope);
+        }
+        for (i, mooring) in self.mooring.iter().enumerate() {
+            let mooring = mooring.build(&self.solid, &self.line_type);
+            check_mooring(&mooring, solids).map_err(|e| ctx.with_location(e, &format!("mooring.{i}")))?;
+            constraints.moorings.push(mooring);
         }
         for (i, force) in self.force.iter().enumerate() {
             let key = format!("force.{i}");

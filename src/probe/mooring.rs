@@ -1,0 +1,76 @@
+//! Tension, touchdown and angle of a mooring line with mass.
+
+use serde::{Deserialize, Serialize};
+
+use super::{Probe, ProbeDefinition, ProbeScope};
+use crate::{
+    error::Result,
+    simulation::{Simulation, find_by_name},
+    system::System,
+};
+
+/// Plan of a probe of a mooring line with mass.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct MooringPlan {
+    /// The line's name.
+    pub mooring: String,
+}
+
+impl ProbeDefinition for MooringPlan {
+    type Config = String;
+    const LABEL: &'static str = "mooring line";
+    const EXAMPLE: &'static str = "mooring = \"west\"";
+
+    fn verify(config: &String, key: &str, scene: &dyn ProbeScope) -> Result<()> {
+        scene.require_constraint(key, "mooring", config)
+    }
+
+    fn from_config(config: &String) -> Self {
+        Self { mooring: config.clone() }
+    }
+
+    fn default_name(config: &String) -> Option<String> {
+        Some(config.clone())
+    }
+
+    fn build<const D: usize>(&self, system: &System<D>) -> Result<Box<dyn Probe<D>>> {
+        Ok(Box::new(MooringProbe::new(system, &self.mooring)?))
+    }
+}
+
+/// Measures the tension (N; N/m in 2-D) of a mooring line at its first end (the fairlead), at its second end (the anchor) and in each
+/// segment from the first end on, the length (m) that lies on fixed solids, and the angle (deg) of the second end above the
+/// horizontal. The tension at an end is the force on what holds it, a mean over the last step.
+pub struct MooringProbe {
+    line: usize,
+    segments: usize,
+}
+
+impl MooringProbe {
+    /// Creates the probe of the mooring line called `name`.
+    ///
+    /// # Errors
+    /// `Scene` if there is no such line.
+    pub fn new<const D: usize>(system: &System<D>, name: &str) -> Result<Self> {
+        let moorings = &system.constraints().moorings;
+        let line = find_by_name("mooring", name, moorings.iter().map(|mooring| mooring.name.as_str()))?;
+        Ok(Self { line, segments: moorings[line].segments })
+    }
+}
+
+impl<const D: usize> Probe<D> for MooringProbe {
+    fn columns(&self) -> Vec<String> {
+        let unit = if D == 2 { "N_per_m" } else { "N" };
+        let ends = ["fairlead", "anchor"].map(|end| format!("{end}_{unit}"));
+        let segments = (1..=self.segments).map(|segment| format!("segment_{segment}_{unit}"));
+        let shape = ["on_bed_m", "anchor_angle_deg"].map(String::from);
+        ends.into_iter().chain(shape).chain(segments).collect()
+    }
+
+    fn sample(&self, sim: &Simulation<D>) -> Vec<f64> {
+        let now = sim.mooring_reading(self.line);
+        let shape = [now.on_bed, now.anchor_angle.to_degrees()];
+        now.end_forces.map(|force| force.norm()).into_iter().chain(shape).chain(now.tensions).collect()
+    }
+}
