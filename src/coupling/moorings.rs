@@ -71,9 +71,30 @@ impl<const D: usize> Moorings<D> {
         self.lines.is_empty()
     }
 
-    /// The lines.
-    pub(crate) fn lines(&self) -> &[Mooring<D>] {
-        &self.lines
+    /// Stiffness (N/m) of the lines on solid number `solid` against a displacement along the x axis, at rest where it is.
+    /// The lines find their rest again with their ends displaced.
+    pub(crate) fn surge_stiffness(&self, system: &System<D>, solid: usize) -> f64 {
+        let of_line = |mooring: &Mooring<D>| {
+            let line = &mooring.line;
+            let last = line.segments();
+            let nodes = [0, last];
+            let way = 1e-3 * line.length();
+            let force = |way: f64| {
+                let mut moved = line.clone();
+                let own = (0..2).filter(|k| mooring.solids()[*k] == Some(solid));
+                own.clone().for_each(|k| moved.state.x[nodes[k]][0] += way);
+                moved.find_rest(&|x| self.surroundings(system, x), &system.gravity());
+                own.map(|k| moved.state.end_forces[k][0]).sum::<f64>()
+            };
+            (force(-way) - force(way)) / (2.0 * way)
+        };
+        let on_solid = |mooring: &&Mooring<D>| mooring.solids().contains(&Some(solid));
+        self.lines.iter().filter(on_solid).map(of_line).sum()
+    }
+
+    /// Longest inner step of line number `i`, s.
+    pub(crate) fn line_step(&self, i: usize) -> f64 {
+        self.lines[i].line.step_limit()
     }
 
     /// Load on solid number `i` in the last step.

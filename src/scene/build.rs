@@ -23,7 +23,7 @@ use crate::{
     },
     math::{Bounds, Pose, Vector},
     model::{Model, TimeScheme},
-    plan::Plan,
+    plan::{FramesPlan, Plan},
     simulation::Setup,
     solid::{
         Constraints, InitialHold, Role, SolidSpec, TimeFunction, TimedRemoval,
@@ -306,7 +306,8 @@ impl Scene {
             until: self.until,
             probes: self.probe.iter().filter_map(|probe| probe.to_plan(self.until)).collect(),
             contacts: self.probe.iter().filter_map(|probe| probe.to_contact_list(self.until)).collect(),
-            frames: self.frames.as_ref().and_then(|frames| frames.build(ctx)),
+            frames: (self.frames.as_ref().and_then(|frames| frames.build(ctx)))
+                .map(|frames| FramesPlan { moorings: !self.mooring.is_empty(), ..frames }),
             checkpoint_every: checkpoint.every,
             checkpoint_wall: checkpoint.wall_time(),
             checks: (self.check.iter().enumerate())

@@ -79,6 +79,21 @@ impl<const D: usize> Simulation<D> {
         self.bodies.moorings.reading(&self.system, mooring)
     }
 
+    /// Stiffness (N/m; N/m² in 2-D) of the mooring lines on solid number `solid` against surge.
+    pub(crate) fn mooring_surge_stiffness(&self, solid: usize) -> f64 {
+        self.bodies.moorings.surge_stiffness(&self.system, solid)
+    }
+
+    /// Longest inner step of mooring line number `mooring`, s.
+    pub(crate) fn mooring_step(&self, mooring: usize) -> f64 {
+        self.bodies.moorings.line_step(mooring)
+    }
+
+    /// Shapes and tensions of all mooring lines now, in the order of the setup.
+    pub fn mooring_readings(&self) -> Vec<MooringReading<D>> {
+        (0..self.system.constraints().moorings.len()).map(|i| self.mooring_reading(i)).collect()
+    }
+
     /// What rope number `rope` felt in the last step.
     pub fn rope_reading(&self, rope: usize) -> LineReading {
         self.bodies.constraints().rope_reading(rope)

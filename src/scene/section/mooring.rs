@@ -83,6 +83,8 @@ pub struct LineTypeConfig {
     pub drag: Option<f64>,
     /// Drag coefficient along the line.
     pub drag_axial: Option<f64>,
+    /// Diameter with which the line touches fixed solids, m; by default its axis touches them.
+    pub contact_diameter: Option<f64>,
     /// Stiffness of fixed solids against the line, Pa/m.
     pub bed_stiffness: Option<f64>,
     /// Damping of fixed solids against the line, Pa s/m.
@@ -106,6 +108,7 @@ impl LineTypeConfig {
             added_mass_axial: None,
             drag: None,
             drag_axial: None,
+            contact_diameter: None,
             bed_stiffness: None,
             bed_damping: None,
             bed_friction: None,
@@ -149,6 +152,7 @@ impl LineTypeConfig {
             ("added_mass_axial", self.added_mass_axial),
             ("drag", self.drag),
             ("drag_axial", self.drag_axial),
+            ("contact_diameter", self.contact_diameter),
             ("bed_stiffness", self.bed_stiffness),
             ("bed_damping", self.bed_damping),
             ("bed_friction", self.bed_friction),
@@ -177,6 +181,7 @@ impl LineTypeConfig {
         made.bending_stiffness = or(self.bending_stiffness, made.bending_stiffness);
         made.added_mass = [or(self.added_mass, made.added_mass[0]), or(self.added_mass_axial, made.added_mass[1])];
         made.drag = [or(self.drag, made.drag[0]), or(self.drag_axial, made.drag[1])];
+        made.contact_diameter = self.contact_diameter;
         made.bed_stiffness = or(self.bed_stiffness, made.bed_stiffness);
         made.bed_damping = or(self.bed_damping, made.bed_damping);
         made.bed_friction = or(self.bed_friction, made.bed_friction);

@@ -140,7 +140,7 @@ impl<const D: usize> Mooring<D> {
     /// Shape and tension, where `around` is what is around each node.
     pub(crate) fn reading(&self, around: &[NodeSurroundings<D>]) -> MooringReading<D> {
         let (line, state) = (&self.line, &self.line.state);
-        let lies = |i: &usize| around[*i].bed.is_some_and(|bed| bed.depth(&state.x[*i]) > 0.0);
+        let lies = |i: &usize| around[*i].bed.is_some_and(|bed| line.material.depth(&bed, &state.x[*i]) > 0.0);
         let (q, _) = line.direction_and_length(line.segments() - 1);
         MooringReading {
             nodes: state.x.clone(),

@@ -35,6 +35,10 @@ impl<const D: usize> MooringLine<D> {
         self.state.v.iter_mut().for_each(|v| *v = Vector::zeros());
         let near: Vec<_> = self.state.x.iter().map(around).collect();
         let forces = self.forces(&near, gravity);
+        let lies = |(x, here): (&Vector<D>, &NodeSurroundings<D>)| {
+            here.bed.filter(|bed| self.material.depth(bed, x) > 0.0).map(|_| *x)
+        };
+        self.state.grips = self.state.x.iter().zip(&near).map(lies).collect();
         let last = self.segments();
         self.state.end_forces = [0, last].map(|i| forces[i]);
         left
@@ -130,8 +134,8 @@ impl<const D: usize> MooringLine<D> {
         }
         for (i, here) in around.iter().enumerate() {
             add(i, i, &(identity * least));
-            if let Some(bed) = here.bed.filter(|bed| bed.depth(&self.state.x[i]) > 0.0) {
-                let stiff = material.bed_stiffness * material.diameter * self.share(i);
+            if let Some(bed) = here.bed.filter(|bed| material.depth(bed, &self.state.x[i]) > 0.0) {
+                let stiff = material.bed_stiffness * material.contact_width * self.share(i);
                 add(i, i, &(bed.normal * bed.normal.transpose() * stiff));
             }
         }

@@ -8,16 +8,14 @@
 //! - weight less buoyancy of the wet share φ: (m − φ ρ A) l₀ g
 //! - drag ½ ρ d l₀ φ (C_d |u_n| u_n + π C_dAx |u_t| u_t) of the velocity u of the water relative to the node
 //! - added mass φ ρ A l₀ (C_a (1 − t tᵀ) + C_aAx t tᵀ)
-//! - a bed: stiffness k d l₀ times the depth of the node below it, damping b d l₀, and Coulomb friction
+//! - a bed: stiffness k c l₀ times the depth of the node in it, and damping b c l₀, with the contact width c; along it the same stiffness from where the node
+//!   came to lie, up to the Coulomb friction, beyond which the node slides
 //!
 //! The acceleration of the water is not in these forces: it is small beside the drag of a line much thinner than the waves are high.
 
 use std::f64::consts::PI;
 
 use crate::math::{Matrix, Vector};
-
-/// Speed (m/s) over √(g l₀) below which friction grows in proportion to the speed.
-const CREEP: f64 = 1e-3;
 
 /// The part of a solid's surface that is nearest to a node, as a plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -73,6 +71,10 @@ pub(crate) struct LineMaterial {
     pub(crate) drag: [f64; 2],
     /// Density of the water, kg/m³.
     pub(crate) water_density: f64,
+    /// Width with which the line presses on a bed, m.
+    pub(crate) contact_width: f64,
+    /// Height of its axis above a bed that it touches, m.
+    pub(crate) contact_radius: f64,
     /// Stiffness of the bed, Pa/m.
     pub(crate) bed_stiffness: f64,
     /// Damping of the bed, Pa s/m.
@@ -87,11 +89,16 @@ impl LineMaterial {
         self.water_density * 0.25 * PI * self.diameter * self.diameter
     }
 
+    /// Depth (m) to which a node at `x` (m) presses into `bed`; 0 or less above it.
+    pub(crate) fn depth<const D: usize>(&self, bed: &BedPlane<D>, x: &Vector<D>) -> f64 {
+        bed.depth(x) + self.contact_radius
+    }
+
     /// Largest frequency (rad/s) of a line of segments of length `l` (m), by Gershgorin's bound.
     pub(crate) fn highest_frequency(&self, l: f64) -> f64 {
         let axial = 4.0 * self.stiffness / (self.mass * l * l);
         let bending = 16.0 * self.bending / (self.mass * l.powi(4));
-        (axial + bending + self.bed_stiffness * self.diameter / self.mass).sqrt()
+        (axial + bending + self.bed_stiffness * self.contact_width / self.mass).sqrt()
     }
 }
 
@@ -155,9 +162,9 @@ pub(super) fn node_load<const D: usize>(
         mass,
     };
     let Some(bed) = around.bed else { return load };
-    let depth = bed.depth(x);
+    let depth = m.depth(&bed, x);
     if depth > 0.0 {
-        let area = m.diameter * share;
+        let area = m.contact_width * share;
         let (rate, up) = (v.dot(&bed.normal), along(&bed.normal));
         let reaction = m.bed_stiffness * area * depth;
         let damping = m.bed_damping * area;
@@ -165,12 +172,34 @@ pub(super) fn node_load<const D: usize>(
         let pressed = reaction - damping * rate;
         load.force += bed.normal * reaction;
         load.bed += up * if pressed > 0.0 { damping } else { 0.0 };
-        let sliding = (v - bed.normal * rate).norm();
-        let creep = CREEP * (gravity.norm() * share).sqrt();
-        let friction = m.bed_friction * pressed.max(0.0) / sliding.max(creep).max(f64::MIN_POSITIVE);
-        load.bed += (identity - up) * friction;
     }
     load
+}
+
+/// The force (N) along a bed on a node at `x` (m) with the line's length `share` (m). `grip` is the point (m) from which the bed holds
+/// it: where it came to lie, and what it drags along as it slides; `None` off the bed.
+pub(super) fn friction<const D: usize>(
+    material: &LineMaterial,
+    share: f64,
+    x: &Vector<D>,
+    bed: Option<BedPlane<D>>,
+    grip: &mut Option<Vector<D>>,
+) -> Vector<D> {
+    let Some((bed, depth)) = bed.map(|bed| (bed, material.depth(&bed, x))).filter(|(_, depth)| *depth > 0.0) else {
+        *grip = None;
+        return Vector::zeros();
+    };
+    let held = grip.get_or_insert(*x);
+    let mut way = x - *held;
+    way -= bed.normal * bed.normal.dot(&way);
+    // Both stiffnesses are the same, so that the way at which a node begins to slide is a share of its depth.
+    let longest = material.bed_friction * depth;
+    let length = way.norm();
+    if length > longest {
+        way *= longest / length;
+        *held = x - way;
+    }
+    way * (-material.bed_stiffness * material.contact_width * share)
 }
 
 /// Tension (N) of a segment without its damping, at the strain ε.

@@ -12,7 +12,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::forces::{LineMaterial, NodeBody, NodeSurroundings, bending_forces, elastic_tension, node_load};
+use super::forces::{
+    LineMaterial, NodeBody, NodeLoad, NodeSurroundings, bending_forces, elastic_tension, friction, node_load,
+};
 use crate::math::{Matrix, Vector};
 
 /// Length of an inner step times the highest frequency of the line, –.
@@ -27,11 +29,14 @@ pub(crate) struct LineState<const D: usize> {
     pub(crate) v: Vec<Vector<D>>,
     /// Mean force on what holds each end in the last step, N.
     pub(crate) end_forces: [Vector<D>; 2],
+    /// Point from which a bed holds each node that lies on it, m.
+    pub(crate) grips: Vec<Option<Vector<D>>>,
     /// Number of the segment that has broken.
     pub(crate) broken: Option<u32>,
 }
 
 /// A line of equal segments. An end is held, and moves as it is told, or it is free.
+#[derive(Clone)]
 pub(crate) struct MooringLine<const D: usize> {
     pub(super) material: LineMaterial,
     /// Length of a segment without tension, m.
@@ -45,7 +50,7 @@ pub(crate) struct MooringLine<const D: usize> {
 }
 
 /// Arrays of an inner step, kept from one to the next.
-#[derive(Default)]
+#[derive(Clone, Default)]
 struct Workspace<const D: usize> {
     /// Matrix of each node, and its inverse after the elimination.
     matrix: Vec<Matrix<D>>,
@@ -70,6 +75,7 @@ impl<const D: usize> MooringLine<D> {
                 x: (0..=segments).map(place).collect(),
                 v: vec![Vector::zeros(); segments + 1],
                 end_forces: [Vector::zeros(); 2],
+                grips: vec![None; segments + 1],
                 broken: None,
             },
             work: Workspace::default(),
@@ -79,6 +85,11 @@ impl<const D: usize> MooringLine<D> {
     /// Number of segments.
     pub(crate) fn segments(&self) -> usize {
         self.bodies.len() - 1
+    }
+
+    /// Length without tension, m.
+    pub(crate) fn length(&self) -> f64 {
+        self.segment * self.segments() as f64
     }
 
     /// Length of the line that belongs to node `i`, m.
@@ -163,7 +174,7 @@ impl<const D: usize> MooringLine<D> {
         x.iter_mut().zip(v).for_each(|(x, v)| *x += *v * h);
     }
 
-    fn load(&self, i: usize, around: &[NodeSurroundings<D>], gravity: &Vector<D>) -> super::forces::NodeLoad<D> {
+    fn load(&self, i: usize, around: &[NodeSurroundings<D>], gravity: &Vector<D>) -> NodeLoad<D> {
         let (x, v) = (&self.state.x[i], &self.state.v[i]);
         node_load(&self.material, (self.share(i), &self.bodies[i]), (x, v, &self.tangent(i)), &around[i], gravity)
     }
@@ -176,7 +187,13 @@ impl<const D: usize> MooringLine<D> {
         for i in 0..=n {
             let load = self.load(i, around, gravity);
             matrix.push(load.mass + load.drag * (0.5 * h) + load.bed * h);
-            impulse.push((load.force - (load.drag + load.bed) * self.state.v[i]) * h);
+            let mut force = load.force - (load.drag + load.bed) * self.state.v[i];
+            if self.material.bed_friction > 0.0 {
+                let (x, grip) = (&self.state.x[i], &mut self.state.grips[i]);
+                let share = if i == 0 || i == n { 0.5 } else { 1.0 } * self.segment;
+                force += friction(&self.material, share, x, around[i].bed, grip);
+            }
+            impulse.push(force * h);
         }
         for s in 0..n {
             let (q, length) = self.direction_and_length(s);

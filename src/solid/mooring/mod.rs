@@ -16,3 +16,7 @@ pub(crate) use forces::{BedPlane, NodeSurroundings};
 pub(crate) use line::LineState;
 pub(crate) use specification::check_mooring;
 pub use specification::{ClumpSpec, LineDamping, LineType, MooringSpec};
+
+#[cfg(all(test, feature = "dim2", feature = "dim3"))]
+#[path = "../../../tests/unit/solid/mooring/references.rs"]
+mod references;

@@ -47,7 +47,10 @@ pub struct LineType {
     pub added_mass: [f64; 2],
     /// Drag coefficients across the line (of the area d l) and along it (of the area π d l), –.
     pub drag: [f64; 2],
-    /// Stiffness of fixed solids against the line, Pa/m: force for each metre of depth and each square metre d l.
+    /// Diameter with which the line touches fixed solids, m. `None`, as in MoorDyn: its axis touches them, with the width d. The links of
+    /// a studless chain are 3.35 bars wide, 1.86 d.
+    pub contact_diameter: Option<f64>,
+    /// Stiffness of fixed solids against the line, Pa/m: force for each metre of depth and each square metre of contact.
     pub bed_stiffness: f64,
     /// Damping of fixed solids against the line, Pa s/m.
     pub bed_damping: f64,
@@ -67,6 +70,7 @@ impl LineType {
             bending_stiffness: 0.0,
             added_mass: [1.0, 0.0],
             drag: [1.2, 0.0],
+            contact_diameter: None,
             bed_stiffness: DEFAULT_BED_STIFFNESS,
             bed_damping: DEFAULT_BED_DAMPING,
             bed_friction: 0.0,
@@ -87,6 +91,8 @@ impl LineType {
             added_mass: self.added_mass,
             drag: self.drag,
             water_density,
+            contact_width: self.contact_diameter.unwrap_or(self.diameter),
+            contact_radius: 0.5 * self.contact_diameter.unwrap_or_default(),
             bed_stiffness: self.bed_stiffness,
             bed_damping: self.bed_damping,
             bed_friction: self.bed_friction,
@@ -203,6 +209,7 @@ pub(crate) fn check_mooring<const D: usize>(mooring: &MooringSpec<D>, solids: &[
         ("added_mass_axial", line.added_mass[1]),
         ("drag", line.drag[0]),
         ("drag_axial", line.drag[1]),
+        ("contact_diameter", line.contact_diameter.unwrap_or_default()),
         ("bed_stiffness", line.bed_stiffness),
         ("bed_damping", line.bed_damping),
         ("bed_friction", line.bed_friction),

@@ -18,6 +18,8 @@ fn material() -> LineMaterial {
         added_mass: [1.0, 0.0],
         drag: [1.2, 0.0],
         water_density: 1000.0,
+        contact_width: 0.004,
+        contact_radius: 0.0,
         bed_stiffness: 3e6,
         bed_damping: 3e5,
         bed_friction: 0.0,

@@ -18,6 +18,8 @@ fn material() -> LineMaterial {
         added_mass: [1.0, 0.2],
         drag: [1.2, 0.1],
         water_density: 1000.0,
+        contact_width: 0.004,
+        contact_radius: 0.0,
         bed_stiffness: 0.0,
         bed_damping: 0.0,
         bed_friction: 0.0,
@@ -150,8 +152,8 @@ fn added_mass_slows_the_start() {
     assert!((line.state.v[5][1] / expected - 1.0).abs() < 1e-9, "{}", line.state.v[5]);
 }
 
-/// A line that slides over a bed with the friction coefficient μ slows down by μ g, less some μ g h/v of it, as friction is that at the
-/// end of an inner step.
+/// A line that slides over a bed with the friction coefficient μ slows down by μ g from the way on at which friction is whole, and
+/// then swings about its grip.
 #[test]
 fn friction_slows_what_slides() {
     let rough = LineMaterial { bed_stiffness: 1e6, bed_damping: 1e4, bed_friction: 0.4, ..material() };
@@ -170,7 +172,9 @@ fn friction_slows_what_slides() {
     for _ in 0..400 {
         line.advance([Vector::zeros(); 2], 1e-3, &near, &down());
     }
-    assert!(line.state.v[5][0].abs() < 1e-3, "it stops; {} m/s", line.state.v[5][0]);
+    // The swing has at most the energy of the bed at the limit: v = μ g √(m/(k d)).
+    let swing = 0.4 * GRAVITY * (rough.mass / (rough.bed_stiffness * rough.diameter)).sqrt();
+    assert!(line.state.v[5][0].abs() < 1.01 * swing, "it stops; {} m/s", line.state.v[5][0]);
 }
 
 /// A bending line with hinged ends under its weight sags by 5 w L⁴/(384 EI).
