@@ -149,10 +149,10 @@ fn chains_that_heave_follow_orcaflex() {
     }
 }
 
-/// Lowe and Langley 2006: within 1 kN (found: 0.5 kN), and at rest within 0.2 kN of MoorDyn's table (found: 0.01 kN).
+/// Low and Langley (2006): within 1 kN (found: 0.5 kN), and at rest within 0.2 kN of MoorDyn's table (found: 0.01 kN).
 #[test]
 #[cfg_attr(debug_assertions, ignore = "a minute without optimization: cargo test --release --lib")]
-fn a_flexible_jumper_follows_lowe_and_langley() {
+fn a_flexible_jumper_follows_low_and_langley() {
     let (error, rest) = jumper::<2>(34, 0, include_str!("../../../references/mooring_jumper_case1.csv"));
     println!("jumper along x: {error:.2} kN, at rest {rest:.2?}");
     let expected = [[11.40, -24.04], [-11.40, -45.71]].map(Vector::from);
