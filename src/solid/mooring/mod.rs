@@ -8,12 +8,14 @@ mod catenary;
 mod equilibrium;
 mod forces;
 mod line;
+mod pretension;
 mod specification;
 
 pub(crate) use attached::Mooring;
 pub use attached::MooringReading;
 pub(crate) use forces::{BedPlane, NodeSurroundings};
 pub(crate) use line::LineState;
+pub(crate) use pretension::forces_at_rest;
 pub(crate) use specification::check_mooring;
 pub use specification::{ClumpSpec, LineDamping, LineType, MooringSpec};
 
