@@ -25,10 +25,8 @@ pub struct EnergyBudget {
     pub driven: f64,
     /// Work of motors.
     pub motors: f64,
-    /// Work of springs. Energy that the springs store or dissipate counts negative.
+    /// Work of springs and mooring lines. Energy that they store or dissipate counts negative.
     pub springs: f64,
-    /// Work of mooring lines with mass. Energy that the lines store or dissipate counts negative.
-    pub moorings: f64,
     /// Work of the forces of the scene and of the loads that a program adds with `push`.
     pub forces: f64,
     /// Work of contacts, including contacts with driven solids.
@@ -57,12 +55,11 @@ pub struct EnergyBudget {
 
 impl EnergyBudget {
     /// Returns all entries with their names.
-    pub fn entries(&self) -> [(&'static str, f64); 16] {
+    pub fn entries(&self) -> [(&'static str, f64); 15] {
         [
             ("driven", self.driven),
             ("motors", self.motors),
             ("springs", self.springs),
-            ("moorings", self.moorings),
             ("forces", self.forces),
             ("contacts", self.contacts),
             ("joints", self.joints),
@@ -271,8 +268,7 @@ impl<const D: usize> Accounting<D> {
         let work = |load: Load<D>| load.power(&mean) * dt;
         let budget = &mut self.budget;
         budget.motors += work(breakdown.motors);
-        budget.springs += work(breakdown.springs);
-        budget.moorings += work(breakdown.moorings);
+        budget.springs += work(breakdown.springs + breakdown.moorings);
         budget.forces += work(breakdown.forces + breakdown.pushes);
         budget.contacts += work(breakdown.contacts);
         budget.joints += work(breakdown.joints + breakdown.ropes);

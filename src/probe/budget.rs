@@ -42,12 +42,11 @@ impl ProbeDefinition for EnergyBudgetPlan {
 
 /// Measures the energy (J; J/m in 2-D) that water and bodies have stored since the start: kinetic, potential and
 /// compression energy. The next columns are the entries of the [`EnergyBudget`]. The last column is the stored energy
-/// less the sum of these entries. The entry of mooring lines is absent unless the scene has some. All columns are NaN unless the budget is recorded
+/// less the sum of these entries. All columns are NaN unless the budget is recorded
 /// ([`Simulation::enable_energy_budget`]).
 pub struct EnergyBudgetProbe {
     energy: EnergyProbe,
     start: f64,
-    has_moorings: bool,
 }
 
 /// Returns the residual of a row of an [`EnergyBudgetProbe`], divided by the sum of |entries|, –. Returns `None` if
@@ -63,21 +62,14 @@ impl EnergyBudgetProbe {
     pub fn new<const D: usize>(system: &System<D>) -> Self {
         let energy = EnergyProbe::new(system);
         let start = energy.total(system);
-        Self { energy, start, has_moorings: !system.constraints().moorings.is_empty() }
-    }
-
-    /// The entries of `budget` with their names.
-    fn entries(&self, budget: &EnergyBudget) -> impl Iterator<Item = (&'static str, f64)> {
-        let has_moorings = self.has_moorings;
-        budget.entries().into_iter().filter(move |(name, _)| has_moorings || *name != "moorings")
+        Self { energy, start }
     }
 }
 
 impl<const D: usize> Probe<D> for EnergyBudgetProbe {
     fn columns(&self) -> Vec<String> {
         let unit = if D == 2 { "J_per_m" } else { "J" };
-        let none = EnergyBudget::default();
-        let entries = self.entries(&none).map(|(name, _)| name);
+        let entries = EnergyBudget::default().entries().map(|(name, _)| name);
         ["stored"].into_iter().chain(entries).chain(["residual"]).map(|name| format!("{name}_{unit}")).collect()
     }
 
@@ -88,7 +80,7 @@ impl<const D: usize> Probe<D> for EnergyBudgetProbe {
     fn sample(&self, sim: &Simulation<D>) -> Vec<f64> {
         let Some(budget) = sim.energy_budget() else { return vec![f64::NAN; Probe::<D>::columns(self).len()] };
         let stored = self.energy.total(sim.system()) - self.start;
-        let entries: Vec<f64> = self.entries(budget).map(|(_, energy)| energy).collect();
+        let entries = budget.entries().map(|(_, energy)| energy);
         let residual = stored - entries.iter().sum::<f64>();
         [stored].into_iter().chain(entries).chain([residual]).collect()
     }

@@ -81,7 +81,7 @@ fn momentum_and_energy_close_with_the_lines() -> Result<()> {
         assert!(shares.residual().force.norm() < 1e-9 * size, "{}", shares.residual().force);
     }
     let budget = *sim.energy_budget().unwrap();
-    assert!(budget.moorings < -1e-3, "the lines slow the box: {} J/m", budget.moorings);
+    assert!(budget.springs < -1e-3, "the lines slow the box: {} J/m", budget.springs);
     let row = probe.sample(&sim);
     let turnover: f64 = budget.entries().iter().map(|(_, energy)| energy.abs()).sum();
     assert!(row.last().unwrap().abs() < 0.01 * turnover, "residual {} of {turnover} J/m", row.last().unwrap());
