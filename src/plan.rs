@@ -46,6 +46,9 @@ pub struct FramesPlan {
     pub fields: Vec<String>,
     /// Lowest and highest corner (m) of the box whose water is written; without a box, all water is written.
     pub crop: Option<[Vec<f64>; 2]>,
+    /// Whether frames have mooring lines.
+    #[serde(default)]
+    pub moorings: bool,
 }
 
 /// A statistic of one or several series of the run.

@@ -25,7 +25,7 @@ pub use add_remove::AddedSolid;
 use rollback::{RollbackControl, StoredState};
 
 use crate::{
-    coupling::{Accounting, AccountingState, AcousticAddedMass, AddedMassState, Bodies, Hook, Interval},
+    coupling::{Accounting, AccountingState, AcousticAddedMass, AddedMassState, Bodies, Hook, Interval, Moorings},
     error::{Error, ErrorCode, ErrorKind, Fault, Result},
     interaction::PairLoop,
     math::{Bivector, Vector},
@@ -33,6 +33,7 @@ use crate::{
     solid::{
         ContactForce, Dim, HasEngine as _, Role, SolidSpec,
         constraint::assembly::{Assembly, AssemblyState},
+        mooring::LineState,
     },
     system::{LimitViolation, System, SystemState},
     time_integration::{Stepper, step_size},
@@ -79,6 +80,7 @@ struct SimulationState<'a, const D: usize> {
     engine: Option<Vec<u8>>,
     added_masses: Vec<AddedMassState>,
     constraints: AssemblyState<D>,
+    moorings: Vec<LineState<D>>,
     rollbacks: Cow<'a, [Rollback]>,
     removed: Cow<'a, [(f64, RemovedParticle<D>)]>,
     accounting: Option<AccountingState<D>>,
@@ -128,10 +130,11 @@ impl<const D: usize> Simulation<D> {
         } else {
             None
         };
-        let rig = Assembly::new(&setup.constraints, start);
+        let rig = Assembly::new(&setup.constraints, start.clone());
         let stepper = Stepper::new(&setup.model);
         let mut system = System::new(setup, pair_loop)?;
-        let bodies = Bodies::new(engine, AcousticAddedMass::find_all(&mut system), rig, external);
+        let moorings = Moorings::new(&system, &start)?;
+        let bodies = Bodies::new(engine, AcousticAddedMass::find_all(&mut system), rig, moorings, external);
         let clock = Clock { time: 0.0, dt: 0.0, steps: 0 };
         let (rescue, lost, stepping) = (RollbackControl::default(), Vec::new(), Duration::ZERO);
         let simulation = Self { system, stepper, bodies, clock, rollback: rescue, removed: lost, stepping };
@@ -406,6 +409,7 @@ impl<const D: usize> Simulation<D> {
             engine: self.bodies.engine().map(|e| e.save()).transpose()?,
             added_masses: self.bodies.added_mass_state(),
             constraints: self.bodies.constraints().save(),
+            moorings: self.bodies.moorings.states(),
             rollbacks: Cow::Borrowed(&self.rollback.log[..rollbacks]),
             removed: Cow::Borrowed(&self.removed),
             accounting: self.bodies.accounting.as_ref().map(Accounting::state),
@@ -449,6 +453,7 @@ impl<const D: usize> Simulation<D> {
         }
         if !self.bodies.restore(&kept.added_masses, kept.clock.steps)
             || !self.bodies.restore_constraints(kept.constraints)
+            || !self.bodies.moorings.restore(kept.moorings)
         {
             return Err(
                 Error::new(ErrorKind::Restart, "the checkpoint holds other bodies").with_code(ErrorCode::OtherSetup)

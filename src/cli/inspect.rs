@@ -6,7 +6,7 @@ use clap::Args;
 use pontoon::{
     error::{Error, ErrorKind, Result},
     math::format::{bytes, duration, metric_prefix, three_digits},
-    preflight::{AbsorberSummary, BodyFlow, BodySummary, DiskUse, Finding, GeneratedWave, Severity},
+    preflight::{AbsorberSummary, BodyFlow, BodySummary, DiskUse, Finding, GeneratedWave, Preflight, Severity},
     run::{self, CostEstimate, InspectOptions, InspectReport, Inspection, LARGE},
 };
 
@@ -76,6 +76,7 @@ fn report_text(report: &InspectReport) -> String {
     if !report.preflight.bodies.is_empty() {
         let _ = write!(text, "\n{}", bodies(&report.preflight.bodies, report.preflight.size.dimension));
     }
+    text += &moorings(&report.preflight);
     text += &flows(&report.preflight.flows);
     if !report.solids.is_empty() {
         let mut rows = vec![["solid", "role", "particles"].map(String::from).to_vec()];
@@ -227,6 +228,38 @@ fn meshes(report: &InspectReport) -> String {
         Some(vec![s.name.clone(), mesh.facets.to_string(), volume, surface, list(&mesh.size_m), list(&centroid)])
     }));
     if rows.len() > 1 { format!("\n{}", table(&rows)) } else { String::new() }
+}
+
+/// The mooring lines at rest, and the surge of the bodies that they hold.
+fn moorings(preflight: &Preflight) -> String {
+    if preflight.moorings.is_empty() {
+        return String::new();
+    }
+    let force = if preflight.size.dimension == 2 { "N/m" } else { "N" };
+    let heads =
+        ["mooring", "length (m)", "fairlead", "anchor", "on bed (m)", "touchdown (m)", "anchor angle", "step (s)"];
+    let mut rows = vec![heads.map(String::from).to_vec()];
+    rows.extend(preflight.moorings.iter().map(|line| {
+        let place = |x: &Vec<f64>| x.iter().map(|x| three_digits(*x)).collect::<Vec<_>>().join(", ");
+        vec![
+            line.name.clone(),
+            three_digits(line.length_m),
+            format!("{} {force}", three_digits(line.fairlead_n)),
+            format!("{} {force}", three_digits(line.anchor_n)),
+            three_digits(line.on_bed_m),
+            line.touchdown_m.as_ref().map_or_else(|| "–".into(), place),
+            format!("{}°", three_digits(line.anchor_angle_deg)),
+            format!("{:.2e}", line.step_s),
+        ]
+    }));
+    let mut text = format!("\n{}", table(&rows));
+    for surge in &preflight.moored_surge {
+        let period =
+            surge.period_s.map_or_else(|| "none".into(), |t| format!("{} s without added mass", three_digits(t)));
+        let stiffness = three_digits(surge.stiffness_npm);
+        let _ = writeln!(text, "  surge of \"{}\": {stiffness} {force}/m, natural period {period}", surge.name);
+    }
+    text
 }
 
 /// Who said a value, without the reason of a default.

@@ -4,7 +4,7 @@
 use std::time::{Duration, Instant};
 
 use super::{
-    Accounting, AcousticAddedMass, AddedMassState, Interval,
+    Accounting, AcousticAddedMass, AddedMassState, Interval, Moorings,
     load_breakdown::{BodyLoads, LoadBreakdown, contact_sums},
     place,
 };
@@ -23,6 +23,7 @@ pub(crate) struct Bodies<const D: usize> {
     pub(super) engine: Option<Box<dyn Engine<D>>>,
     pub(super) added_masses: Vec<AcousticAddedMass<D>>,
     constraints: Assembly<D>,
+    pub(crate) moorings: Moorings<D>,
     pub(crate) accounting: Option<Accounting<D>>,
     /// Whether an external program moves the free bodies.
     external: bool,
@@ -31,15 +32,17 @@ pub(crate) struct Bodies<const D: usize> {
 }
 
 impl<const D: usize> Bodies<D> {
-    /// Creates the bodies at the start of a run, with their constraints and the added masses of the light bodies.
-    /// `engine` moves the bodies, or an external program if `external`.
+    /// Creates the bodies at the start of a run, with their constraints, mooring lines and the added masses of the light
+    /// bodies. `engine` moves the bodies, or an external program if `external`.
     pub(crate) fn new(
         engine: Option<Box<dyn Engine<D>>>,
         added_masses: Vec<AcousticAddedMass<D>>,
         constraints: Assembly<D>,
+        moorings: Moorings<D>,
         external: bool,
     ) -> Self {
-        Self { engine, added_masses, constraints, accounting: None, external, steps: 0, spent: Duration::ZERO }
+        let (steps, spent) = (0, Duration::ZERO);
+        Self { engine, added_masses, constraints, moorings, accounting: None, external, steps, spent }
     }
 
     /// Whether an external program moves the free bodies.
@@ -57,21 +60,24 @@ impl<const D: usize> Bodies<D> {
         &mut self.constraints
     }
 
-    /// Returns the longest step (s) that springs and motors allow at time `t` (s).
+    /// Returns the longest step (s) that springs, mooring lines and motors allow at time `t` (s).
     pub(crate) fn step_limit(&self, system: &System<D>, t: f64) -> f64 {
-        match self.engine.as_deref().filter(|_| !self.constraints.is_empty()) {
-            Some(engine) => self.constraints.step_limit(engine, &self.kinematics(system, t, true), t),
-            None => f64::INFINITY,
-        }
+        let tied = !(self.constraints.is_empty() && self.moorings.is_empty());
+        let Some(engine) = self.engine.as_deref().filter(|_| tied) else { return f64::INFINITY };
+        let now = self.kinematics(system, t, true);
+        let moorings = self.moorings.step_limit(&|solid| engine.mobility(solid), &now);
+        self.constraints.step_limit(engine, &now, t).min(moorings)
     }
 
     /// Returns the kinematics of each solid at time `t` (s), the time of the engine, or an empty list unless `wanted`.
     fn kinematics(&self, system: &System<D>, t: f64, wanted: bool) -> Vec<Kinematics<D>> {
-        let Some(engine) = self.engine.as_deref().filter(|_| wanted) else { return Vec::new() };
-        let one = |(i, solid): (usize, &Solid<D>)| match &solid.spec.role {
-            Role::Fixed => solid.kinematics,
-            Role::Driven(motion) => solid.prescribed_kinematics(motion, t),
-            Role::Free(_) => engine.kinematics(i),
+        if !wanted {
+            return Vec::new();
+        }
+        let one = |(i, solid): (usize, &Solid<D>)| match (&solid.spec.role, &self.engine) {
+            (Role::Driven(motion), _) => solid.prescribed_kinematics(motion, t),
+            (Role::Free(_), Some(engine)) => engine.kinematics(i),
+            _ => solid.kinematics,
         };
         system.solids.iter().enumerate().map(one).collect()
     }
@@ -245,16 +251,28 @@ impl<const D: usize> BodyStep<'_, D> {
             )
             .help("step your own world, and write the poses of its bodies into step.solids"));
         }
-        if std::mem::replace(&mut self.advanced, true) || self.bodies.engine.is_none() {
+        let moored = !self.bodies.moorings.is_empty();
+        if std::mem::replace(&mut self.advanced, true) || (self.bodies.engine.is_none() && !moored) {
             return Ok(());
         }
         let Interval { t, dt } = self.over;
+        let driven = |(solid, target): (&Solid<D>, &Kinematics<D>)| {
+            matches!(solid.spec.role, Role::Driven(_)).then_some(*target)
+        };
+        let targets: Vec<_> = self.system.solids.iter().zip(&self.solids).map(driven).collect();
         let constrained = !self.bodies.constraints.is_empty();
         let accounted = self.bodies.accounting.is_some() || self.bodies.constraints.has_reactions();
-        let start = self.bodies.kinematics(self.system, t, constrained || accounted);
+        let start = self.bodies.kinematics(self.system, t, constrained || accounted || moored);
+        if moored {
+            let breaks = self.bodies.moorings.advance(self.system, &start, &targets, dt);
+            breaks.iter().for_each(|(name, tension)| self.bodies.constraints.record_break(name, t, *tension));
+        }
         let mut pushes = Vec::new();
         if let Some(engine) = &mut self.bodies.engine {
             pushes.extend((0..if accounted { start.len() } else { 0 }).map(|i| engine.applied_push(i)));
+            for i in 0..if moored { start.len() } else { 0 } {
+                engine.add_load(i, &self.bodies.moorings.load_on(i));
+            }
             if constrained {
                 self.bodies.constraints.apply_loads(
                     &mut **engine,
@@ -265,11 +283,7 @@ impl<const D: usize> BodyStep<'_, D> {
             }
         }
         self.apply_added_mass();
-        let driven = |(solid, target): (&Solid<D>, &Kinematics<D>)| {
-            matches!(solid.spec.role, Role::Driven(_)).then_some(*target)
-        };
-        let targets: Vec<_> = self.system.solids.iter().zip(&self.solids).map(driven).collect();
-        let Bodies { engine: Some(engine), added_masses, steps, spent, constraints, accounting, .. } =
+        let Bodies { engine: Some(engine), added_masses, steps, spent, constraints, moorings, accounting, .. } =
             &mut *self.bodies
         else {
             return Ok(());
@@ -296,6 +310,7 @@ impl<const D: usize> BodyStep<'_, D> {
             pushes: pushes[i],
             contacts: contacts[i],
             constraints,
+            moorings: moorings.load_on(i),
             before: &start[i],
             after: &self.solids[i],
             gyroscopic: engine.gyroscopic_rate(i),

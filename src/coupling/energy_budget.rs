@@ -25,7 +25,7 @@ pub struct EnergyBudget {
     pub driven: f64,
     /// Work of motors.
     pub motors: f64,
-    /// Work of springs. Energy that the springs store or dissipate counts negative.
+    /// Work of springs and mooring lines. Energy that they store or dissipate counts negative.
     pub springs: f64,
     /// Work of the forces of the scene and of the loads that a program adds with `push`.
     pub forces: f64,
@@ -268,7 +268,7 @@ impl<const D: usize> Accounting<D> {
         let work = |load: Load<D>| load.power(&mean) * dt;
         let budget = &mut self.budget;
         budget.motors += work(breakdown.motors);
-        budget.springs += work(breakdown.springs);
+        budget.springs += work(breakdown.springs + breakdown.moorings);
         budget.forces += work(breakdown.forces + breakdown.pushes);
         budget.contacts += work(breakdown.contacts);
         budget.joints += work(breakdown.joints + breakdown.ropes);

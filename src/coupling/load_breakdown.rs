@@ -25,8 +25,10 @@ pub struct LoadBreakdown<const D: usize> {
     pub joints: Load<D>,
     /// Ropes.
     pub ropes: Load<D>,
-    /// Springs and mooring lines.
+    /// Springs, and mooring lines without mass.
     pub springs: Load<D>,
+    /// Mooring lines with mass.
+    pub moorings: Load<D>,
     /// Motors of joints.
     pub motors: Load<D>,
     /// The scene's forces.
@@ -56,6 +58,7 @@ impl<const D: usize> LoadBreakdown<D> {
             joints: none,
             ropes: none,
             springs: none,
+            moorings: none,
             motors: none,
             forces: none,
             pushes: none,
@@ -66,7 +69,7 @@ impl<const D: usize> LoadBreakdown<D> {
     }
 
     /// Returns all loads with their names, without the change of momentum.
-    pub fn kinds(&self) -> [(&'static str, Load<D>); 13] {
+    pub fn kinds(&self) -> [(&'static str, Load<D>); 14] {
         [
             ("pressure", self.pressure),
             ("viscous", self.viscous),
@@ -76,6 +79,7 @@ impl<const D: usize> LoadBreakdown<D> {
             ("joints", self.joints),
             ("ropes", self.ropes),
             ("springs", self.springs),
+            ("moorings", self.moorings),
             ("motors", self.motors),
             ("forces", self.forces),
             ("pushes", self.pushes),
@@ -110,7 +114,7 @@ impl<const D: usize> LoadBreakdown<D> {
     pub(super) fn of(system: &System<D>, i: usize, loads: &BodyLoads<'_, D>) -> Self {
         let solid = &system.solids()[i];
         let Some(body) = &solid.body else { return Self::zero() };
-        let BodyLoads { water, pushes, contacts, constraints, before, after, gyroscopic, dt, .. } = *loads;
+        let BodyLoads { water, pushes, contacts, constraints, moorings, before, after, gyroscopic, dt, .. } = *loads;
         let change = (momentum(body, after) - momentum(body, before)) * (1.0 / dt);
         Self {
             pressure: solid.load,
@@ -118,6 +122,7 @@ impl<const D: usize> LoadBreakdown<D> {
             weight: Load { force: system.gravity() * body.mass, torque: Bivector::zero() },
             contacts,
             springs: constraints.springs,
+            moorings,
             motors: constraints.motors,
             forces: constraints.forces,
             pushes,
@@ -134,6 +139,8 @@ pub(super) struct BodyLoads<'a, const D: usize> {
     pub(super) pushes: Load<D>,
     pub(super) contacts: Load<D>,
     pub(super) constraints: ConstraintLoads<D>,
+    /// Load of the mooring lines with mass.
+    pub(super) moorings: Load<D>,
     pub(super) before: &'a Kinematics<D>,
     pub(super) after: &'a Kinematics<D>,
     /// I₀ΔΩ/Δt minus the gyroscopic torque, if the engine integrates the angular velocity.

@@ -5,6 +5,7 @@ mod body_step;
 mod energy_budget;
 mod load_breakdown;
 mod mass_change;
+mod moorings;
 mod power_breakdown;
 
 pub use acoustic_added_mass::stiffest_frequency;
@@ -14,6 +15,7 @@ pub(crate) use body_step::{Bodies, Hook};
 pub use energy_budget::EnergyBudget;
 pub(crate) use energy_budget::{Accounting, AccountingState};
 pub use load_breakdown::LoadBreakdown;
+pub(crate) use moorings::Moorings;
 
 use crate::{
     math::{Pose, Vector},

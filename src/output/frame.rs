@@ -1,5 +1,5 @@
 //! Frames for ParaView: `frames.pvd` lists the frames. Each frame has two files, such as `frames/water_00000.vtu` and
-//! `frames/solids_00000.vtu`. Points have three coordinates; in 2-D the third coordinate is zero. The data have single
+//! `frames/solids_00000.vtu`; with mooring lines also `frames/moorings_00000.vtu`. Points have three coordinates; in 2-D the third coordinate is zero. The data have single
 //! precision and are compressed (zlib).
 
 use std::{
@@ -19,6 +19,7 @@ use crate::{
     math::Vector,
     particles::ParticlesView,
     plan::FramesPlan,
+    solid::MooringReading,
     system::System,
 };
 
@@ -39,13 +40,18 @@ pub fn particle_bytes(fields: &[String]) -> (f64, f64) {
 /// VTK's number of a cell that is one point.
 const VERTEX: u8 = 1;
 
-/// The parts of a frame, with one file for each part.
-const PARTS: [&str; 2] = ["water", "solids"];
+/// VTK's number of a cell that is a line between two points.
+const LINE: u8 = 3;
+
+/// The parts of a frame, with one file for each part; the last only with mooring lines.
+const PARTS: [&str; 3] = ["water", "solids", "moorings"];
 
 /// Writer of the frames of a run. Boundary particles have the number of their solid in addition to the chosen fields.
 pub(crate) struct FrameWriter {
     folder: PathBuf,
     fields: Vec<String>,
+    /// The parts of a frame.
+    parts: &'static [&'static str],
     /// Lowest and highest corner (m) of the box of water in the frames; `None` for all water.
     crop: Option<[Vec<f64>; 2]>,
     times: Vec<f64>,
@@ -62,7 +68,7 @@ impl FrameWriter {
     /// # Errors
     /// `Scene` for an unknown field; `File` if the folder `frames` cannot be made.
     pub(crate) fn new(folder: &Path, words: &FramesPlan, times: Vec<f64>) -> Result<Self> {
-        let FramesPlan { fields, crop, .. } = words.clone();
+        let FramesPlan { fields, crop, moorings, .. } = words.clone();
         if let Some(word) = fields.iter().find(|f| !FIELDS.contains(&f.as_str())) {
             let help = match nearest_name(word, FIELDS) {
                 Some(near) => format!("did you mean {near:?}?"),
@@ -74,7 +80,8 @@ impl FrameWriter {
         }
         let files = folder.join("frames");
         std::fs::create_dir_all(&files).map_err(|e| cannot_write(&files, &e))?;
-        let mut frames = Self { folder: folder.to_owned(), fields, crop, synced: times.len(), times, bytes: 0 };
+        let (synced, parts) = (times.len(), &PARTS[..if moorings { 3 } else { 2 }]);
+        let mut frames = Self { folder: folder.to_owned(), fields, parts, crop, synced, times, bytes: 0 };
         frames.update_size();
         Ok(frames)
     }
@@ -91,7 +98,7 @@ impl FrameWriter {
         self.times.truncate(kept);
         self.synced = self.synced.min(kept);
         self.write_index()?;
-        for path in gone.flat_map(piece_names).map(|name| self.folder.join("frames").join(name)) {
+        for path in gone.flat_map(|number| self.piece_names(number)).map(|name| self.folder.join("frames").join(name)) {
             match std::fs::remove_file(&path) {
                 Err(why) if why.kind() != io::ErrorKind::NotFound => return Err(cannot_write(&path, &why)),
                 _ => {}
@@ -104,13 +111,13 @@ impl FrameWriter {
     /// Updates the total size of the frames.
     fn update_size(&mut self) {
         let files = self.folder.join("frames");
-        let there = (0..self.times.len()).flat_map(piece_names);
+        let there = (0..self.times.len()).flat_map(|number| self.piece_names(number));
         self.bytes = there.filter_map(|name| Some(std::fs::metadata(files.join(name)).ok()?.len())).sum();
     }
 
     /// Writes the list of all frames.
     fn write_index(&self) -> Result<()> {
-        write_atomically(&self.folder.join("frames.pvd"), pvd_index(&self.times, "frames", &PARTS).as_bytes())
+        write_atomically(&self.folder.join("frames.pvd"), pvd_index(&self.times, "frames", self.parts).as_bytes())
     }
 
     /// Returns the times of the frames so far, s.
@@ -123,11 +130,16 @@ impl FrameWriter {
         self.bytes
     }
 
-    /// Adds a frame of `system` at time `t` (s).
+    /// Adds a frame of `system` with its mooring lines at time `t` (s).
     ///
     /// # Errors
     /// `File` if the frame cannot be written; the earlier frames remain unchanged.
-    pub(crate) fn write<const D: usize>(&mut self, system: &System<D>, t: f64) -> Result<()> {
+    pub(crate) fn write<const D: usize>(
+        &mut self,
+        system: &System<D>,
+        moorings: &[MooringReading<D>],
+        t: f64,
+    ) -> Result<()> {
         let number = self.times.len();
         let water = system.fluid();
         let kept = self.crop.as_ref().map(|[min, max]| {
@@ -135,15 +147,18 @@ impl FrameWriter {
             water.select((0..water.len()).filter(inside))
         });
         let water = kept.as_ref().map_or(water, |kept| kept.first_n(kept.len()));
-        let [wet, dry] = piece_names(number);
-        let mut bytes = self.write_piece(&wet, system, water, None)?;
+        let names = self.piece_names(number);
+        let mut bytes = self.write_piece(&names[0], system, water, None)?;
         let ranges: Vec<Range<usize>> = (0..system.solids().len()).map(|i| system.home_boundary(i)).collect();
         let owner = ranges.iter().enumerate().flat_map(|(i, range)| range.clone().map(move |_| i as f32)).collect();
         let boundary = system.boundary();
         let has_copies = ranges.iter().map(Range::len).sum::<usize>() < boundary.len();
         let kept = has_copies.then(|| boundary.select(ranges.into_iter().flatten()));
         let boundary = kept.as_ref().map_or(boundary, |kept| kept.first_n(kept.len()));
-        bytes += self.write_piece(&dry, system, boundary, Some(owner))?;
+        bytes += self.write_piece(&names[1], system, boundary, Some(owner))?;
+        if let Some(name) = names.get(2) {
+            bytes += self.write_lines(name, moorings)?;
+        }
         self.bytes += bytes;
         self.times.push(t);
         self.write_index()
@@ -156,7 +171,7 @@ impl FrameWriter {
     pub(crate) fn sync(&mut self) -> Result<()> {
         let files = self.folder.join("frames");
         for number in self.synced..self.times.len() {
-            for name in piece_names(number).map(|name| files.join(name)) {
+            for name in self.piece_names(number).into_iter().map(|name| files.join(name)) {
                 File::open(&name).and_then(|file| file.sync_data()).map_err(|e| cannot_write(&name, &e))?;
             }
         }
@@ -165,6 +180,32 @@ impl FrameWriter {
             self.synced = self.times.len();
         }
         Ok(())
+    }
+
+    /// Returns the names of the files of a frame.
+    fn piece_names(&self, number: usize) -> Vec<String> {
+        self.parts.iter().map(|part| format!("{part}_{number:05}.vtu")).collect()
+    }
+
+    /// Writes the mooring lines of a frame with the tension and the number of the line of each node; returns the size, B.
+    fn write_lines<const D: usize>(&self, name: &str, moorings: &[MooringReading<D>]) -> Result<u64> {
+        let (mut points, mut connectivity, mut tension, mut owner) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        for (i, mooring) in moorings.iter().enumerate() {
+            let first = points.len() as i64;
+            connectivity.extend((0..mooring.tensions.len() as i64).flat_map(|s| [first + s, first + s + 1]));
+            points.extend_from_slice(&mooring.nodes);
+            let beside =
+                |node: usize| &mooring.tensions[node.saturating_sub(1)..(node + 1).min(mooring.tensions.len())];
+            let mean = |t: &[f64]| (t.iter().sum::<f64>() / t.len() as f64) as f32;
+            tension.extend((0..mooring.nodes.len()).map(|node| mean(beside(node))));
+            owner.extend(std::iter::repeat_n(i as f32, mooring.nodes.len()));
+        }
+        let fields = vec![DataArray::new("tension", 1, tension), DataArray::new("mooring", 1, owner)];
+        let path = self.folder.join("frames").join(name);
+        let cells = Cells { connectivity, points_per_cell: 2, cell_type: LINE };
+        let bytes = vtu::write(to_3d(&points), cells, fields).map_err(|why| cannot_write(&path, &why))?;
+        write_atomically(&path, &bytes)?;
+        Ok(bytes.len() as u64)
     }
 
     /// Writes one part of a frame; returns its size, B.
@@ -182,11 +223,6 @@ impl FrameWriter {
         write_atomically(&path, &bytes)?;
         Ok(bytes.len() as u64)
     }
-}
-
-/// Returns the names of the files of a frame.
-fn piece_names(number: usize) -> [String; 2] {
-    PARTS.map(|part| format!("{part}_{number:05}.vtu"))
 }
 
 /// Returns the field called `name` of all particles.

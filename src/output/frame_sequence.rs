@@ -27,6 +27,8 @@ pub struct FramePoints {
     pub id: Vec<u32>,
     /// Number of the solid of each boundary particle; empty for water.
     pub solid_index: Vec<f32>,
+    /// Number of the mooring line of each node; empty for water and solids.
+    pub line_index: Vec<f32>,
 }
 
 impl FrameSequence {
@@ -64,7 +66,7 @@ impl FrameSequence {
     /// Returns the size of frame `number` on the disk, bytes.
     pub fn bytes(&self, number: usize) -> u64 {
         let size = |part: &str| std::fs::metadata(self.path(part, number)).map_or(0, |file| file.len());
-        size("water") + size("solids")
+        size("water") + size("solids") + size("moorings")
     }
 
     /// Reads the water particles in frame `number`.
@@ -81,6 +83,26 @@ impl FrameSequence {
     /// `File` if the frame cannot be read.
     pub fn solids(&self, number: usize) -> Result<FramePoints> {
         read_points(&self.path("solids", number))
+    }
+
+    /// Reads the nodes (m) of each mooring line in frame `number`; none if the frame has no lines.
+    ///
+    /// # Errors
+    /// `File` if the frame cannot be read.
+    pub fn moorings(&self, number: usize) -> Result<Vec<Vec<[f32; 3]>>> {
+        let path = self.path("moorings", number);
+        if !path.exists() {
+            return Ok(Vec::new());
+        }
+        let FramePoints { position, line_index, .. } = read_points(&path)?;
+        let mut lines: Vec<Vec<[f32; 3]>> = Vec::new();
+        for (k, (x, line)) in position.iter().zip(&line_index).enumerate() {
+            if k == 0 || line_index[k - 1] != *line {
+                lines.push(Vec::new());
+            }
+            lines.iter_mut().last().into_iter().for_each(|own| own.push(*x));
+        }
+        Ok(lines)
     }
 
     fn path(&self, part: &str, number: usize) -> PathBuf {
@@ -103,8 +125,9 @@ fn parse_points(file: &[u8]) -> std::result::Result<FramePoints, String> {
             ("density", 1, Values::F32(x)) => all.density = x,
             ("pressure", 1, Values::F32(x)) => all.pressure = x,
             ("solid", 1, Values::F32(x)) => all.solid_index = x,
+            ("mooring", 1, Values::F32(x)) => all.line_index = x,
             ("id", 1, Values::U32(x)) => all.id = x,
-            (name @ ("velocity" | "density" | "pressure" | "solid" | "id"), ..) => {
+            (name @ ("velocity" | "density" | "pressure" | "solid" | "mooring" | "id"), ..) => {
                 return Err(format!("the field \"{name}\" has another type"));
             }
             _ => {}

@@ -68,8 +68,9 @@ impl<const D: usize> PreflightContext<'_, D> {
         let joints = links.joints.iter().flat_map(|j| j.between.map(|end| ("joint", &j.name, end, j.at)));
         let springs = links.springs.iter().flat_map(|s| s.ends.map(|end| ("spring", &s.name, end.solid, end.at)));
         let ropes = links.ropes.iter().flat_map(|r| r.ends.map(|end| ("rope", &r.name, end.solid, end.at)));
+        let moorings = links.moorings.iter().flat_map(|m| m.ends.map(|end| ("mooring", &m.name, end.solid, end.at)));
         let forces = links.forces.iter().filter_map(|f| Some(("force", &f.name, Some(f.solid), f.at?)));
-        for (kind, name, end, at) in joints.chain(springs).chain(ropes).chain(forces) {
+        for (kind, name, end, at) in joints.chain(springs).chain(ropes).chain(moorings).chain(forces) {
             let Some(solid) = end.map(|solid| &self.solids()[solid]) else { continue };
             findings.extend(self.distant_attachment(kind, name, solid, &at));
         }

@@ -7,6 +7,7 @@
 mod absorption_limits;
 mod lifetimes;
 mod misplaced_bodies;
+mod moorings;
 mod floating_bodies;
 mod hollows;
 mod surface_samples;
@@ -29,6 +30,7 @@ use serde::Serialize;
 pub use absorption_limits::AbsorberSummary;
 pub use floating_bodies::BodySummary;
 pub use generated_waves::GeneratedWave;
+pub use moorings::{MooredSurge, MooringSummary};
 pub use reynolds::BodyFlow;
 pub use run_size::DiskUse;
 pub(crate) use run_size::RunSize;
@@ -122,6 +124,12 @@ pub struct Preflight {
     pub absorbers: Vec<AbsorberSummary>,
     /// The free bodies.
     pub bodies: Vec<BodySummary>,
+    /// The mooring lines with mass.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub moorings: Vec<MooringSummary>,
+    /// The surge of the bodies that they hold.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub moored_surge: Vec<MooredSurge>,
     /// The flow about the free and driven bodies.
     pub flows: Vec<BodyFlow>,
     /// The findings, warnings first.
@@ -208,8 +216,9 @@ pub fn preflight<const D: usize>(
     lifetimes::check(&look, &mut findings);
     let (waves, absorbers) = (look.generated_waves(&mut findings), look.absorbers());
     let flows = reynolds::body_flows(&look, &waves, &mut findings);
+    let (moorings, moored_surge) = moorings::summaries(&look, sim, &mut findings);
     findings.sort_by_key(|f| f.severity);
-    Preflight { size, sound, step, waves, absorbers, bodies, flows, findings }
+    Preflight { size, sound, step, waves, absorbers, bodies, moorings, moored_surge, flows, findings }
 }
 
 impl<const D: usize> PreflightContext<'_, D> {

@@ -84,6 +84,7 @@ impl LoadBalanceProbe {
             ("motors", links.joints.is_empty()),
             ("ropes", links.ropes.is_empty()),
             ("springs", links.springs.is_empty()),
+            ("moorings", links.moorings.is_empty()),
             ("forces", links.forces.is_empty() && links.winds.is_empty()),
             ("ballast", solid.spec.ballast.is_empty()),
             ("locks", !(held || locked)),

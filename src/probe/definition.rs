@@ -93,7 +93,7 @@ pub(crate) trait ProbeScope {
     /// `Scene` if the scene has no object with this name.
     fn require_solid(&self, key: &str, name: &str) -> Result<()>;
 
-    /// Requires a joint, spring or rope (`kind`) called `name`.
+    /// Requires a joint, spring, rope or mooring (`kind`) called `name`.
     ///
     /// # Errors
     /// `Scene` if the scene has no object with this name.

@@ -18,6 +18,7 @@ mod force;
 mod front;
 mod joint;
 mod line;
+mod mooring;
 mod motion;
 mod mounting;
 mod patch;
@@ -38,6 +39,7 @@ pub use force::ForceProbe;
 pub use front::FrontProbe;
 pub use joint::JointProbe;
 pub use line::LineProbe;
+pub use mooring::MooringProbe;
 pub use motion::MotionProbe;
 pub use patch::PatchProbe;
 pub use pressure::PressureProbe;
@@ -57,6 +59,7 @@ pub use {
     front::FrontPlan,
     joint::JointPlan,
     line::{RopePlan, SpringPlan},
+    mooring::MooringPlan,
     motion::MotionPlan,
     patch::{PatchConfig, PatchPlan},
     points::{PointRowConfig, PointsConfig},
@@ -272,6 +275,8 @@ probe_kinds! {
     spring: String => Spring(SpringPlan);
     /// Length and tension of the rope with this name.
     rope: String => Rope(RopePlan);
+    /// Tension and touchdown of the mooring line with this name.
+    mooring: String => Mooring(MooringPlan);
     /// Surface elevation at one place or at a row of places.
     elevation: GaugeConfig => Elevation(ElevationPlan);
     /// Velocity at a point or a row of points, m.

@@ -171,7 +171,7 @@ fn solid_points(film: &FrameSequence, number: usize, set: &SceneGeometry) -> Res
     Ok(own.map(|(on, depth)| (depth, on, None)).collect())
 }
 
-/// Returns the lines of all solids in frame `number`.
+/// Returns the lines of all solids and the mooring lines in frame `number`.
 fn solid_lines(film: &FrameSequence, number: usize, set: &SceneGeometry, flat: bool) -> Result<Vec<SolidLines>> {
     let (first, now) = (film.solids(0)?, film.solids(number)?);
     let drawn = |(i, solid): (usize, &DrawnSolid)| {
@@ -182,7 +182,18 @@ fn solid_lines(film: &FrameSequence, number: usize, set: &SceneGeometry, flat: b
         let lines = solid.lines.iter().map(|line| (line.points.iter().map(on_plane).collect(), line.closed)).collect();
         SolidLines { lines, moves: !fixed }
     };
-    Ok(set.solids.iter().enumerate().map(drawn).collect())
+    let mut all: Vec<SolidLines> = set.solids.iter().enumerate().map(drawn).collect();
+    // A line that runs there and back encloses no area.
+    let there_and_back = |nodes: Vec<[f32; 3]>| {
+        let on_plane = |x: &[f32; 3]| project(&x.map(f64::from), flat).0;
+        let nodes: Vec<[f64; 2]> = nodes.iter().map(on_plane).collect();
+        (nodes.iter().chain(nodes.iter().rev()).copied().collect(), false)
+    };
+    let lines: Vec<_> = film.moorings(number)?.into_iter().map(there_and_back).collect();
+    if !lines.is_empty() {
+        all.push(SolidLines { lines, moves: true });
+    }
+    Ok(all)
 }
 
 /// Returns the position of a point in the picture plane (m) and its nearness to the viewer. A 3-D view is from the

@@ -193,7 +193,7 @@ impl<const D: usize> Outputs<D> {
             && due.advance_if_due(t)
             && frames.times().last().is_none_or(|&last| last < t)
         {
-            frames.write(sim.system(), t)?;
+            frames.write(sim.system(), &sim.mooring_readings(), t)?;
             written.frame = true;
         }
         written.checkpoint = self.checkpoint.as_mut().is_some_and(|due| due.advance_if_due(t));
@@ -223,7 +223,7 @@ impl<const D: usize> Outputs<D> {
     pub(crate) fn write_last_frame(&mut self, sim: &Simulation<D>) -> Result<()> {
         match &mut self.frames {
             Some((frames, _)) if frames.times().last().is_none_or(|&t| t < sim.time()) => {
-                frames.write(sim.system(), sim.time())
+                frames.write(sim.system(), &sim.mooring_readings(), sim.time())
             }
             _ => Ok(()),
         }

@@ -19,6 +19,8 @@ use crate::{
     solid::{
         SolidSpec,
         hydrostatics::{HollowWater, Hull},
+        mooring::forces_at_rest,
+        statics::WaterAtRest,
         tie_loads::{StartState, TieLoads},
     },
 };
@@ -73,12 +75,20 @@ fn float_bodies<const D: usize>(
     let specs: Vec<&SolidSpec<D>> = placed.specs.iter().collect();
     let afloat: Vec<bool> = scene.solid.iter().map(SolidConfig::is_afloat).collect();
     let bottom = level - pool.still.depth;
+    let g = ctx.gravity_norm();
+    let mut pulls = vec![0.0; specs.len()];
+    let at_rest = forces_at_rest(&constraints.moorings, &specs, &WaterAtRest { rho0, g, level });
+    for (spec, forces) in constraints.moorings.iter().zip(at_rest) {
+        let ends = spec.ends.iter().zip(forces);
+        ends.for_each(|(end, force)| end.solid.into_iter().for_each(|i| pulls[i] -= force[D - 1] / g));
+    }
     let state = StartState {
         specs: &specs,
         afloat: &afloat,
         displaced: &|i| placed.displaced_mass(i, rho0, level, water),
         above_bottom: &|i| world_bounds(&specs[i].shape, &specs[i].pose).min[D - 1] - bottom - 0.5 * scene.dp,
-        g: ctx.gravity_norm(),
+        moored: &|i| pulls[i],
+        g,
     };
     let loads = TieLoads::at_start(&state, &constraints);
     let rise = |i: usize, mass: f64| {

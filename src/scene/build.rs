@@ -23,11 +23,12 @@ use crate::{
     },
     math::{Bounds, Pose, Vector},
     model::{Model, TimeScheme},
-    plan::Plan,
+    plan::{FramesPlan, Plan},
     simulation::Setup,
     solid::{
         Constraints, InitialHold, Role, SolidSpec, TimeFunction, TimedRemoval,
         constraint::links::{check_force, check_rope, check_spring},
+        mooring::check_mooring,
     },
     system::{Periodic, periodic},
 };
@@ -272,6 +273,11 @@ impl Scene {
             check_rope(&rope, solids).map_err(|e| ctx.with_location(e, &format!("rope.{i}")))?;
             constraints.ropes.push(rope);
         }
+        for (i, mooring) in self.mooring.iter().enumerate() {
+            let mooring = mooring.build(&self.solid, &self.line_type);
+            check_mooring(&mooring, solids).map_err(|e| ctx.with_location(e, &format!("mooring.{i}")))?;
+            constraints.moorings.push(mooring);
+        }
         for (i, force) in self.force.iter().enumerate() {
             let key = format!("force.{i}");
             let force = force.build(ctx, &key, &self.solid)?;
@@ -300,7 +306,8 @@ impl Scene {
             until: self.until,
             probes: self.probe.iter().filter_map(|probe| probe.to_plan(self.until)).collect(),
             contacts: self.probe.iter().filter_map(|probe| probe.to_contact_list(self.until)).collect(),
-            frames: self.frames.as_ref().and_then(|frames| frames.build(ctx)),
+            frames: (self.frames.as_ref().and_then(|frames| frames.build(ctx)))
+                .map(|frames| FramesPlan { moorings: !self.mooring.is_empty(), ..frames }),
             checkpoint_every: checkpoint.every,
             checkpoint_wall: checkpoint.wall_time(),
             checks: (self.check.iter().enumerate())

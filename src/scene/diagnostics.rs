@@ -110,6 +110,23 @@ const EXAMPLES: &[(&str, &str)] = &[
          stiffness = 500.0",
     ),
     ("rope", "[[rope]]\nname    = \"rope\"\nbetween = [\"buoy\"]\nfrom    = [1.0, 0.4]\nto      = [1.0, 0.0]"),
+    (
+        "line_type",
+        "[[line_type]]\nname            = \"chain\"\ndiameter        = 0.0037      # m\nmass_per_length = 0.0607      # kg/m\n\
+         stiffness       = 3e4         # EA, N",
+    ),
+    ("line_type.diameter", "diameter = 0.0037        # of the volume of a metre, m"),
+    ("mass_per_length", "mass_per_length = 0.0607        # in air, kg/m"),
+    ("line_type.stiffness", "stiffness = 3e4        # EA, N"),
+    ("line_type.damping_ratio", "damping_ratio = 1.0        # of the critical damping of a segment"),
+    (
+        "mooring",
+        "[[mooring]]\nname    = \"west\"\nbetween = [\"box\"]\nfrom    = [2.9, 0.4]\nto      = [1.0, 0.0]\n\
+         length  = 2.1\nline    = \"chain\"",
+    ),
+    ("line", "line = \"chain\"        # the name of a [[line_type]]"),
+    ("segments", "segments = 20"),
+    ("clumps", "clumps = [{ at = 1.0, mass = 0.2 }]        # m, kg"),
     ("force", "[[force]]\nname  = \"wind\"\non    = \"box\"\nforce = [\"20*sin(t)\", 0.0]"),
     ("on", "on = \"box\""),
     ("force.force", "force = [\"20*sin(t)\", 0.0]        # N, one entry an axis"),

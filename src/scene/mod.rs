@@ -38,6 +38,7 @@ mod section {
     pub(crate) mod meshed_shape;
     pub(crate) mod lifetime;
     pub(crate) mod model;
+    pub(crate) mod mooring;
     pub(crate) mod motion;
     pub(crate) mod outline;
     pub(crate) mod output;
@@ -73,6 +74,7 @@ pub use {
     section::force_element::{ForceConfig, RopeConfig, SpringConfig},
     section::joint::{JointConfig, JointKindConfig, MotorConfig},
     section::model::ModelConfig,
+    section::mooring::{ClumpConfig, LineTypeConfig, MooringConfig},
     section::motion::DrivenConfig,
     section::output::FramesChoice,
     section::shape::{CompoundPartConfig, PlacementConfig, ShapeConfig},
@@ -151,12 +153,18 @@ pub struct Scene {
     /// Joints of the solids.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub joint: Vec<JointConfig>,
-    /// Springs and mooring lines.
+    /// Springs, and mooring lines without mass.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub spring: Vec<SpringConfig>,
     /// Ropes.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub rope: Vec<RopeConfig>,
+    /// Materials of mooring lines.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub line_type: Vec<LineTypeConfig>,
+    /// Mooring lines with mass.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub mooring: Vec<MooringConfig>,
     /// Prescribed forces.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub force: Vec<ForceConfig>,
@@ -260,7 +268,7 @@ impl Scene {
         self
     }
 
-    /// Returns the same scene with one more spring or mooring line.
+    /// Returns the same scene with one more spring or mooring line without mass.
     pub fn spring(mut self, spring: SpringConfig) -> Self {
         self.spring.push(spring);
         self
@@ -269,6 +277,18 @@ impl Scene {
     /// Returns the same scene with one more rope.
     pub fn rope(mut self, rope: RopeConfig) -> Self {
         self.rope.push(rope);
+        self
+    }
+
+    /// Returns the same scene with one more line type.
+    pub fn line_type(mut self, line_type: LineTypeConfig) -> Self {
+        self.line_type.push(line_type);
+        self
+    }
+
+    /// Returns the same scene with one more mooring line with mass.
+    pub fn mooring(mut self, mooring: MooringConfig) -> Self {
+        self.mooring.push(mooring);
         self
     }
 

@@ -88,10 +88,14 @@ impl Scene {
         verify_names(ctx, "joint", &names!(self.joint))?;
         verify_names(ctx, "spring", &names!(self.spring))?;
         verify_names(ctx, "rope", &names!(self.rope))?;
+        verify_names(ctx, "line_type", &names!(self.line_type))?;
+        verify_names(ctx, "mooring", &names!(self.mooring))?;
         verify_names(ctx, "force", &names!(self.force))?;
         each(&self.joint, "joint", |joint, key| joint.verify(ctx, key, solids))?;
         each(&self.spring, "spring", |spring, key| spring.verify(ctx, key, solids))?;
         each(&self.rope, "rope", |rope, key| rope.verify(ctx, key, solids))?;
+        each(&self.line_type, "line_type", |line, key| line.verify(ctx, key))?;
+        each(&self.mooring, "mooring", |mooring, key| mooring.verify(ctx, key, solids, &self.line_type))?;
         each(&self.wind, "wind", |wind, key| wind.verify(ctx, key, solids))?;
         each(&self.force, "force", |force, key| force.verify(ctx, key, solids))?;
         contact::verify(ctx, &self.contact, solids)?;
@@ -165,6 +169,12 @@ impl Scene {
         }
         for (i, rope) in scene.rope.iter_mut().enumerate() {
             rope.fill(fills, &format!("rope.{i}"));
+        }
+        for (i, line) in scene.line_type.iter_mut().enumerate() {
+            line.fill(fills, &format!("line_type.{i}"));
+        }
+        for (i, mooring) in scene.mooring.iter_mut().enumerate() {
+            mooring.fill(fills, &format!("mooring.{i}"));
         }
         for (i, wind) in scene.wind.iter_mut().enumerate() {
             wind.fill(fills, &format!("wind.{i}"));
@@ -284,7 +294,7 @@ impl Scene {
 }
 
 /// The order in which values are listed.
-const ORDER: [&str; 25] = [
+const ORDER: [&str; 27] = [
     "title",
     "dimension",
     "dp",
@@ -300,6 +310,8 @@ const ORDER: [&str; 25] = [
     "joint",
     "spring",
     "rope",
+    "line_type",
+    "mooring",
     "force",
     "wind",
     "contact",

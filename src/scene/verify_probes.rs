@@ -60,6 +60,7 @@ impl ProbeScope for Scene {
     fn require_constraint(&self, key: &str, kind: &str, name: &str) -> Result<()> {
         let known: Vec<&str> = match kind {
             "joint" => self.joint.iter().map(|joint| joint.name.as_str()).collect(),
+            "mooring" => self.mooring.iter().map(|mooring| mooring.name.as_str()).collect(),
             "spring" => self.spring.iter().map(|spring| spring.name.as_str()).collect(),
             _ => self.rope.iter().map(|rope| rope.name.as_str()).collect(),
         };

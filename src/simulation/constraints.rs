@@ -3,7 +3,7 @@
 use super::Simulation;
 use crate::{
     error::{Error, ErrorCode, Result, nearest_name},
-    solid::{ConstraintEvent, JointReading, JointSpec, LineReading, MotorCommand, SpringParameters},
+    solid::{ConstraintEvent, JointReading, JointSpec, LineReading, MooringReading, MotorCommand, SpringParameters},
 };
 
 impl<const D: usize> Simulation<D> {
@@ -64,6 +64,34 @@ impl<const D: usize> Simulation<D> {
     /// What spring number `spring` felt in the last step.
     pub fn spring_reading(&self, spring: usize) -> LineReading {
         self.bodies.constraints().spring_reading(spring)
+    }
+
+    /// Number of the mooring line called `name`.
+    ///
+    /// # Errors
+    /// As [`Simulation::find_joint`].
+    pub fn find_mooring(&self, name: &str) -> Result<usize> {
+        find_by_name("mooring", name, self.system.constraints().moorings.iter().map(|mooring| mooring.name.as_str()))
+    }
+
+    /// Shape and tension of mooring line number `mooring` now.
+    pub fn mooring_reading(&self, mooring: usize) -> MooringReading<D> {
+        self.bodies.moorings.reading(&self.system, mooring)
+    }
+
+    /// Stiffness (N/m; N/m² in 2-D) of the mooring lines on solid number `solid` against surge.
+    pub(crate) fn mooring_surge_stiffness(&self, solid: usize) -> f64 {
+        self.bodies.moorings.surge_stiffness(&self.system, solid)
+    }
+
+    /// Longest inner step of mooring line number `mooring`, s.
+    pub(crate) fn mooring_step(&self, mooring: usize) -> f64 {
+        self.bodies.moorings.line_step(mooring)
+    }
+
+    /// Shapes and tensions of all mooring lines now, in the order of the setup.
+    pub fn mooring_readings(&self) -> Vec<MooringReading<D>> {
+        (0..self.system.constraints().moorings.len()).map(|i| self.mooring_reading(i)).collect()
     }
 
     /// What rope number `rope` felt in the last step.

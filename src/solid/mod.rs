@@ -9,6 +9,7 @@ pub(crate) mod force;
 pub mod hydrostatics;
 pub(crate) mod joint_groups;
 mod load;
+pub(crate) mod mooring;
 pub(crate) mod prescribed_motion;
 pub(crate) mod rapier;
 pub(crate) mod statics;
@@ -27,6 +28,7 @@ pub use constraint::{
 pub use force::ForceSpec;
 pub use load::Load;
 pub(crate) use load::LoadContext;
+pub use mooring::{ClumpSpec, LineDamping, LineType, MooringReading, MooringSpec};
 pub use prescribed_motion::{PrescribedMotion, TimeFunction};
 pub use rapier::ContactForce;
 #[cfg(feature = "dim2")]

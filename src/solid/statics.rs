@@ -12,6 +12,7 @@ use super::{
     constraint::lines::start_length,
     hydrostatics::Hull,
     joint_groups::{JointGroups, merge},
+    mooring::forces_at_rest,
 };
 use crate::math::{Bivector, Bounds, Pose, Vector};
 
@@ -159,7 +160,14 @@ impl<'a, const D: usize> StaticSystem<'a, D> {
             let (force, torque) = force.steady_load()?;
             Some(SteadyForce { body, at, force, torque })
         };
-        let forces = constraints.forces.iter().filter_map(force).collect();
+        let pulls = forces_at_rest(&constraints.moorings, solids, &water);
+        let moored = constraints.moorings.iter().zip(pulls).flat_map(|(spec, forces)| {
+            let pull = |(end, force): (&LineEnd<D>, Vector<D>)| {
+                Some(SteadyForce { body: number(Some(end.solid?))?, at: end.at, force, torque: Bivector::zero() })
+            };
+            spec.ends.iter().zip(forces).filter_map(pull).collect::<Vec<_>>()
+        });
+        let forces = constraints.forces.iter().filter_map(force).chain(moored).collect();
         let (rise, held) = (vec![0.0; solids.len()], groups.held);
         let joints = constraints.joints.clone();
         let mut made = Self { bodies, group, assembly, held, joints, lines, forces, water, rise };

@@ -27,6 +27,8 @@ pub(crate) struct StartState<'a, const D: usize> {
     pub(crate) displaced: &'a dyn Fn(usize) -> f64,
     /// Height (m) of each solid's lowest point above the bottom of the water.
     pub(crate) above_bottom: &'a dyn Fn(usize) -> f64,
+    /// Load (kg) of the mooring lines with mass on each solid, downward.
+    pub(crate) moored: &'a dyn Fn(usize) -> f64,
     /// Gravity, m/s².
     pub(crate) g: f64,
 }
@@ -49,6 +51,7 @@ impl TieLoads {
         let tied = !(constraints.joints.is_empty()
             && constraints.springs.is_empty()
             && constraints.ropes.is_empty()
+            && constraints.moorings.is_empty()
             && constraints.forces.is_empty());
         if !tied || state.g <= 0.0 {
             return made;
@@ -58,6 +61,7 @@ impl TieLoads {
                 made.add(state, force.solid, -steady[D - 1] / state.g);
             }
         }
+        (0..n).for_each(|i| made.add(state, i, (state.moored)(i)));
         for i in (0..n).filter(|i| !state.afloat[*i]) {
             if let Some(body) = specs[i].initial_body() {
                 made.add(state, i, body.mass - (state.displaced)(i));

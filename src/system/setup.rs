@@ -11,8 +11,8 @@ use crate::{
     math::{Bounds, Pose, Vector},
     model::Model,
     solid::{
-        Constraints, ContactSpec, ForceSpec, InitialHold, JointSpec, Role, RopeSpec, SolidSpec, SpringSpec,
-        TimeFunction,
+        Constraints, ContactSpec, ForceSpec, InitialHold, JointSpec, MooringSpec, Role, RopeSpec, SolidSpec,
+        SpringSpec, TimeFunction,
     },
 };
 
@@ -154,6 +154,12 @@ impl<const D: usize> Setup<D> {
     /// The same setup with one more rope.
     pub fn rope(mut self, rope: RopeSpec<D>) -> Self {
         self.constraints.ropes.push(rope);
+        self
+    }
+
+    /// The same setup with one more mooring line with mass.
+    pub fn mooring(mut self, mooring: MooringSpec<D>) -> Self {
+        self.constraints.moorings.push(mooring);
         self
     }
 

@@ -1,4 +1,4 @@
-//! `[[spring]]`, `[[rope]]` and `[[force]]`: springs, mooring lines, ropes and prescribed forces.
+//! `[[spring]]`, `[[rope]]` and `[[force]]`: springs, mooring lines without mass, ropes and prescribed forces.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -358,7 +358,12 @@ fn tied<'a>(solids: &'a [SolidConfig], between: &'a [String]) -> impl Iterator<I
 }
 
 /// The two ends of a line; one without a solid is fixed in the world.
-fn ends<const D: usize>(solids: &[SolidConfig], between: &[String], from: &[f64], to: &[f64]) -> [LineEnd<D>; 2] {
+pub(crate) fn ends<const D: usize>(
+    solids: &[SolidConfig],
+    between: &[String],
+    from: &[f64],
+    to: &[f64],
+) -> [LineEnd<D>; 2] {
     let number = |name: &String| solids.iter().position(|solid| solid.name == *name);
     [(0, from), (1, to)].map(|(k, at)| LineEnd { solid: between.get(k).and_then(number), at: vector(at) })
 }

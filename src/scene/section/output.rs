@@ -115,6 +115,7 @@ impl FramesChoice {
             every: config.every.unwrap_or(ctx.until),
             fields: config.fields.clone().unwrap_or_default(),
             crop: config.corners.as_ref().map(|corners| [corners.min.clone(), corners.max.clone()]),
+            moorings: false,
         })
     }
 }

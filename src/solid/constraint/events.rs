@@ -108,6 +108,11 @@ impl<const D: usize> Assembly<D> {
         }
     }
 
+    /// Records that the mooring line called `name` broke at time `t` (s) under this tension (N).
+    pub(crate) fn record_break(&mut self, name: &str, t: f64, tension: f64) {
+        self.state.phases.record(t, format!("mooring {name:?}"), ConstraintChange::Broken(tension));
+    }
+
     /// Records that the solid called `name` was removed at time `t` (s).
     pub(crate) fn record_removal(&mut self, name: &str, t: f64) {
         self.state.phases.record(t, format!("solid {name:?}"), ConstraintChange::Removed);

@@ -4,11 +4,12 @@ use std::collections::BTreeMap;
 
 use super::{
     joint::{JointKind, JointSpec, mode_count},
+    lifetime::Lifetime,
     lines::{LineEnd, RopeSpec, SpringSpec, start_length},
 };
 use crate::{
     error::{Error, Result},
-    solid::{ForceSpec, Role, SolidSpec, WindSpec},
+    solid::{ForceSpec, MooringSpec, Role, SolidSpec, WindSpec, mooring::check_mooring},
 };
 
 /// All constraints of a simulation. Solids are numbered as in its list of solids.
@@ -17,10 +18,12 @@ use crate::{
 pub struct Constraints<const D: usize> {
     /// Joints.
     pub joints: Vec<JointSpec<D>>,
-    /// Springs and mooring lines.
+    /// Springs and mooring lines without mass.
     pub springs: Vec<SpringSpec<D>>,
     /// Ropes.
     pub ropes: Vec<RopeSpec<D>>,
+    /// Mooring lines with mass.
+    pub moorings: Vec<MooringSpec<D>>,
     /// Prescribed forces and torques.
     pub forces: Vec<ForceSpec<D>>,
     /// Winds.
@@ -159,6 +162,7 @@ impl<const D: usize> Constraints<D> {
         self.joints.is_empty()
             && self.springs.is_empty()
             && self.ropes.is_empty()
+            && self.moorings.is_empty()
             && self.forces.is_empty()
             && self.winds.is_empty()
             && self.holds.is_empty()
@@ -179,9 +183,11 @@ impl<const D: usize> Constraints<D> {
         let springs = self.springs.iter().map(|spring| (&spring.name, ends(&spring.ends), &spring.lifetime));
         let ropes = self.ropes.iter().map(|rope| (&rope.name, ends(&rope.ends), &rope.lifetime));
         let forces = self.forces.iter().map(|force| (&force.name, [Some(force.solid), None], &force.lifetime));
+        let whole_run = Lifetime::default();
+        let moorings = self.moorings.iter().map(|mooring| (&mooring.name, ends(&mooring.ends), &whole_run));
         let in_wind =
             |wind: &WindSpec<D>| wind.targets.iter().any(|target| target.solid == solid && !target.lifetime.is_over(t));
-        let mut named = joints.chain(springs).chain(ropes).chain(forces);
+        let mut named = joints.chain(springs).chain(ropes).chain(moorings).chain(forces);
         let held = self.holds.iter().any(|hold| hold.solid == solid && hold.is_active(t));
         let first = named.find(|(_, ends, lifetime)| ends.contains(&Some(solid)) && !lifetime.is_over(t));
         let blown = self.winds.iter().any(in_wind);
@@ -197,6 +203,7 @@ impl<const D: usize> Constraints<D> {
         (0..self.joints.len()).try_for_each(|i| self.check_joint(i, solids))?;
         self.springs.iter().try_for_each(|spring| check_spring(spring, solids))?;
         self.ropes.iter().try_for_each(|rope| check_rope(rope, solids))?;
+        self.moorings.iter().try_for_each(|mooring| check_mooring(mooring, solids))?;
         self.forces.iter().try_for_each(|force| check_force(force, solids))?;
         self.winds.iter().try_for_each(|wind| check_wind(wind, solids))?;
         self.holds.iter().try_for_each(|hold| check_hold(hold, solids))?;

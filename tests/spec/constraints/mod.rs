@@ -3,4 +3,5 @@
 mod events;
 mod hinge_loads;
 mod joints;
+mod moorings;
 mod prescribed_motions;

@@ -165,3 +165,15 @@ fn a_run_stopped_by_a_step_check_can_be_resumed_with_another_limit() -> Result<(
     }
     Ok(())
 }
+
+#[test]
+fn mooring_lines_survive_a_restart() -> Result<()> {
+    let (home, sim) = survives_restart("moorings", [0.15, 0.35], |sim: &mut Simulation<2>| {
+        sim.enable_load_breakdown();
+        sim.enable_energy_budget();
+    })?;
+    let reading = sim.mooring_reading(0);
+    assert!(reading.on_bed > 0.0 && reading.end_forces[0].norm() > 0.0, "{reading:?}");
+    assert!(home.join("whole/frames/moorings_00003.vtu").exists(), "frames have the lines");
+    Ok(())
+}

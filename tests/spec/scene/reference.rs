@@ -267,6 +267,19 @@ name = "rope"
 between = ["raft"]
 from = [1.6, 0.3]
 to = [1.6, 0.0]
+[[line_type]]
+name = "chain"
+diameter = 0.004
+mass_per_length = 0.06
+stiffness = 1e3
+[[mooring]]
+name = "moor"
+between = ["raft"]
+from = [1.6, 0.3]
+to = [1.2, 0.0]
+length = 0.52
+line = "chain"
+segments = 8
 [[force]]
 name = "wind"
 on = "raft"
@@ -278,7 +291,7 @@ bound = { off = 1.0 }
 "#;
 
 /// The quantities of a run with every kind of probe.
-const MEASURED: [&str; 19] = [
+const MEASURED: [&str; 20] = [
     "force = \"buoy\"",
     "balance = \"raft\"",
     "contact = [\"raft\", \"crate\"]",
@@ -288,6 +301,7 @@ const MEASURED: [&str; 19] = [
     "joint = \"generic\"",
     "spring = \"line\"",
     "rope = \"rope\"",
+    "mooring = \"moor\"",
     "elevation = { x = 0.5, surface = \"all\" }",
     "elevation = { from = 0.5, to = 0.7, count = 2 }",
     "velocity = [0.5, 0.2]",

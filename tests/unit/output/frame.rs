@@ -25,7 +25,7 @@ fn the_index_of_frames_names_both_files_of_each_time() {
 
 #[test]
 fn an_unknown_field_is_refused_with_the_nearest_name() {
-    let plan = FramesPlan { every: 1.0, fields: vec!["presure".into()], crop: None };
+    let plan = FramesPlan { every: 1.0, fields: vec!["presure".into()], crop: None, moorings: false };
     let error = FrameWriter::new(&std::env::temp_dir(), &plan, vec![]).err();
     assert_eq!(error.and_then(|e| e.help), Some("did you mean \"pressure\"?".into()));
 }

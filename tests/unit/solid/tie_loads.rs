@@ -15,7 +15,14 @@ fn loads(masses: &[f64], afloat: usize, ties: &Constraints<2>) -> TieLoads {
     let solids: Vec<SolidSpec<2>> = masses.iter().enumerate().map(body).collect();
     let specs: Vec<&SolidSpec<2>> = solids.iter().collect();
     let afloat: Vec<bool> = (0..masses.len()).map(|i| i < afloat).collect();
-    let state = StartState { specs: &specs, afloat: &afloat, displaced: &|_| 1.0, above_bottom: &|_| 2.0, g: 10.0 };
+    let state = StartState {
+        specs: &specs,
+        afloat: &afloat,
+        displaced: &|_| 1.0,
+        above_bottom: &|_| 2.0,
+        moored: &|_| 0.0,
+        g: 10.0,
+    };
     TieLoads::at_start(&state, ties)
 }
 

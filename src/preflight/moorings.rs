@@ -1,0 +1,89 @@
+//! Mooring lines at rest: tension, touchdown, the step of the line, and the natural period of the surge of moored bodies.
+
+use serde::Serialize;
+
+use super::{Finding, PreflightContext};
+use crate::{math::format::three_digits, simulation::Simulation};
+
+/// A mooring line at rest.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct MooringSummary {
+    /// Name of the line.
+    pub name: String,
+    /// Length without tension, m.
+    pub length_m: f64,
+    /// Tension at the first end, N (N/m in 2-D).
+    pub fairlead_n: f64,
+    /// Tension at the second end, N (N/m in 2-D).
+    pub anchor_n: f64,
+    /// Length on fixed solids, m.
+    pub on_bed_m: f64,
+    /// Coordinates of the touchdown point, m; absent unless part of the line lies on a fixed solid.
+    pub touchdown_m: Option<Vec<f64>>,
+    /// Angle of the second end above the horizontal, degrees.
+    pub anchor_angle_deg: f64,
+    /// Longest step of the line, s.
+    pub step_s: f64,
+}
+
+/// The surge of a moored body.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct MooredSurge {
+    /// Name of the body.
+    pub name: String,
+    /// Stiffness of its mooring lines along x, N/m (N/m² in 2-D).
+    pub stiffness_npm: f64,
+    /// Natural period without added mass, s; absent unless the stiffness is positive.
+    pub period_s: Option<f64>,
+}
+
+/// Returns the mooring lines and the surge of the free bodies that they hold. Adds a
+/// note about lines that take many steps.
+pub(super) fn summaries<const D: usize>(
+    context: &PreflightContext<'_, D>,
+    sim: &Simulation<D>,
+    findings: &mut Vec<Finding>,
+) -> (Vec<MooringSummary>, Vec<MooredSurge>) {
+    let specs = &context.system.constraints().moorings;
+    let line = |(i, now): (usize, crate::solid::MooringReading<D>)| {
+        // The touchdown point is where the lying part ends, seen from the lower end.
+        let segment = specs[i].length / specs[i].segments as f64;
+        let lying = (now.on_bed / segment).round() as usize;
+        let from_second = now.nodes[0][D - 1] >= now.nodes[specs[i].segments][D - 1];
+        let node = if from_second { specs[i].segments.saturating_sub(lying) } else { lying.min(specs[i].segments) };
+        MooringSummary {
+            name: specs[i].name.clone(),
+            length_m: specs[i].length,
+            fairlead_n: now.end_forces[0].norm(),
+            anchor_n: now.end_forces[1].norm(),
+            on_bed_m: now.on_bed,
+            touchdown_m: (now.on_bed > 0.0).then(|| now.nodes[node].iter().copied().collect()),
+            anchor_angle_deg: now.anchor_angle.to_degrees(),
+            step_s: sim.mooring_step(i),
+        }
+    };
+    let lines: Vec<MooringSummary> = sim.mooring_readings().into_iter().enumerate().map(line).collect();
+    for own in lines.iter().filter(|own| own.step_s * MOST_INNER_STEPS < sim.step_limit()) {
+        let inner = (sim.step_limit() / own.step_s).ceil();
+        let what = format!(
+            "mooring \"{}\" takes {} steps in each step of the water: it is stiff for its mass and the length of its segments",
+            own.name,
+            three_digits(inner)
+        );
+        let mend = "fewer segments or a lower stiffness make it cheaper, as long as its strain stays below 1 %".into();
+        findings.push(Finding::note("stiff_mooring", what, mend));
+    }
+    let surge = |(i, solid): (usize, &crate::solid::Solid<D>)| {
+        let body = solid.body.as_ref()?;
+        let moored = specs.iter().any(|spec| spec.ends.iter().any(|end| end.solid == Some(i)));
+        moored.then(|| {
+            let stiffness = sim.mooring_surge_stiffness(i);
+            let period = (stiffness > 0.0).then(|| std::f64::consts::TAU * (body.mass / stiffness).sqrt());
+            MooredSurge { name: solid.spec.name.clone(), stiffness_npm: stiffness, period_s: period }
+        })
+    };
+    (lines, context.solids().iter().enumerate().filter_map(surge).collect())
+}
+
+/// Steps of a line in a step of the water from which on a note names them.
+const MOST_INNER_STEPS: f64 = 200.0;

@@ -1,0 +1,295 @@
+//! `[[mooring]]` and `[[line_type]]`: mooring lines with mass, and what they are made of.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{
+    force_element::ends,
+    lifetime::{Element, LifetimeConfig, StrengthConfig},
+    solid::{SolidConfig, require_solid},
+};
+use crate::{
+    error::{ErrorCode, Result, suggestion},
+    scene::context::{Context, Defaults},
+    solid::{ClumpSpec, LineDamping, LineType, MooringSpec},
+};
+
+/// Number of segments of a line unless it is given.
+const SEGMENTS: usize = 20;
+
+/// A section `[[mooring]]`: a mooring line with mass.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[non_exhaustive]
+pub struct MooringConfig {
+    /// Name: letters, digits, `_` and `-`.
+    pub name: String,
+    /// The solids at its two ends; or one, the other end on the ground.
+    pub between: Vec<String>,
+    /// Attachment point on the first solid at the start, m.
+    pub from: Vec<f64>,
+    /// Attachment point on the second solid or the ground at the start, m.
+    pub to: Vec<f64>,
+    /// Length without tension, m.
+    pub length: f64,
+    /// Name of its `[[line_type]]`.
+    pub line: String,
+    /// Number of segments.
+    pub segments: Option<usize>,
+    /// Clump weights and floats.
+    pub clumps: Option<Vec<ClumpConfig>>,
+    /// Tension under which a segment breaks, N.
+    pub breaks: Option<StrengthConfig>,
+}
+
+/// A clump weight or a float on a mooring line.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ClumpConfig {
+    /// Length of line from `from` to the clump, m.
+    pub at: f64,
+    /// Mass, kg.
+    pub mass: f64,
+    /// Volume, m³.
+    pub volume: Option<f64>,
+    /// Drag coefficient times area, m².
+    pub drag_area: Option<f64>,
+}
+
+/// A section `[[line_type]]`: what a mooring line is made of.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[non_exhaustive]
+pub struct LineTypeConfig {
+    /// Name: letters, digits, `_` and `-`.
+    pub name: String,
+    /// Volume-equivalent diameter, m.
+    pub diameter: f64,
+    /// Mass of a metre in air, kg/m.
+    pub mass_per_length: f64,
+    /// Axial stiffness EA, N.
+    pub stiffness: f64,
+    /// Axial damping BA, N s.
+    pub damping: Option<f64>,
+    /// Axial damping over the critical damping of a segment.
+    pub damping_ratio: Option<f64>,
+    /// Bending stiffness EI, N m².
+    pub bending_stiffness: Option<f64>,
+    /// Added-mass coefficient across the line.
+    pub added_mass: Option<f64>,
+    /// Added-mass coefficient along the line.
+    pub added_mass_axial: Option<f64>,
+    /// Drag coefficient across the line.
+    pub drag: Option<f64>,
+    /// Drag coefficient along the line.
+    pub drag_axial: Option<f64>,
+    /// Diameter with which the line touches fixed solids, m; by default its axis touches them.
+    pub contact_diameter: Option<f64>,
+    /// Stiffness of fixed solids against the line, Pa/m.
+    pub bed_stiffness: Option<f64>,
+    /// Damping of fixed solids against the line, Pa s/m.
+    pub bed_damping: Option<f64>,
+    /// Coulomb friction coefficient of fixed solids.
+    pub bed_friction: Option<f64>,
+}
+
+impl LineTypeConfig {
+    /// A line type of this volume-equivalent diameter (m), mass (kg/m) and axial stiffness EA (N).
+    pub fn new(name: impl Into<String>, diameter: f64, mass_per_length: f64, stiffness: f64) -> Self {
+        Self {
+            name: name.into(),
+            diameter,
+            mass_per_length,
+            stiffness,
+            damping: None,
+            damping_ratio: None,
+            bending_stiffness: None,
+            added_mass: None,
+            added_mass_axial: None,
+            drag: None,
+            drag_axial: None,
+            contact_diameter: None,
+            bed_stiffness: None,
+            bed_damping: None,
+            bed_friction: None,
+        }
+    }
+
+    /// Fills in the defaults.
+    pub(crate) fn fill(&mut self, defaults: &mut Defaults, key: &str) {
+        let usual = LineType::new(self.diameter, self.mass_per_length, self.stiffness);
+        if self.damping.is_none() {
+            let why = "of a segment: no ringing of the shortest wave on the line";
+            defaults.fill(format!("{key}.damping_ratio"), &mut self.damping_ratio, 1.0, why);
+        }
+        let values = [
+            ("bending_stiffness", &mut self.bending_stiffness, usual.bending_stiffness, "a chain"),
+            ("added_mass", &mut self.added_mass, usual.added_mass[0], "a cylinder across the flow"),
+            ("added_mass_axial", &mut self.added_mass_axial, usual.added_mass[1], "a smooth line"),
+            ("drag", &mut self.drag, usual.drag[0], "a cylinder across the flow"),
+            ("drag_axial", &mut self.drag_axial, usual.drag[1], "a smooth line"),
+            ("bed_stiffness", &mut self.bed_stiffness, usual.bed_stiffness, "as MoorDyn"),
+            ("bed_damping", &mut self.bed_damping, usual.bed_damping, "as MoorDyn"),
+            ("bed_friction", &mut self.bed_friction, usual.bed_friction, "as MoorDyn: no friction"),
+        ];
+        for (word, value, usual, why) in values {
+            defaults.fill(format!("{key}.{word}"), value, usual, why);
+        }
+    }
+
+    /// Refuses numbers out of range.
+    pub(crate) fn verify(&self, ctx: &Context, key: &str) -> Result<()> {
+        let positive =
+            [("diameter", self.diameter), ("mass_per_length", self.mass_per_length), ("stiffness", self.stiffness)];
+        for (word, x) in positive {
+            ctx.require_positive(&format!("{key}.{word}"), Some(x))?;
+        }
+        let others = [
+            ("damping", self.damping),
+            ("damping_ratio", self.damping_ratio),
+            ("bending_stiffness", self.bending_stiffness),
+            ("added_mass", self.added_mass),
+            ("added_mass_axial", self.added_mass_axial),
+            ("drag", self.drag),
+            ("drag_axial", self.drag_axial),
+            ("contact_diameter", self.contact_diameter),
+            ("bed_stiffness", self.bed_stiffness),
+            ("bed_damping", self.bed_damping),
+            ("bed_friction", self.bed_friction),
+        ];
+        for (word, x) in others {
+            if let Some(x) = x.filter(|x| !(*x >= 0.0 && x.is_finite())) {
+                let what = format!("{word} must be 0 or more, not {x}");
+                return Err(ctx.error_at(&format!("{key}.{word}"), what).with_code(ErrorCode::OutOfRange));
+            }
+        }
+        if self.damping.is_some() && self.damping_ratio.is_some() {
+            let what = "damping and damping_ratio say the same twice";
+            return Err(ctx.error_at(&format!("{key}.damping_ratio"), what).with_code(ErrorCode::ConflictingKeys));
+        }
+        Ok(())
+    }
+
+    /// The line type with all defaults.
+    fn build(&self) -> LineType {
+        let mut made = LineType::new(self.diameter, self.mass_per_length, self.stiffness);
+        made.damping = match self.damping {
+            Some(damping) => LineDamping::Given(damping),
+            None => LineDamping::OfCritical(self.damping_ratio.unwrap_or(1.0)),
+        };
+        let or = |value: Option<f64>, usual: f64| value.unwrap_or(usual);
+        made.bending_stiffness = or(self.bending_stiffness, made.bending_stiffness);
+        made.added_mass = [or(self.added_mass, made.added_mass[0]), or(self.added_mass_axial, made.added_mass[1])];
+        made.drag = [or(self.drag, made.drag[0]), or(self.drag_axial, made.drag[1])];
+        made.contact_diameter = self.contact_diameter;
+        made.bed_stiffness = or(self.bed_stiffness, made.bed_stiffness);
+        made.bed_damping = or(self.bed_damping, made.bed_damping);
+        made.bed_friction = or(self.bed_friction, made.bed_friction);
+        made
+    }
+}
+
+impl MooringConfig {
+    /// A mooring line of `length` (m) of the line type `line` from the point `from` (m) of `solid` to the point `to` (m) of the ground.
+    pub fn new(
+        name: impl Into<String>,
+        solid: impl Into<String>,
+        from: impl Into<Vec<f64>>,
+        to: impl Into<Vec<f64>>,
+        length: f64,
+        line: impl Into<String>,
+    ) -> Self {
+        Self {
+            name: name.into(),
+            between: vec![solid.into()],
+            from: from.into(),
+            to: to.into(),
+            length,
+            line: line.into(),
+            segments: None,
+            clumps: None,
+            breaks: None,
+        }
+    }
+
+    /// Fills in the defaults.
+    pub(crate) fn fill(&mut self, defaults: &mut Defaults, key: &str) {
+        defaults.fill(format!("{key}.segments"), &mut self.segments, SEGMENTS, "tension within 1 %");
+    }
+
+    fn lifetime(&self) -> LifetimeConfig<'_> {
+        LifetimeConfig { since: None, until: None, breaks: self.breaks.as_ref() }
+    }
+
+    /// Refuses ends that do not move, an unknown line type, and numbers out of range.
+    pub(crate) fn verify(
+        &self,
+        ctx: &Context,
+        key: &str,
+        solids: &[SolidConfig],
+        types: &[LineTypeConfig],
+    ) -> Result<()> {
+        let between = format!("{key}.between");
+        if !(1..=2).contains(&self.between.len()) {
+            let what = format!("between names one solid or two, not {}", self.between.len());
+            return Err(ctx.error_at(&between, what));
+        }
+        self.between.iter().try_for_each(|name| require_solid(ctx, solids, &between, name))?;
+        if self.between.len() == 2 && self.between[0] == self.between[1] {
+            return Err(ctx.error_at(&between, format!("\"{}\" is named twice", self.between[0])));
+        }
+        let moves = |solid: &&SolidConfig| self.between.contains(&solid.name) && solid.fixed != Some(true);
+        if !solids.iter().any(|solid| moves(&solid)) {
+            let help = "one of them at least is  free = { ... }  or  driven = { ... }";
+            return Err(ctx.error_with_help(&between, "this line holds nothing that moves", help));
+        }
+        ctx.require_dimension(&format!("{key}.from"), &self.from)?;
+        ctx.require_dimension(&format!("{key}.to"), &self.to)?;
+        ctx.require_positive(&format!("{key}.length"), Some(self.length))?;
+        self.lifetime().verify(ctx, key, Element::Line)?;
+        if !types.iter().any(|known| known.name == self.line) {
+            let known: Vec<&str> = types.iter().map(|known| known.name.as_str()).collect();
+            let what =
+                format!("no line type is called \"{}\"{}", self.line, suggestion(&self.line, known.iter().copied()));
+            let help = match known.is_empty() {
+                true => "the scene has no [[line_type]]: it gives diameter, mass_per_length and stiffness".into(),
+                false => format!("known: {}", known.join(", ")),
+            };
+            let error = ctx.error_with_help(&format!("{key}.line"), what, help);
+            return Err(error.with_code(ErrorCode::UnknownName));
+        }
+        for (i, clump) in self.clumps.iter().flatten().enumerate() {
+            let key = format!("{key}.clumps.{i}");
+            if !(0.0..=self.length).contains(&clump.at) {
+                let what = format!("at is {}, and the line is {} m long", clump.at, self.length);
+                return Err(ctx.error_at(&format!("{key}.at"), what).with_code(ErrorCode::OutOfRange));
+            }
+            for (word, x) in [("mass", Some(clump.mass)), ("volume", clump.volume), ("drag_area", clump.drag_area)] {
+                if let Some(x) = x.filter(|x| !(*x >= 0.0 && x.is_finite())) {
+                    let what = format!("{word} must be 0 or more, not {x}");
+                    return Err(ctx.error_at(&format!("{key}.{word}"), what).with_code(ErrorCode::OutOfRange));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The line between the points of `solids`.
+    pub(crate) fn build<const D: usize>(&self, solids: &[SolidConfig], types: &[LineTypeConfig]) -> MooringSpec<D> {
+        let kind = types.iter().find(|kind| kind.name == self.line);
+        let line = kind.map_or(LineType::new(1.0, 1.0, 1.0), LineTypeConfig::build);
+        let ends = ends(solids, &self.between, &self.from, &self.to);
+        let mut made =
+            MooringSpec::new(&self.name, ends, self.length, line).segments(self.segments.unwrap_or(SEGMENTS));
+        made.strength = self.lifetime().build(std::iter::empty()).strength;
+        made.clumps = (self.clumps.iter().flatten())
+            .map(|clump| ClumpSpec {
+                at: clump.at,
+                mass: clump.mass,
+                volume: clump.volume.unwrap_or_default(),
+                drag_area: clump.drag_area.unwrap_or_default(),
+            })
+            .collect();
+        made
+    }
+}

@@ -1,0 +1,244 @@
+//! The equilibrium of a lumped-mass line between held ends.
+//!
+//! The potential energy of tension, weight and bed is convex in the places of the nodes, because a slack segment carries nothing.
+//! Newton's method with a search along each step finds its minimum from the elastic catenary. Friction of the bed is not counted:
+//! the line lies as it was laid, without tension across it.
+
+use nalgebra::DVector;
+
+use super::{
+    catenary::{Catenary, CatenarySpan},
+    forces::{NodeSurroundings, bending_forces, node_load},
+    line::MooringLine,
+};
+use crate::math::{Matrix, Vector};
+
+/// Most iterations for given surroundings.
+const ITERATIONS: usize = 200;
+
+/// Rounds in which the surroundings are read anew where the nodes have come to lie.
+const ROUNDS: usize = 4;
+
+/// Largest force on a node at rest over its weight, –.
+const TOLERANCE: f64 = 1e-9;
+
+impl<const D: usize> MooringLine<D> {
+    /// Brings the line to rest between its held ends. `around` says what is around a place (m), and `gravity` is in m/s². Returns
+    /// the largest force (N) that remains on a node over the weight of a node.
+    pub(crate) fn find_rest(&mut self, around: &dyn Fn(&Vector<D>) -> NodeSurroundings<D>, gravity: &Vector<D>) -> f64 {
+        self.hang(around, gravity);
+        let mut left = f64::INFINITY;
+        for _ in 0..ROUNDS {
+            let near: Vec<_> = self.state.x.iter().map(around).collect();
+            left = self.minimize(&near, gravity);
+        }
+        self.state.v.iter_mut().for_each(|v| *v = Vector::zeros());
+        let near: Vec<_> = self.state.x.iter().map(around).collect();
+        let forces = self.forces(&near, gravity);
+        let lies = |(x, here): (&Vector<D>, &NodeSurroundings<D>)| {
+            here.bed.filter(|bed| self.material.depth(bed, x) > 0.0).map(|_| *x)
+        };
+        self.state.grips = self.state.x.iter().zip(&near).map(lies).collect();
+        let last = self.segments();
+        self.state.end_forces = [0, last].map(|i| forces[i]);
+        left
+    }
+
+    /// The elastic catenary between the ends, for the plane of both ends and of gravity, with the wet share and the bed of the lower.
+    pub(crate) fn catenary(
+        &self,
+        around: &dyn Fn(&Vector<D>) -> NodeSurroundings<D>,
+        gravity: &Vector<D>,
+    ) -> Option<(Catenary, [Vector<D>; 2], bool)> {
+        let (first, last) = (*self.state.x.first()?, *self.state.x.last()?);
+        let up = -gravity.try_normalize(f64::MIN_POSITIVE)?;
+        let below = around(&(if up.dot(&(last - first)) >= 0.0 { first } else { last }));
+        let material = &self.material;
+        let bodies: f64 = self.bodies.iter().map(|b| b.mass - below.wet * material.water_density * b.volume).sum();
+        let net = material.mass - below.wet * material.displaced() + bodies / (self.segment * self.segments() as f64);
+        // A line that floats up is the mirror image of one that hangs.
+        let up = if net < 0.0 { -up } else { up };
+        let rises = up.dot(&(last - first)) >= 0.0;
+        let (low, high) = if rises { (first, last) } else { (last, first) };
+        let z = up.dot(&(high - low));
+        let level = high - low - up * z;
+        let x = level.norm();
+        let ahead = if x > 0.0 { level / x } else { Vector::zeros() };
+        let lies =
+            |bed: &super::forces::BedPlane<D>| bed.normal.dot(&up) > 0.7 && bed.depth(&low).abs() < 2.0 * self.segment;
+        let weight = net.abs().max(1e-6 * material.mass) * gravity.norm();
+        let length = self.segment * self.segments() as f64;
+        let bed = below.bed.filter(|_| net > 0.0).filter(lies).map(|_| 0.0);
+        let span = CatenarySpan { x, z, length, weight, stiffness: material.stiffness, bed };
+        Some((span.solve(), [ahead, up], rises))
+    }
+
+    /// Puts the nodes on the elastic catenary.
+    fn hang(&mut self, around: &dyn Fn(&Vector<D>) -> NodeSurroundings<D>, gravity: &Vector<D>) {
+        let Some((shape, [ahead, up], rises)) = self.catenary(around, gravity) else { return };
+        let n = self.segments();
+        let low = self.state.x[if rises { 0 } else { n }];
+        for i in 1..n {
+            let s = self.segment * if rises { i } else { n - i } as f64;
+            let [x, z] = shape.position(s);
+            self.state.x[i] = low + ahead * x + up * z;
+        }
+    }
+
+    /// Forces (N) on the nodes at rest.
+    fn forces(&self, around: &[NodeSurroundings<D>], gravity: &Vector<D>) -> Vec<Vector<D>> {
+        let (still, n) = (Vector::zeros(), self.segments());
+        let at = |i: usize| {
+            let here = NodeSurroundings { water_velocity: still, ..around[i] };
+            let load = (self.share(i), &self.bodies[i]);
+            node_load(&self.material, load, (&self.state.x[i], &still, &still), &here, gravity).force
+        };
+        let mut forces: Vec<Vector<D>> = (0..=n).map(at).collect();
+        for s in 0..n {
+            let (q, length) = self.direction_and_length(s);
+            let pull = q * self.elastic_tension(s, length);
+            forces[s] += pull;
+            forces[s + 1] -= pull;
+        }
+        if self.material.bending > 0.0 {
+            let energy = self.material.bending / self.segment;
+            for i in 1..n {
+                let x = &self.state.x;
+                let bent = bending_forces([&x[i - 1], &x[i], &x[i + 1]], energy);
+                bent.iter().zip(i - 1..).for_each(|(force, i)| forces[i] += force);
+            }
+        }
+        forces
+    }
+
+    /// The stiffness (N/m) of the nodes between the ends, plus `least` on its diagonal.
+    fn stiffness(&self, around: &[NodeSurroundings<D>], least: f64) -> BandMatrix {
+        let (n, material) = (self.segments(), &self.material);
+        let mut made = BandMatrix::new((n - 1) * D, 3 * D - 1);
+        let identity = Matrix::<D>::identity();
+        let mut add = |i: usize, j: usize, block: &Matrix<D>| {
+            if (1..n).contains(&i) && (1..n).contains(&j) {
+                (0..D).for_each(|a| (0..D).for_each(|b| made.add((i - 1) * D + a, (j - 1) * D + b, block[(a, b)])));
+            }
+        };
+        for s in 0..n {
+            let (q, length) = self.direction_and_length(s);
+            let tension = self.elastic_tension(s, length);
+            if tension > 0.0 {
+                let along = q * q.transpose();
+                let block = along * (material.stiffness / self.segment) + (identity - along) * (tension / length);
+                for (i, j, sign) in [(s, s, 1.0), (s + 1, s + 1, 1.0), (s + 1, s, -1.0)] {
+                    add(i, j, &(block * sign));
+                }
+            }
+        }
+        for (i, here) in around.iter().enumerate() {
+            add(i, i, &(identity * least));
+            if let Some(bed) = here.bed.filter(|bed| material.depth(bed, &self.state.x[i]) > 0.0) {
+                let stiff = material.bed_stiffness * material.contact_width * self.share(i);
+                add(i, i, &(bed.normal * bed.normal.transpose() * stiff));
+            }
+        }
+        if material.bending > 0.0 {
+            let stiff = material.bending / self.segment.powi(3);
+            let second = [1.0, -2.0, 1.0];
+            for i in 1..n {
+                let q = (self.state.x[i + 1] - self.state.x[i - 1]).normalize();
+                let across = (identity - q * q.transpose()) * stiff;
+                for (a, x) in second.iter().enumerate() {
+                    (0..=a).for_each(|b| add(i + a - 1, i + b - 1, &(across * (x * second[b]))));
+                }
+            }
+        }
+        made
+    }
+
+    /// Finds the least potential energy with the surroundings of the nodes as they are. Returns the largest force that remains on a
+    /// node over the weight of a node.
+    fn minimize(&mut self, around: &[NodeSurroundings<D>], gravity: &Vector<D>) -> f64 {
+        let n = self.segments();
+        if n < 2 {
+            return 0.0;
+        }
+        let weight = self.material.mass * self.segment * gravity.norm().max(f64::MIN_POSITIVE);
+        let least = 1e-6 * weight / self.segment;
+        let inner = |forces: &[Vector<D>]| DVector::from_iterator((n - 1) * D, forces[1..n].iter().flatten().copied());
+        let largest = |forces: &[Vector<D>]| forces[1..n].iter().map(|f| f.norm()).fold(0.0, f64::max) / weight;
+        let mut forces = self.forces(around, gravity);
+        for _ in 0..ITERATIONS {
+            if largest(&forces) <= TOLERANCE {
+                break;
+            }
+            let mut step = inner(&forces);
+            let uphill = step.clone();
+            self.stiffness(around, least).solve(step.as_mut_slice());
+            let start = self.state.x.clone();
+            let downhill = uphill.dot(&step);
+            let longest = step.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+            let mut part = (self.segment / longest).min(1.0);
+            for _ in 0..30 {
+                for i in 1..n {
+                    self.state.x[i] = start[i] + Vector::from_fn(|k, _| part * step[(i - 1) * D + k]);
+                }
+                forces = self.forces(around, gravity);
+                // The energy is convex: beyond its least value along the step the forces point back.
+                if inner(&forces).dot(&step) > -0.5 * downhill {
+                    break;
+                }
+                part *= 0.5;
+            }
+        }
+        largest(&forces)
+    }
+}
+
+/// A symmetric positive definite matrix whose entries lie near its diagonal; its lower half.
+struct BandMatrix {
+    size: usize,
+    width: usize,
+    rows: Vec<f64>,
+}
+
+impl BandMatrix {
+    /// Zeros, with `width` entries beside the diagonal.
+    fn new(size: usize, width: usize) -> Self {
+        Self { size, width, rows: vec![0.0; size * (width + 1)] }
+    }
+
+    fn index(&self, i: usize, j: usize) -> usize {
+        i * (self.width + 1) + self.width + j - i
+    }
+
+    /// Adds to entry (i, j) if it lies in the lower half.
+    fn add(&mut self, i: usize, j: usize, x: f64) {
+        if j <= i {
+            let at = self.index(i, j);
+            self.rows[at] += x;
+        }
+    }
+
+    /// Replaces `right` by the solution, by Cholesky's decomposition.
+    fn solve(mut self, right: &mut [f64]) {
+        for i in 0..self.size {
+            let first = i.saturating_sub(self.width);
+            for j in first..=i {
+                let common = first.max(j.saturating_sub(self.width))..j;
+                let sum: f64 = common.map(|k| self.rows[self.index(i, k)] * self.rows[self.index(j, k)]).sum();
+                let (at, diagonal) = (self.index(i, j), self.index(j, j));
+                let rest = self.rows[at] - sum;
+                self.rows[at] = if i == j { rest.max(f64::MIN_POSITIVE).sqrt() } else { rest / self.rows[diagonal] };
+            }
+            let sum: f64 = (first..i).map(|k| self.rows[self.index(i, k)] * right[k]).sum();
+            right[i] = (right[i] - sum) / self.rows[self.index(i, i)];
+        }
+        for i in (0..self.size).rev() {
+            let last = (i + self.width).min(self.size - 1);
+            let sum: f64 = (i + 1..=last).map(|k| self.rows[self.index(k, i)] * right[k]).sum();
+            right[i] = (right[i] - sum) / self.rows[self.index(i, i)];
+        }
+    }
+}
+
+#[cfg(all(test, feature = "dim2", feature = "dim3"))]
+#[path = "../../../tests/unit/solid/mooring/equilibrium.rs"]
+mod tests;

@@ -1,0 +1,221 @@
+//! The equations of a lumped-mass line: forces on its nodes, their resistance to motion, and their mass.
+//!
+//! A line of n segments of length l₀ has n + 1 nodes. A node has the mass and the water of half of each segment beside it. With
+//! the unit vector q along a segment of length l, its strain ε = l/l₀ − 1 and the tangent t at a node (Hall and Goupee 2015):
+//!
+//! - tension EA ε + BA ε̇ along q, where ε > 0; a slack segment carries nothing
+//! - bending: the energy EI/l₀ (1 − q₁·q₂) at a node between two segments
+//! - weight less buoyancy of the wet share φ: (m − φ ρ A) l₀ g
+//! - drag ½ ρ d l₀ φ (C_d |u_n| u_n + π C_dAx |u_t| u_t) of the velocity u of the water relative to the node
+//! - added mass φ ρ A l₀ (C_a (1 − t tᵀ) + C_aAx t tᵀ)
+//! - a bed: stiffness k c l₀ times the depth of the node in it, and damping b c l₀, with the contact width c; along it the same stiffness from where the node
+//!   came to lie, up to the Coulomb friction, beyond which the node slides
+//!
+//! The acceleration of the water is not in these forces: it is small beside the drag of a line much thinner than the waves are high.
+
+use std::f64::consts::PI;
+
+use crate::math::{Matrix, Vector};
+
+/// The part of a solid's surface that is nearest to a node, as a plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct BedPlane<const D: usize> {
+    /// A point of the plane, m.
+    pub(crate) point: Vector<D>,
+    /// Unit vector out of the solid.
+    pub(crate) normal: Vector<D>,
+}
+
+impl<const D: usize> BedPlane<D> {
+    /// Depth (m) of `x` (m) below the plane; negative above.
+    pub(crate) fn depth(&self, x: &Vector<D>) -> f64 {
+        self.normal.dot(&(self.point - x))
+    }
+}
+
+/// What is around a node during a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct NodeSurroundings<const D: usize> {
+    /// Velocity of the water, m/s; zero out of the water.
+    pub(crate) water_velocity: Vector<D>,
+    /// Share of the node that is in the water, 0 to 1.
+    pub(crate) wet: f64,
+    /// The nearest surface of a fixed solid, if one is near.
+    pub(crate) bed: Option<BedPlane<D>>,
+}
+
+impl<const D: usize> NodeSurroundings<D> {
+    /// Air far from any solid.
+    #[cfg(test)]
+    pub(crate) fn air() -> Self {
+        Self { water_velocity: Vector::zeros(), wet: 0.0, bed: None }
+    }
+}
+
+/// Material of a line, and the water around it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct LineMaterial {
+    /// Volume-equivalent diameter d, m.
+    pub(crate) diameter: f64,
+    /// Mass of a metre, kg/m.
+    pub(crate) mass: f64,
+    /// Axial stiffness EA, N.
+    pub(crate) stiffness: f64,
+    /// Axial damping BA, N s.
+    pub(crate) damping: f64,
+    /// Bending stiffness EI, N m².
+    pub(crate) bending: f64,
+    /// Added-mass coefficients across and along, –.
+    pub(crate) added_mass: [f64; 2],
+    /// Drag coefficients across and along, –.
+    pub(crate) drag: [f64; 2],
+    /// Density of the water, kg/m³.
+    pub(crate) water_density: f64,
+    /// Width with which the line presses on a bed, m.
+    pub(crate) contact_width: f64,
+    /// Height of its axis above a bed that it touches, m.
+    pub(crate) contact_radius: f64,
+    /// Stiffness of the bed, Pa/m.
+    pub(crate) bed_stiffness: f64,
+    /// Damping of the bed, Pa s/m.
+    pub(crate) bed_damping: f64,
+    /// Friction coefficient of the bed, –.
+    pub(crate) bed_friction: f64,
+}
+
+impl LineMaterial {
+    /// Mass of the water that a metre displaces, kg/m.
+    pub(crate) fn displaced(&self) -> f64 {
+        self.water_density * 0.25 * PI * self.diameter * self.diameter
+    }
+
+    /// Depth (m) to which a node at `x` (m) presses into `bed`; 0 or less above it.
+    pub(crate) fn depth<const D: usize>(&self, bed: &BedPlane<D>, x: &Vector<D>) -> f64 {
+        bed.depth(x) + self.contact_radius
+    }
+
+    /// Largest frequency (rad/s) of a line of segments of length `l` (m), by Gershgorin's bound.
+    pub(crate) fn highest_frequency(&self, l: f64) -> f64 {
+        let axial = 4.0 * self.stiffness / (self.mass * l * l);
+        let bending = 16.0 * self.bending / (self.mass * l.powi(4));
+        (axial + bending + self.bed_stiffness * self.contact_width / self.mass).sqrt()
+    }
+}
+
+/// The force on a node and what resists its motion.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct NodeLoad<const D: usize> {
+    /// Force at zero velocity of the node, N.
+    pub(super) force: Vector<D>,
+    /// Resistance of the water, N s/m: the force is −C v.
+    pub(super) drag: Matrix<D>,
+    /// Resistance of the bed, N s/m.
+    pub(super) bed: Matrix<D>,
+    /// Mass with added mass, kg.
+    pub(super) mass: Matrix<D>,
+}
+
+/// Projection on the direction of the unit vector `t`; zero if `t` is.
+fn along<const D: usize>(t: &Vector<D>) -> Matrix<D> {
+    t * t.transpose()
+}
+
+/// A point mass on a node.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct NodeBody {
+    /// kg.
+    pub(crate) mass: f64,
+    /// Volume, m³.
+    pub(crate) volume: f64,
+    /// Drag coefficient times area, m².
+    pub(crate) drag_area: f64,
+}
+
+/// The load of weight, water and bed on a node at `x` (m) that moves at `v` (m/s), with the line's length `share` (m) and a point
+/// mass `body`; `t` is the tangent there and `gravity` in m/s².
+pub(super) fn node_load<const D: usize>(
+    material: &LineMaterial,
+    (share, body): (f64, &NodeBody),
+    (x, v, t): (&Vector<D>, &Vector<D>, &Vector<D>),
+    around: &NodeSurroundings<D>,
+    gravity: &Vector<D>,
+) -> NodeLoad<D> {
+    let m = material;
+    let (tangential, identity) = (along(t), Matrix::<D>::identity());
+    let across = identity - tangential;
+    let displaced = around.wet * m.displaced() * share;
+    let dry = m.mass * share + body.mass;
+    let afloat = around.wet * m.water_density * body.volume;
+    let mass = identity * dry + across * (displaced * m.added_mass[0]) + tangential * (displaced * m.added_mass[1]);
+    let relative = around.water_velocity - v;
+    let axial = t.dot(&relative);
+    let normal = (relative - t * axial).norm();
+    let pressure = 0.5 * m.water_density * around.wet;
+    let side = pressure * m.diameter * share;
+    let drag = across * (side * m.drag[0] * normal)
+        + tangential * (side * PI * m.drag[1] * axial.abs())
+        + identity * (pressure * body.drag_area * relative.norm());
+    let mut load = NodeLoad {
+        force: gravity * (dry - displaced - afloat) + drag * around.water_velocity,
+        drag,
+        bed: Matrix::zeros(),
+        mass,
+    };
+    let Some(bed) = around.bed else { return load };
+    let depth = m.depth(&bed, x);
+    if depth > 0.0 {
+        let area = m.contact_width * share;
+        let (rate, up) = (v.dot(&bed.normal), along(&bed.normal));
+        let reaction = m.bed_stiffness * area * depth;
+        let damping = m.bed_damping * area;
+        // The bed does not hold back what leaves it.
+        let pressed = reaction - damping * rate;
+        load.force += bed.normal * reaction;
+        load.bed += up * if pressed > 0.0 { damping } else { 0.0 };
+    }
+    load
+}
+
+/// The force (N) along a bed on a node at `x` (m) with the line's length `share` (m). `grip` is the point (m) from which the bed holds
+/// it: where it came to lie, and what it drags along as it slides; `None` off the bed.
+pub(super) fn friction<const D: usize>(
+    material: &LineMaterial,
+    share: f64,
+    x: &Vector<D>,
+    bed: Option<BedPlane<D>>,
+    grip: &mut Option<Vector<D>>,
+) -> Vector<D> {
+    let Some((bed, depth)) = bed.map(|bed| (bed, material.depth(&bed, x))).filter(|(_, depth)| *depth > 0.0) else {
+        *grip = None;
+        return Vector::zeros();
+    };
+    let held = grip.get_or_insert(*x);
+    let mut way = x - *held;
+    way -= bed.normal * bed.normal.dot(&way);
+    // Both stiffnesses are the same, so that the way at which a node begins to slide is a share of its depth.
+    let longest = material.bed_friction * depth;
+    let length = way.norm();
+    if length > longest {
+        way *= longest / length;
+        *held = x - way;
+    }
+    way * (-material.bed_stiffness * material.contact_width * share)
+}
+
+/// Tension (N) of a segment without its damping, at the strain ε.
+pub(super) fn elastic_tension(material: &LineMaterial, strain: f64) -> f64 {
+    material.stiffness * strain.max(0.0)
+}
+
+/// Forces (N) of bending on three nodes between which two segments lie, with the energy EI/l₀ (1 − q₁·q₂) of `energy` = EI/l₀ (J).
+pub(super) fn bending_forces<const D: usize>(nodes: [&Vector<D>; 3], energy: f64) -> [Vector<D>; 3] {
+    let sides = [nodes[1] - nodes[0], nodes[2] - nodes[1]];
+    let [l1, l2] = [sides[0].norm(), sides[1].norm()];
+    if l1 == 0.0 || l2 == 0.0 {
+        return [Vector::zeros(); 3];
+    }
+    let (q1, q2) = (sides[0] / l1, sides[1] / l2);
+    let cosine = q1.dot(&q2);
+    let (first, second) = ((q2 - q1 * cosine) * (energy / l1), (q1 - q2 * cosine) * (energy / l2));
+    [-first, first - second, second]
+}

@@ -1,0 +1,143 @@
+//! Mooring lines with mass in scenes: weight, momentum, energy, refusals.
+
+use std::path::Path;
+
+use pontoon::{
+    Result,
+    probe::{EnergyBudgetProbe, MooringProbe, Probe},
+    scene::Scene,
+    simulation::Simulation,
+};
+
+use crate::common::{run_to, scene_simulation};
+
+/// A box on two slack chains in a small tank.
+const MOORED: &str = r#"
+dimension = 2
+dp = 0.02
+until = 0.4
+water = [{ fill = { box = { min = [0.0, 0.0], max = [1.6, 0.3] } } }]
+[[solid]]
+name = "tank"
+fixed = true
+shape = { tank = { size = [1.6, 0.6] } }
+[[solid]]
+name = "box"
+shape = { box = { size = [0.3, 0.12] } }
+at = { x = 0.8, draft = "equilibrium" }
+free = { density = 500.0, velocity = [0.2, 0.0] }
+[[line_type]]
+name = "chain"
+diameter = 0.008
+mass_per_length = 0.3
+stiffness = 2e3
+[[mooring]]
+name = "west"
+between = ["box"]
+from = [0.65, 0.3]
+to = [0.1, 0.0]
+length = 0.75
+line = "chain"
+[[mooring]]
+name = "east"
+between = ["box"]
+from = [0.95, 0.3]
+to = [1.5, 0.0]
+length = 0.75
+line = "chain"
+"#;
+
+/// Weight less buoyancy of a metre of the chain, N/m.
+const WEIGHT: f64 = (0.3 - 1000.0 * 0.25 * std::f64::consts::PI * 0.008 * 0.008) * 9.81;
+
+/// The fairlead bears the weight of what does not lie on the bed, within the length of a segment.
+#[test]
+fn the_fairlead_bears_what_hangs() -> Result<()> {
+    let sim = scene_simulation::<2>(MOORED)?;
+    for line in 0..2 {
+        let now = sim.mooring_reading(line);
+        let hangs = 0.75 - now.on_bed;
+        assert!(now.on_bed > 0.1, "{} m lie", now.on_bed);
+        let lift = -now.end_forces[0][1];
+        assert!((lift / WEIGHT - hangs).abs() < 0.75 / 20.0, "line {line}: {lift} N, and {hangs} m hang");
+    }
+    let [west, east] = [0, 1].map(|line| sim.mooring_reading(line).end_forces[0]);
+    assert!((west[0] + east[0]).abs() < 1e-6 * east.norm(), "both pull alike: {west} {east}");
+    Ok(())
+}
+
+/// The momentum of the box changes by the sum of its loads, the lines among them, to round-off; and the energy budget has their work.
+#[test]
+fn momentum_and_energy_close_with_the_lines() -> Result<()> {
+    let mut sim = scene_simulation::<2>(MOORED)?;
+    sim.enable_load_breakdown();
+    sim.enable_energy_budget();
+    let probe = EnergyBudgetProbe::new(sim.system());
+    for k in 1..=40 {
+        run_to(&mut sim, f64::from(k) * 0.01)?;
+        let shares = sim.load_breakdown(1).unwrap();
+        let size = shares.kinds().into_iter().map(|(_, load)| load.force.norm()).fold(0.0, f64::max);
+        assert!(shares.moorings.force.norm() > 1.0, "the lines pull: {}", shares.moorings.force);
+        assert!(shares.residual().force.norm() < 1e-9 * size, "{}", shares.residual().force);
+    }
+    let budget = *sim.energy_budget().unwrap();
+    assert!(budget.springs < -1e-3, "the lines slow the box: {} J/m", budget.springs);
+    let row = probe.sample(&sim);
+    let turnover: f64 = budget.entries().iter().map(|(_, energy)| energy.abs()).sum();
+    assert!(row.last().unwrap().abs() < 0.01 * turnover, "residual {} of {turnover} J/m", row.last().unwrap());
+    Ok(())
+}
+
+/// Without lines the box drifts on; the chains stop it.
+#[test]
+fn chains_hold_the_box() -> Result<()> {
+    let (free, _) = MOORED.split_once("[[line_type]]").unwrap();
+    let drift = |text: &str| -> Result<f64> {
+        let mut sim: Simulation<2> = scene_simulation(text)?;
+        run_to(&mut sim, 0.4)?;
+        Ok(sim.system().solids()[1].kinematics.centre[0] - 0.8)
+    };
+    let (moored, free) = (drift(MOORED)?, drift(free)?);
+    assert!(moored < 0.9 * free && free > 0.01, "{moored} m with chains, {free} m without");
+    Ok(())
+}
+
+/// A line between a driven solid and the ground is advanced without a free body.
+#[test]
+fn a_driven_solid_moves_its_line() -> Result<()> {
+    let driven = MOORED.replace(
+        "at = { x = 0.8, draft = \"equilibrium\" }\nfree = { density = 500.0, velocity = [0.2, 0.0] }",
+        "at = { x = 0.8, y = 0.3 }\ndriven = { along = [1.0, 0.0], distance = { formula = \"0.05*sin(4*pi*t)\" } }",
+    );
+    let mut sim = scene_simulation::<2>(&driven)?;
+    let probe = MooringProbe::new(sim.system(), "west")?;
+    let start = probe.sample(&sim);
+    run_to(&mut sim, 0.125)?;
+    let now = probe.sample(&sim);
+    assert!((sim.mooring_reading(0).nodes[0][0] - 0.70).abs() < 1e-9, "the fairlead goes with the solid");
+    assert!(now[0] > 1.2 * start[0], "the tension grows from {} N to {} N", start[0], now[0]);
+    Ok(())
+}
+
+/// What a user may get wrong is refused with its line and the remedy.
+#[test]
+fn faulty_moorings_are_refused() {
+    let message = |from: &str, to: &str| {
+        assert!(MOORED.contains(from), "{from}");
+        let text = MOORED.replacen(from, to, 1);
+        let built = Scene::parse(&text, Path::new(""), &[]).and_then(|scene| scene.build::<2>());
+        let error = built.err().unwrap_or_else(|| panic!("{to} is accepted")).to_string();
+        assert!(error.contains("scene.toml"), "the place is missing: {error}");
+        error
+    };
+    let near = message("line = \"chain\"", "line = \"chian\"");
+    assert!(near.contains("chain") && near.contains("no line type"), "{near}");
+    let short = message("length = 0.75", "length = 0.4");
+    assert!(short.contains("length = 0.6265"), "{short}");
+    assert!(message("mass_per_length = 0.3", "mass_per_length = -0.3").contains("mass_per_length"));
+    assert!(message("between = [\"box\"]", "between = [\"tank\"]").contains("moves"));
+    assert!(message("between = [\"box\"]", "between = [\"boks\"]").contains("box"));
+    assert!(message("length = 0.75", "length = 0.75\nclumps = [{ at = 0.8, mass = 1.0 }]").contains("0.75 m long"));
+    let heavy = message("length = 0.75", "length = 0.75\nclumps = [{ at = 0.0, mass = 5.0 }]");
+    assert!(heavy.contains("a tenth"), "{heavy}");
+}

@@ -1,0 +1,101 @@
+use super::*;
+use crate::solid::mooring::forces::{BedPlane, LineMaterial, NodeSurroundings};
+
+const GRAVITY: f64 = 9.81;
+
+fn down<const D: usize>() -> Vector<D> {
+    Vector::from_fn(|i, _| if i == D - 1 { -GRAVITY } else { 0.0 })
+}
+
+/// A light chain in air.
+fn material() -> LineMaterial {
+    LineMaterial {
+        diameter: 0.004,
+        mass: 0.1,
+        stiffness: 200.0,
+        damping: 0.0,
+        bending: 0.0,
+        added_mass: [1.0, 0.0],
+        drag: [1.2, 0.0],
+        water_density: 1000.0,
+        contact_width: 0.004,
+        contact_radius: 0.0,
+        bed_stiffness: 3e6,
+        bed_damping: 3e5,
+        bed_friction: 0.0,
+    }
+}
+
+fn bed<const D: usize>(x: &Vector<D>) -> NodeSurroundings<D> {
+    let normal = -down::<D>() / GRAVITY;
+    let point = Vector::from_fn(|i, _| if i == D - 1 { 0.0 } else { x[i] });
+    NodeSurroundings { bed: Some(BedPlane { point, normal }), ..NodeSurroundings::air() }
+}
+
+/// Largest error of the tension at the ends over the exact one, of a hanging line of `segments` segments.
+fn hanging_error<const D: usize>(segments: usize, ends: [Vector<D>; 2]) -> f64 {
+    let mut line = MooringLine::straight(material(), 2.0, segments, ends);
+    let air = |_: &Vector<D>| NodeSurroundings::air();
+    let left = line.find_rest(&air, &down());
+    assert!(left < 1e-8, "{segments} segments: {left} of a node's weight remains");
+    let (exact, _, _) = line.catenary(&air, &down()).unwrap();
+    let own = line.state.end_forces.map(|force| force.norm());
+    let errors = [(own[1], 2.0), (own[0], 0.0)].map(|(own, s)| (own / exact.tension(s) - 1.0).abs());
+    errors[0].max(errors[1])
+}
+
+/// The error of 40 segments is below 1e-4, and falls with the square of their length.
+#[test]
+fn a_hanging_line_converges_to_the_elastic_catenary() {
+    let ends = [[0.0, 0.0].into(), [1.5, 0.6].into()];
+    let errors = [10, 20, 40, 80].map(|n| hanging_error::<2>(n, ends));
+    println!("hanging: {errors:?}");
+    assert!(errors[2] < 1e-4, "40 segments: {}", errors[2]);
+    for pair in errors.windows(2) {
+        let order = (pair[0] / pair[1]).log2();
+        assert!((1.8..2.2).contains(&order), "order {order}");
+    }
+    let in_space = hanging_error::<3>(40, [[0.0, 0.0, 0.0].into(), [0.9, 1.2, 0.6].into()]);
+    assert!((in_space / errors[2] - 1.0).abs() < 1e-3, "3-D has the error {in_space}");
+}
+
+#[test]
+fn a_line_partly_on_the_bed_converges_to_the_elastic_catenary() {
+    let error = |segments: usize| {
+        let ends = [[0.0, 0.0].into(), [1.75, 0.6].into()];
+        let stiff = LineMaterial { bed_stiffness: 1e9, ..material() };
+        let mut line = MooringLine::<2>::straight(stiff, 2.0, segments, ends);
+        let left = line.find_rest(&bed, &down());
+        assert!(left < 1e-8, "{segments} segments: {left} of a node's weight remains");
+        let (exact, _, _) = line.catenary(&bed, &down()).unwrap();
+        assert!(exact.lying() > 0.3, "{} m lie", exact.lying());
+        let own = line.state.end_forces.map(|force| force.norm());
+        [(own[1], 2.0), (own[0], 0.0)]
+            .map(|(own, s)| (own / exact.tension(s) - 1.0).abs())
+            .into_iter()
+            .fold(0.0, f64::max)
+    };
+    let errors = [20, 40, 80, 160].map(error);
+    println!("on the bed: {errors:?}");
+    // The touchdown point moves within a segment, so that the order holds on average alone.
+    let order = (errors[0] / errors[3]).log2() / 3.0;
+    assert!(errors[1] < 2e-3 && (1.5..2.5).contains(&order), "{errors:?}, order {order}");
+}
+
+#[test]
+fn a_slack_line_lies_down_and_a_buoyant_one_rises() {
+    let mut line = MooringLine::<2>::straight(material(), 2.0, 40, [[0.0, 0.0].into(), [0.5, 1.0].into()]);
+    assert!(line.find_rest(&bed, &down()) < 1e-8);
+    let [anchor, fairlead] = line.state.end_forces;
+    // The foot of the hanging part and the anchor bear their nodes to half a segment.
+    assert!(
+        anchor.norm() < 1.01 * 0.025 * 0.1 * GRAVITY && (fairlead[1] / (-0.1 * GRAVITY) - 1.0).abs() < 0.05,
+        "{anchor} {fairlead}"
+    );
+
+    let light = LineMaterial { mass: 0.006, ..material() };
+    let water = |_: &Vector<2>| NodeSurroundings { wet: 1.0, ..NodeSurroundings::air() };
+    let mut line = MooringLine::<2>::straight(light, 2.0, 40, [[0.0, 0.0].into(), [1.0, 0.0].into()]);
+    assert!(line.find_rest(&water, &down()) < 1e-8);
+    assert!(line.state.x[20][1] > 0.5, "its middle rises to {} m", line.state.x[20][1]);
+}
