@@ -86,7 +86,7 @@ def main() -> None:
         pressed = water.time > PRESS
         # Means over the last 0.6 s of both parts.
         if water.time > (UNTIL if pressed else PRESS) - 0.6:
-            surface = np.mean([float(water.read(pt.elevation(at=[x, 0.1]))) for x in (0.1, 0.4, 0.7)])
+            surface = np.mean([water.read(pt.elevation(at=[x, 0.1]))["level_m"] for x in (0.1, 0.4, 0.7)])
             drafts[pressed].append(float(surface - body.xpos[2] + SIZE[2] / 2))
     alone, pressed_draft = (float(np.mean(drafts[pressed])) for pressed in (False, True))
     force = TORQUE / LENGTH

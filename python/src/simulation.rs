@@ -68,6 +68,8 @@ impl NativeSimulation {
         Ok(Self { world: Mutex::new(Some(world)), names, pool, leases: Arc::default() })
     }
 
+    /// Locks the world. No call of Python may happen under this lock: it could let another thread run that waits for the
+    /// lock and holds the interpreter.
     fn lock(&self) -> MutexGuard<'_, Option<Box<dyn World>>> {
         self.world.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -81,10 +83,8 @@ impl NativeSimulation {
     /// # Errors
     /// `UsageError` while it is stepped.
     fn read<T>(&self, py: Python<'_>, read: impl FnOnce(&dyn World) -> T) -> PyResult<T> {
-        match &*self.lock() {
-            Some(world) => Ok(read(&**world)),
-            None => Err(busy(py)),
-        }
+        let outcome = self.lock().as_ref().map(|world| read(&**world));
+        outcome.ok_or_else(|| busy(py))
     }
 
     /// Takes the world out for a change.
@@ -92,16 +92,19 @@ impl NativeSimulation {
     /// # Errors
     /// `UsageError` while it is stepped or an array of its memory is in use.
     fn take(&self, py: Python<'_>) -> PyResult<Taken<'_>> {
-        let mut there = self.lock();
-        if there.is_none() {
-            return Err(busy(py));
-        }
-        if self.leases.load(Ordering::Acquire) > 0 {
+        let (world, leased) = {
+            let mut there = self.lock();
+            let leased = self.leases.load(Ordering::Acquire) > 0;
+            (if leased { None } else { there.take() }, leased && there.is_some())
+        };
+        if leased {
             let help = "close it, and `del` its arrays or copy them with numpy.array";
             return Err(usage(py, "a view of the water is open: its arrays would move", help));
         }
-        let world = there.take();
-        Ok(Taken { home: self, world })
+        match world {
+            None => Err(busy(py)),
+            world => Ok(Taken { home: self, world }),
+        }
     }
 
     /// Calls `change` with the world in the pool, without the interpreter's lock.
@@ -226,8 +229,12 @@ impl NativeSimulation {
             self.pool.in_place_scope(|scope| {
                 let (done, finished) = mpsc::channel();
                 scope.spawn(move |_| {
-                    // The receiver waits for it.
-                    let _ = done.send(advance());
+                    // One thread state for all callbacks; the receiver waits for the outcome.
+                    let outcome = match &control {
+                        Some(_) => Python::attach(|py| py.detach(advance)),
+                        None => advance(),
+                    };
+                    let _ = done.send(outcome);
                 });
                 watch_signals(&finished, LOOK, &stop, &signal)
             })
@@ -281,11 +288,8 @@ impl NativeSimulation {
     fn lease(slf: &Bound<'_, Self>) -> PyResult<Lease> {
         let own = slf.get();
         // Under the lock, so that no step begins meanwhile.
-        let there = own.lock();
-        if there.is_none() {
-            return Err(busy(slf.py()));
-        }
-        Ok(Lease::new(own.leases.clone(), slf.clone().unbind()))
+        let lease = own.lock().as_ref().map(|_| Lease::new(own.leases.clone(), slf.clone().unbind()));
+        lease.ok_or_else(|| busy(slf.py()))
     }
 
     /// A read-only array on the memory of the field `name`. It holds the memory still while it lives.

@@ -16,7 +16,7 @@ def test_the_environment_keeps_the_rules_of_gymnasium(tank: pt.Scene) -> None:
     env = FloatEnv(
         tank,
         act={"crate": Push(axis=1, limit=50.0), "tank": Torque(limit=0.0)},
-        see=[pt.elevation(at=0.2), lambda sim: float(sim["crate"].velocity[1])],
+        see=[(pt.elevation(at=0.2), "eta_m"), lambda sim: float(sim["crate"].velocity[1])],
         reward=lambda sim: -abs(float(sim["crate"].velocity[1])),
         dt=0.05,
         threads=1,
@@ -27,7 +27,7 @@ def test_the_environment_keeps_the_rules_of_gymnasium(tank: pt.Scene) -> None:
     env = FloatEnv(
         tank,
         act={"crate": Push(axis=1, limit=50.0)},
-        see=[pt.elevation(at=0.2), lambda sim: float(sim["crate"].velocity[1])],
+        see=[(pt.elevation(at=0.2), "eta_m"), lambda sim: float(sim["crate"].velocity[1])],
         reward=lambda sim: -abs(float(sim["crate"].velocity[1])),
         dt=0.05,
         threads=1,

@@ -80,7 +80,7 @@ def test_results_are_arrays_with_units(tank: pt.Scene, tmp_path: Path) -> None:
     assert abs(heave.values).max() < 0.01
     with pytest.raises(KeyError, match="heave"):
         run.series["heav"]
-    assert run.series["elevation_m"].values[0] == pytest.approx(0.5, abs=0.03)
+    assert run.series["level"].values[0] == pytest.approx(0.5, abs=0.03)
     assert [frame.number for frame in run.frames] == [0, 1, 2, 3]
     frame = run.frames.at(0.21)
     assert frame.time == pytest.approx(0.2) and frame.water.position.shape == (run.manifest["particles"]["fluid"], 2)

@@ -65,6 +65,7 @@ def test_solids_are_read_by_name(tank: pt.Scene) -> None:
 def test_a_push_accelerates_by_force_over_mass(tank: pt.Scene) -> None:
     # Without gravity and far from the water nothing else acts.
     tank["gravity"] = 0.0
+    tank["model.c0"] = 20.0
     tank["solid.crate.at"] = {"x": 0.5, "bottom": 0.7}
     mass = 500.0 * 0.3 * 0.2
     with tank.build() as sim:
@@ -81,6 +82,7 @@ def test_a_push_accelerates_by_force_over_mass(tank: pt.Scene) -> None:
 
 def test_a_push_beside_the_centre_turns(tank: pt.Scene) -> None:
     tank["gravity"] = 0.0
+    tank["model.c0"] = 20.0
     tank["solid.crate.at"] = {"x": 0.5, "bottom": 0.7}
     inertia = 500.0 * 0.3 * 0.2 * (0.3**2 + 0.2**2) / 12.0
     sim = tank.build()
@@ -94,6 +96,7 @@ def test_a_push_beside_the_centre_turns(tank: pt.Scene) -> None:
 
 def test_a_push_acts_until_the_next_call(tank: pt.Scene) -> None:
     tank["gravity"] = 0.0
+    tank["model.c0"] = 20.0
     tank["solid.crate.at"] = {"x": 0.5, "bottom": 0.7}
     mass, times = 500.0 * 0.3 * 0.2, []
 
@@ -175,13 +178,15 @@ def test_a_view_keeps_the_memory_of_a_simulation_that_is_gone(tank: pt.Scene) ->
 def test_probes_are_read_at_any_time(tank: pt.Scene) -> None:
     sim = tank.build()
     sim.step()
-    assert float(sim.read(pt.elevation(at=0.15))) == pytest.approx(0.5, abs=0.03)
+    gauge = sim.read(pt.elevation(at=0.15))
+    # The still level is 0.5 m; the crate displaces a part of the water, which was filled around it.
+    assert gauge["level_m"] == pytest.approx(0.5, abs=0.03) and gauge["eta_m"] == pytest.approx(0.0, abs=0.01)
     assert float(sim.read(pt.pressure(at=[0.15, 0.2]))) == pytest.approx(9810.0 * 0.3, rel=0.05)
     assert set(sim.read(pt.velocity(at=[0.15, 0.2]))) == {"vx_mps", "vy_mps"}
     assert sim.read({"motion": "crate"})["heave_m"] == sim.sample()["crate"]["heave_m"]
-    assert "total_J_per_m" in " ".join(sim.read(pt.energy())) or sim.read(pt.energy())
+    assert all(np.isfinite(list(sim.read(pt.energy()).values())))
     with pytest.raises(pt.UsageError, match="columns"):
-        float(sim.read(pt.motion("crate")))
+        float(gauge)
     with pytest.raises(pt.SceneError, match="crate"):
         sim.read(pt.motion("crat"))
     with pytest.raises(pt.UsageError, match="records"):
@@ -326,10 +331,15 @@ def test_many_worlds_step_in_threads_without_the_interpreter(tank: pt.Scene) -> 
 
 
 def test_a_callback_costs_less_than_5_microseconds(tank: pt.Scene) -> None:
-    sim = tank.build()
-    sim.advance(0.2, control=lambda h: None)
-    # The wall time from the end of the water's step to the answer, over all steps.
-    assert sim.time_spent()["callbacks"] / sim.steps < 5e-6 * (4 if os.environ.get("CI") else 1)
+    sim = tank.build(threads=1)
+    means = []
+    for _ in range(10):
+        before, steps = sim.time_spent()["callbacks"], sim.steps
+        sim.advance(sim.time + 0.05, control=lambda h: None)
+        means.append((sim.time_spent()["callbacks"] - before) / (sim.steps - steps))
+    # From the end of the water's step to the answer of the function. The best of ten: other programs may hold the
+    # processor in some.
+    assert min(means) < 5e-6
 
 
 def test_a_closed_simulation_says_so(tank: pt.Scene) -> None:

@@ -77,7 +77,7 @@ class FloatEnv(gymnasium.Env[Vector, Vector]):
     Args:
         scene: the scene; each episode starts from its start.
         act: what each action does, by the name of a solid (`Push`, `Torque`) or a joint (`Drive`).
-        see: what is observed: functions of the simulation, or probes of one column.
+        see: what is observed: functions of the simulation, or probes with the column that is read.
         reward: a function of the simulation after each interval.
         dt: simulated time between two actions, s.
         ended: a function that tells whether the episode ends; by default it never does.
@@ -92,7 +92,7 @@ class FloatEnv(gymnasium.Env[Vector, Vector]):
         scene: Scene,
         *,
         act: Mapping[str, Action],
-        see: Sequence[Observation | Probe],
+        see: Sequence[Observation | tuple[Probe, str]],
         reward: Observation,
         dt: float,
         ended: Callable[[Simulation], bool] | None = None,
@@ -113,7 +113,7 @@ class FloatEnv(gymnasium.Env[Vector, Vector]):
         self.observation_space = gymnasium.spaces.Box(-np.inf, np.inf, (len(see),), np.float32)
 
     def _observe(self) -> Vector:
-        read = [see(self.sim) if callable(see) else float(self.sim.read(see)) for see in self._see]
+        read = [see(self.sim) if callable(see) else self.sim.read(see[0])[see[1]] for see in self._see]
         return np.array(read, dtype=np.float32)
 
     def _apply(self, h: BodyStep, action: Vector) -> None:

@@ -270,9 +270,9 @@ class _Stepped:
         return self._native.body(name)
 
     def read(self, probe: Probe) -> Reading:
-        """Reads a probe now: `pt.elevation(at=1.2)`, or a dictionary with the keys of a `[[probe]]` section.
+        """Reads a probe now, as `sim.read(pt.elevation(at=1.2))["eta_m"]`.
 
-        Returns the values by column; a value is NaN where there is nothing to measure.
+        A probe is a dictionary with the keys of a `[[probe]]` section. Returns the values by column; a value is NaN where there is nothing to measure.
         """
         text = _toml.value(probe)
         scene = self._probes.get(text)
