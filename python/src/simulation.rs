@@ -213,6 +213,7 @@ impl NativeSimulation {
         let world = taken.world.as_mut().ok_or_else(|| busy(py))?;
         let (stop, names) = (AtomicBool::new(false), self.names());
         let (raised, signal) = (Mutex::new(None), Mutex::new(None));
+        let calls = control.is_some();
         let mut advance = || -> Result<()> {
             match &control {
                 None => world.advance(end, single, &stop, None),
@@ -230,10 +231,7 @@ impl NativeSimulation {
                 let (done, finished) = mpsc::channel();
                 scope.spawn(move |_| {
                     // One thread state for all callbacks; the receiver waits for the outcome.
-                    let outcome = match &control {
-                        Some(_) => Python::attach(|py| py.detach(advance)),
-                        None => advance(),
-                    };
+                    let outcome = if calls { Python::attach(|py| py.detach(advance)) } else { advance() };
                     let _ = done.send(outcome);
                 });
                 watch_signals(&finished, LOOK, &stop, &signal)
