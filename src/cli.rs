@@ -11,7 +11,7 @@ mod report_page;
 mod progress;
 mod console_text;
 mod run;
-mod scene_lookup;
+pub mod scene_lookup;
 mod statistics;
 mod stress;
 mod study;
@@ -19,17 +19,17 @@ mod validate;
 mod watch;
 
 use std::{
+    ffi::OsString,
     io::Write,
     path::PathBuf,
-    process::ExitCode,
     sync::{
         Arc,
         atomic::{AtomicBool, Ordering},
     },
 };
 
+use crate::error::{Error, ErrorKind, Result};
 use clap::{Args, CommandFactory, Parser, Subcommand};
-use pontoon::error::{Error, ErrorKind, Result};
 
 /// Rigid bodies that float, collide and are driven in water.
 #[derive(Parser)]
@@ -229,15 +229,22 @@ fn key_value(text: &str) -> std::result::Result<(String, String), String> {
     }
 }
 
-/// Parses the command line, runs the command, prints its result and returns the exit code.
-pub fn main() -> ExitCode {
-    match dispatch(Cli::parse().command) {
-        Ok(code) => ExitCode::from(code),
-        Err(error) => {
-            print_error(&format!("error: {error}\n"));
-            ExitCode::from(exit_code(&error))
+/// Parses `arguments`, the first of which is the name of the program, runs the command, prints its result and returns
+/// the exit code.
+pub fn main(arguments: impl IntoIterator<Item = OsString>) -> u8 {
+    let arguments: Vec<OsString> = arguments.into_iter().collect();
+    let cli = match Cli::try_parse_from(&arguments) {
+        Ok(cli) => cli,
+        Err(told) => {
+            // A closed output is no error.
+            let _ = told.print();
+            return told.exit_code() as u8;
         }
-    }
+    };
+    dispatch(cli.command, &command_line(&arguments)).unwrap_or_else(|error| {
+        print_error(&format!("error: {error}\n"));
+        exit_code(&error)
+    })
 }
 
 /// Returns the exit code of an error.
@@ -245,7 +252,8 @@ fn exit_code(error: &Error) -> u8 {
     if error.kind == ErrorKind::Fault { 1 } else { 2 }
 }
 
-fn dispatch(command: Command) -> Result<u8> {
+/// Runs `command`. Studies record `command_line`.
+fn dispatch(command: Command, command_line: &str) -> Result<u8> {
     match command {
         Command::Run(args) => run::run(&args),
         Command::Resume(args) => run::resume(&args),
@@ -253,8 +261,8 @@ fn dispatch(command: Command) -> Result<u8> {
             print_output(&inspect::inspect(&args)?);
             Ok(0)
         }
-        Command::Validate(args) => validate::validate(args),
-        Command::Study(args) => study::study(args),
+        Command::Validate(args) => validate::validate(args, command_line),
+        Command::Study(args) => study::study(args, command_line),
         Command::Stress(args) => stress::stress(args),
         Command::Bench(args) => {
             print_output(&bench::bench(&args)?);
@@ -268,7 +276,7 @@ fn dispatch(command: Command) -> Result<u8> {
         }
         Command::Watch(args) => watch::watch(&args),
         Command::Schema => {
-            print_output(&format!("{:#}\n", pontoon::scene::schema()));
+            print_output(&format!("{:#}\n", crate::scene::schema()));
             Ok(0)
         }
         Command::Completions { shell } => {
@@ -289,9 +297,12 @@ fn dispatch(command: Command) -> Result<u8> {
 }
 
 /// Returns the command line as typed, for records.
-fn command_line() -> String {
-    let quoted = |word: String| if word.contains([' ', '{', '"', '*']) { format!("'{word}'") } else { word };
-    let words: Vec<String> = std::env::args().skip(1).map(quoted).collect();
+fn command_line(arguments: &[OsString]) -> String {
+    let quoted = |word: &OsString| {
+        let word = word.to_string_lossy();
+        if word.contains([' ', '{', '"', '*']) { format!("'{word}'") } else { word.into_owned() }
+    };
+    let words: Vec<String> = arguments.iter().skip(1).map(quoted).collect();
     format!("pontoon {}", words.join(" "))
 }
 

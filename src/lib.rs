@@ -92,6 +92,9 @@ pub mod study;
 #[doc(hidden)]
 pub mod bench;
 pub mod prelude;
+#[cfg(feature = "cli")]
+#[doc(hidden)]
+pub mod cli;
 
 pub use error::{Error, Result};
 

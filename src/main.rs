@@ -1,9 +1,5 @@
-//! The binary: arguments, progress, exit code. All else is the library.
-
-#![allow(clippy::print_stdout, clippy::print_stderr, reason = "the program prints")]
-
-mod cli;
+//! The binary: arguments and exit code. All else is the library.
 
 fn main() -> std::process::ExitCode {
-    cli::main()
+    pontoon::cli::main(std::env::args_os()).into()
 }

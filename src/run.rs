@@ -25,7 +25,7 @@ pub use energy_drift::EnergyDrift;
 #[doc(hidden)]
 pub use inspect::{
     CostEstimate, InspectOptions, InspectReport, Inspection, LARGE, MeshSummary, SeriesColumns, SolidSummary,
-    StepTiming, inspect,
+    StepTiming, inspect, inspect_scene,
 };
 pub(crate) use lock::Lock;
 #[doc(hidden)]
@@ -159,7 +159,19 @@ impl RunOutcome {
 pub fn run(path: &Path, options: &RunOptions, watch: &mut dyn RunObserver) -> Result<RunOutcome> {
     let file = run_folder::scene_file(path);
     let scene = Scene::read(&file, &options.overrides)?;
-    let origin = RunOrigin::Fresh { file: &file, out: options.out.as_deref(), overrides: &options.overrides };
+    let origin =
+        RunOrigin::Fresh { file: &file, text: None, out: options.out.as_deref(), overrides: &options.overrides };
+    with_threads(options.threads, || by_dimension(&scene, origin, watch))
+}
+
+/// Runs the scene in `text`. The files that the scene names must be in `folder`, as in [`Scene::parse`].
+///
+/// # Errors
+/// As [`run`].
+pub fn run_text(text: &str, folder: &Path, options: &RunOptions, watch: &mut dyn RunObserver) -> Result<RunOutcome> {
+    let scene = Scene::parse(text, folder, &options.overrides)?;
+    let (file, out) = (folder.join("scene.toml"), options.out.as_deref());
+    let origin = RunOrigin::Fresh { file: &file, text: Some(text), out, overrides: &options.overrides };
     with_threads(options.threads, || by_dimension(&scene, origin, watch))
 }
 
@@ -194,8 +206,9 @@ pub fn resume(
 
 /// The origin of a run.
 enum RunOrigin<'a> {
-    /// A scene file, for the folder `out` or a folder that the program chooses.
-    Fresh { file: &'a Path, out: Option<&'a Path>, overrides: &'a [(String, String)] },
+    /// A scene file, for the folder `out` or a folder that the program chooses. If `text` is given, it is the content of
+    /// the file, which need not exist.
+    Fresh { file: &'a Path, text: Option<&'a str>, out: Option<&'a Path>, overrides: &'a [(String, String)] },
     /// A checkpoint in the run's folder.
     Resumed { folder: &'a Path, checkpoint: Box<Checkpoint>, warning: Option<String>, lock: Lock },
 }

@@ -1,13 +1,13 @@
 //! `pontoon bench`: which works are timed, and the tables.
 
-use clap::Args;
-use pontoon::{
+use crate::{
     Result,
     bench::{self, BenchCase, BenchTiming, DefaultViscosity},
     error::{Error, ErrorKind},
     math::format::{metric_prefix, three_digits},
     output::manifest::Machine,
 };
+use clap::Args;
 use serde::Serialize;
 
 use super::console_text::table;

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use pontoon::{
+use crate::{
     analysis::{Verdict, format_verdicts},
     math::format::{bytes, duration, metric_prefix},
     output::manifest::{FrameTotals, RunStatus},

@@ -5,12 +5,12 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use clap::{ArgGroup, Args};
-use pontoon::{
+use crate::{
     error::{Error, ErrorKind, Result},
     output::{Manifest, SeriesTable, npz},
     run,
 };
+use clap::{ArgGroup, Args};
 use serde::{Deserialize, de::DeserializeOwned};
 
 /// Which run, what of it, and where to.
@@ -130,7 +130,7 @@ fn surface(_: &Path) -> Result<String> {
 
 #[cfg(feature = "surface")]
 fn surface(folder: &Path) -> Result<String> {
-    use pontoon::output::{FrameSequence, free_surface_mesh};
+    use crate::output::{FrameSequence, free_surface_mesh};
 
     let (manifest, run) = (Manifest::read(folder)?, || folder.display());
     let Some((dimension, dp)) = manifest.numeric_value("dimension").zip(manifest.numeric_value("dp")) else {

@@ -2,13 +2,13 @@
 
 use std::fmt::Write;
 
-use clap::Args;
-use pontoon::{
+use crate::{
     error::{Error, ErrorKind, Result},
     math::format::{bytes, duration, metric_prefix, three_digits},
     preflight::{AbsorberSummary, BodyFlow, BodySummary, DiskUse, Finding, GeneratedWave, Preflight, Severity},
     run::{self, CostEstimate, InspectOptions, InspectReport, Inspection, LARGE},
 };
+use clap::Args;
 
 use super::{
     SceneArgs,

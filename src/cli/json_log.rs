@@ -9,7 +9,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use pontoon::{
+use crate::{
     error::Error,
     output::manifest::RunStatus,
     run::{EnergyDrift, Progress, RunObserver, RunOutcome, RunStart},

@@ -9,14 +9,14 @@ use std::{
     time::{Duration, Instant},
 };
 
-use crossterm::terminal::size;
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use pontoon::{
+use crate::{
     math::format::{duration, metric_prefix, three_digits},
     run::{Progress, RunObserver, RunStart},
     simulation::Rollback,
     solid::ConstraintEvent,
 };
+use crossterm::terminal::size;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::{console_text, print_error};
 
@@ -156,7 +156,7 @@ fn fit_to_width(line: String, words: impl Iterator<Item = String>, room: usize) 
 
 #[cfg(test)]
 mod tests {
-    use pontoon::run::EnergyDrift;
+    use crate::run::EnergyDrift;
 
     use super::*;
 

@@ -2,12 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::{Args, ValueEnum};
-use pontoon::{
+use crate::{
     error::{Error, ErrorKind, Result},
     math::format::{bytes, duration},
     report::{self, ColourField, Page, PictureOptions},
 };
+use clap::{Args, ValueEnum};
 
 use super::{print_error, print_output};
 

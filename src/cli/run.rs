@@ -2,12 +2,12 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
-use pontoon::{
+use crate::{
     error::{Error, Result},
     output::manifest::RunStatus,
     run::{self, RunOptions, RunOutcome},
 };
+use clap::{Args, ValueEnum};
 
 use super::{
     SceneArgs, console_text, exit_code, interrupt_flag, interrupt_flag_with_message,

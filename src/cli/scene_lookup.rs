@@ -3,9 +3,10 @@
 use std::{
     fs,
     path::{MAIN_SEPARATOR, Path, PathBuf},
+    sync::atomic::{AtomicUsize, Ordering},
 };
 
-use pontoon::{
+use crate::{
     error::{Error, ErrorCode, ErrorKind, Result, nearest_name},
     scene::{BundledScene, bundled_scenes},
 };
@@ -81,9 +82,11 @@ pub fn find_scene(word: &Path) -> Result<FoundScene> {
         .help(help))
 }
 
-/// Lays a built-in scene out in a temporary folder.
+/// Lays a built-in scene out in a temporary folder of its own.
 fn unpack((name, text, files): &BundledScene) -> Result<FoundScene> {
-    let temporary = std::env::temp_dir().join(format!("pontoon-{}", std::process::id()));
+    static UNPACKED: AtomicUsize = AtomicUsize::new(0);
+    let number = UNPACKED.fetch_add(1, Ordering::Relaxed);
+    let temporary = std::env::temp_dir().join(format!("pontoon-{}-{number}", std::process::id()));
     let found = FoundScene { path: temporary.join(name), temporary: Some(temporary) };
     let refused = |why| Error::write(&found.path, "written", &why);
     fs::create_dir_all(&found.path).map_err(refused)?;

@@ -2,12 +2,12 @@
 
 use std::path::PathBuf;
 
-use clap::Args;
-use pontoon::{
+use crate::{
     error::{Error, ErrorKind, Result},
     math::format::three_digits,
     run::{RaoResult, RunStatistics, Statistic, StatisticsFilter, statistics},
 };
+use clap::Args;
 use serde::Serialize;
 
 use super::{console_text::table, print_error};

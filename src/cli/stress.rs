@@ -2,12 +2,12 @@
 
 use std::{path::PathBuf, sync::atomic::Ordering};
 
-use clap::Args;
-use pontoon::{
+use crate::{
     error::{Error, ErrorKind, Result},
     math::format::duration,
     study::stress::{CaseOutcome, CaseResult, StressMap, StressResults, maps, select_maps, summary_line},
 };
+use clap::Args;
 
 use super::{console_text::table, interrupt_flag_with_message, print_error, print_output};
 

@@ -5,8 +5,7 @@ use std::{
     sync::{Arc, atomic::AtomicBool},
 };
 
-use clap::Args;
-use pontoon::{
+use crate::{
     error::{Error, ErrorKind, Result},
     math::format::{duration, metric_prefix},
     output::require_parent_folder,
@@ -18,6 +17,7 @@ use pontoon::{
         distinguishing_labels, estimate_times, frame_interval, split_values, spread_table,
     },
 };
+use clap::Args;
 
 use super::{
     console_text::table,
@@ -172,7 +172,7 @@ fn planned_table(jobs: &[Job], ran: &[JobResult], planned: &[TimeEstimate]) -> S
 }
 
 /// Runs the grid, or says what it would run.
-pub fn study(args: StudyArgs) -> Result<u8> {
+pub fn study(args: StudyArgs, command_line: &str) -> Result<u8> {
     let found = scene_lookup::find_scene(&args.scene)?;
     let mut sets = args.set.clone();
     sets.extend(args.until.map(|until| ("until".into(), format!("{until:?}"))));
@@ -196,7 +196,7 @@ pub fn study(args: StudyArgs) -> Result<u8> {
         frames: shot.as_ref().map(|shot| frame_interval(&shot.times, scene.until)),
         repeat: args.repeat,
     };
-    let sheet = found.with_scene_name(StudyResults::new(&grid, out, super::command_line()))?;
+    let sheet = found.with_scene_name(StudyResults::new(&grid, out, command_line.to_owned()))?;
     let list = JobList { jobs: &sheet.jobs, threads: args.threads, quiet: args.quiet };
     found.with_scene_name(list.announce(args.dry_run))?;
     if args.dry_run {

@@ -2,11 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::Args;
-use pontoon::{
+use crate::{
     error::{Error, ErrorKind, Result},
     study::{JobState, Validation, ValidationCase, select_cases, validation_cases},
 };
+use clap::Args;
 
 use super::{
     console_text::table,
@@ -47,7 +47,7 @@ pub struct ValidateArgs {
 }
 
 /// Runs the cases, or lists them.
-pub fn validate(args: ValidateArgs) -> Result<u8> {
+pub fn validate(args: ValidateArgs, command_line: &str) -> Result<u8> {
     if args.list {
         print_output(&case_list(&validation_cases()?));
         return Ok(0);
@@ -59,7 +59,7 @@ pub fn validate(args: ValidateArgs) -> Result<u8> {
     let scenes =
         cases.iter().map(|case| scene_lookup::find_scene(Path::new(&case.scene))).collect::<Result<Vec<_>>>()?;
     let placed = cases.into_iter().zip(scenes.iter().map(scene_lookup::FoundScene::path)).collect();
-    let validation = Validation::new(placed, args.full, args.repeat, args.out.clone(), super::command_line())?;
+    let validation = Validation::new(placed, args.full, args.repeat, args.out.clone(), command_line.to_owned())?;
     let list = JobList { jobs: &validation.jobs, threads: args.threads, quiet: args.quiet };
     list.announce(args.dry_run)?;
     if args.dry_run {

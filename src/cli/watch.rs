@@ -6,18 +6,18 @@ use std::{
     time::Duration,
 };
 
+use crate::{
+    error::{Error, ErrorCode, ErrorKind, Result, nearest_name},
+    math::format::{duration, three_digits, unit},
+    output::{Manifest, SeriesTable, manifest::RunStatus},
+    run::{self, EnergyDrift},
+};
 use clap::Args;
 use crossterm::{
     cursor::{Hide, MoveTo, Show},
     event::{Event, KeyCode, KeyEvent, KeyModifiers, poll, read},
     execute,
     terminal::{Clear, ClearType, EnterAlternateScreen, LeaveAlternateScreen, disable_raw_mode, enable_raw_mode, size},
-};
-use pontoon::{
-    error::{Error, ErrorCode, ErrorKind, Result, nearest_name},
-    math::format::{duration, three_digits, unit},
-    output::{Manifest, SeriesTable, manifest::RunStatus},
-    run::{self, EnergyDrift},
 };
 use textplots::{Chart, LabelBuilder, LabelFormat, Plot, Shape};
 

@@ -245,19 +245,19 @@ macro_rules! probe_kinds {
                 match self { $($(Self::$variant(plan) => plan.energy_reading(),)?)* }
             }
 
-            /// Enables the records that the probe reads: see [`ProbeDefinition::enable_records`].
-            pub(crate) fn enable_records<const D: usize>(&self, sim: &mut Simulation<D>)
+            /// Enables the records of the simulation that the probe reads. They begin anew.
+            pub fn enable_records<const D: usize>(&self, sim: &mut Simulation<D>)
             where
                 Dim<D>: Dimension<D>,
             {
                 match self { $($(Self::$variant(plan) => plan.enable_records(sim),)?)* }
             }
 
-            /// Builds the probe.
+            /// Builds the probe. It reads NaN where it needs records that are not enabled.
             ///
             /// # Errors
             /// `Scene` or `Usage` if the system lacks an object that the probe names.
-            pub(crate) fn build<const D: usize>(&self, system: &System<D>) -> Result<Box<dyn Probe<D>>> {
+            pub fn build<const D: usize>(&self, system: &System<D>) -> Result<Box<dyn Probe<D>>> {
                 match self { $($(Self::$variant(plan) => plan.build(system),)?)* }
             }
         }

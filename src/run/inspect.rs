@@ -191,12 +191,19 @@ pub struct StepTiming {
 /// # Errors
 /// The errors that [`run`](super::run) would return before its first step.
 pub fn inspect(path: &Path, asked: &InspectOptions) -> Result<Inspection> {
-    let scene = Scene::read(&run_folder::scene_file(path), &asked.overrides)?;
+    inspect_scene(&Scene::read(&run_folder::scene_file(path), &asked.overrides)?, asked)
+}
+
+/// As [`inspect`], of a scene that has been read, without the overrides of `asked`.
+///
+/// # Errors
+/// As [`inspect`].
+pub fn inspect_scene(scene: &Scene, asked: &InspectOptions) -> Result<Inspection> {
     with_threads(asked.threads, || match scene.dimension {
         #[cfg(feature = "dim2")]
-        2 => build_report::<2>(&scene, asked.timing),
+        2 => build_report::<2>(scene, asked.timing),
         #[cfg(feature = "dim3")]
-        3 => build_report::<3>(&scene, asked.timing),
+        3 => build_report::<3>(scene, asked.timing),
         other => Err(missing_dimension(other)),
     })
 }

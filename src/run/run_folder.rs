@@ -74,19 +74,26 @@ pub(crate) fn remove_failure_report(folder: &Path) -> Result<()> {
     })
 }
 
-/// Copies the scene in `file` into the run's `folder`, and the tables beside it that `words` names, the
-/// TOML of the scene in force, so that the folder can be resumed wherever it is moved.
+/// Copies the scene in `file` into the run's `folder`, or writes `text` in its place, and copies the tables beside it
+/// that `words` names, the TOML of the scene in force, so that the folder can be resumed wherever it is moved.
 ///
 /// # Errors
 /// `File` if something cannot be read or written.
-pub(crate) fn copy_scene(file: &Path, words: &str, folder: &Path) -> Result<()> {
+pub(crate) fn copy_scene(file: &Path, text: Option<&str>, words: &str, folder: &Path) -> Result<()> {
     let (from, to) = (file.parent().unwrap_or(Path::new("")), folder.join("scene"));
     let copy = |source: &Path, target: &Path| -> Result<()> {
         let parent = target.parent().unwrap_or(&to);
         fs::create_dir_all(parent).map_err(|why| Error::write(parent, "made", &why))?;
         fs::copy(source, target).map(|_| ()).map_err(|why| Error::write(target, "written", &why))
     };
-    copy(file, &folder.join(SCENE))?;
+    let target = folder.join(SCENE);
+    match text {
+        None => copy(file, &target)?,
+        Some(text) => {
+            fs::create_dir_all(&to).map_err(|why| Error::write(&to, "made", &why))?;
+            fs::write(&target, text).map_err(|why| Error::write(&target, "written", &why))?;
+        }
+    }
     referenced_files(words)
         .iter()
         .filter(|name| from.join(name).is_file() && files::is_within(from, &from.join(name)))

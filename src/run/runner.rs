@@ -68,14 +68,14 @@ where
         let mut warnings = preflight.with_file_notes(&file_notes).warnings();
         let notes = file_notes.iter().filter(|note| !note.is_warning);
         let notes = notes.map(|note| format!("{}: {}", note.what, note.remedy)).collect();
-        let text = scene.to_toml()?;
+        let in_force = scene.to_toml()?;
         let values = scene.resolve()?.into_iter().map(ValueInForce::from).collect();
         let (folder, mut checkpoint, resumed, warning, lock) = match origin {
-            RunOrigin::Fresh { file, out, overrides } => {
+            RunOrigin::Fresh { file, text, out, overrides } => {
                 let folder = run_folder::create_run_folder(file, out)?;
                 let lock = Lock::acquire(&folder)?;
-                run_folder::copy_scene(file, &text, &folder)?;
-                (folder, Checkpoint::initial(&text, overrides), false, None, lock)
+                run_folder::copy_scene(file, text, &in_force, &folder)?;
+                (folder, Checkpoint::initial(&in_force, overrides), false, None, lock)
             }
             RunOrigin::Resumed { folder, checkpoint, warning, lock } => {
                 (folder.to_owned(), *checkpoint, true, warning, lock)
@@ -98,7 +98,7 @@ where
         let (name, version) = Dim::<D>::VERSION;
         let engine = format!("{name} {version}");
         let manifest =
-            Manifest { engine, warnings, notes, values, scene: text, ..initial_manifest(&sim, &plan, &checkpoint) };
+            Manifest { engine, warnings, notes, values, scene: in_force, ..initial_manifest(&sim, &plan, &checkpoint) };
         let saved = (Instant::now(), plan.checkpoint_wall);
         Ok(Self {
             sim,

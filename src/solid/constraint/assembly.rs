@@ -240,6 +240,8 @@ impl<const D: usize> Assembly<D> {
             let (ends, mobility) = (joint.end_kinematics(solids), joint.mobility(engine));
             let ((rows, _), free) = (joint.jacobians(&ends, &mobility), joint.coordinate_jacobian(&ends));
             let drive = joint.motor_command(*set, t + 0.5 * dt);
+            // A joint that is given back to no motor has no force of one.
+            reading.motor_force = 0.0;
             if let (Some(drive), Some(free), Some(own)) = (drive, free, rows.last()) {
                 let loads = joint
                     .spec

@@ -16,7 +16,7 @@ fn the_run_folder_contains_the_scene_and_only_the_tables_that_it_names() -> std:
     assert_eq!(scene_name(&file), "bay");
     let out = home.join("out");
     let folder = create_run_folder(&file, Some(&out)).map_err(std::io::Error::other)?;
-    copy_scene(&file, text, &folder).map_err(std::io::Error::other)?;
+    copy_scene(&file, None, text, &folder).map_err(std::io::Error::other)?;
     assert!(out.join("scene/data/flap.csv").is_file() && out.join(SCENE).is_file());
     assert!(!out.join("scene/other.csv").exists() && !out.join("secret.csv").exists());
     let again = create_run_folder(&file, Some(&out)).err().map(|e| e.kind);

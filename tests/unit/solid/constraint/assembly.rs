@@ -303,6 +303,12 @@ where
         let gap = ends[0].pose.point(&point(0.15, 0.0)) - ends[1].pose.point(&point(-0.15, 0.0));
         assert!(gap.norm() < 1e-5, "{D}-D, hinge {i}: {}", gap.norm());
     }
+    // Given back to no motor, hinge 0 has no force of one, and takes no more energy.
+    let taken = readings(&whole)[0].absorbed_energy;
+    assert!(taken != 0.0 && readings(&whole)[0].motor_force != 0.0);
+    whole.assembly.set_motor(0, None);
+    whole.run(5e-4, 0.85);
+    assert_eq!((readings(&whole)[0].motor_force, readings(&whole)[0].absorbed_energy), (0.0, taken));
 }
 
 #[test]

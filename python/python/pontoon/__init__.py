@@ -1,0 +1,86 @@
+"""Rigid bodies that float, collide and are driven in water: δ-SPH for the water, rapier for the bodies.
+
+>>> import pontoon as pt
+>>> run = pt.run("raft")                                                    # doctest: +SKIP
+
+`run` runs a scene with its files; `Scene.build` gives a `Simulation` that is stepped, controlled and read.
+"""
+
+from ._errors import Error, Fault, FileError, RestartError, SceneError, UsageError
+from ._pontoon import BodyState, BodyStep, Load, version
+from .probes import (
+    contact,
+    elevation,
+    energy,
+    flow,
+    force,
+    joint,
+    motion,
+    pressure,
+    rope,
+    runup,
+    spring,
+    velocity,
+)
+from .run import Frame, Progress, Rao, Run, Series, Statistic, resume, run, scenes
+from .scene import Finding, Inspection, Scene
+from .simulation import (
+    Contact,
+    HostedSimulation,
+    JointReading,
+    Motion,
+    Reading,
+    Simulation,
+    SpringReading,
+    WaterView,
+)
+from .study import Study, study, validate
+
+__version__ = version()
+
+__all__ = [
+    "BodyState",
+    "BodyStep",
+    "Contact",
+    "Error",
+    "Fault",
+    "FileError",
+    "Finding",
+    "Frame",
+    "HostedSimulation",
+    "Inspection",
+    "JointReading",
+    "Load",
+    "Motion",
+    "Progress",
+    "Rao",
+    "Reading",
+    "RestartError",
+    "Run",
+    "Scene",
+    "SceneError",
+    "Series",
+    "Simulation",
+    "SpringReading",
+    "Study",
+    "Statistic",
+    "UsageError",
+    "WaterView",
+    "contact",
+    "elevation",
+    "energy",
+    "flow",
+    "force",
+    "joint",
+    "motion",
+    "pressure",
+    "resume",
+    "rope",
+    "run",
+    "runup",
+    "scenes",
+    "spring",
+    "study",
+    "validate",
+    "velocity",
+]

@@ -1,0 +1,61 @@
+"""Bodies of another program: forces out, motions in."""
+
+import numpy as np
+import pytest
+
+import pontoon as pt
+
+from conftest import TANK, TANK_3D
+
+
+def test_a_body_of_another_program_moves_as_one_of_the_own(tank: pt.Scene) -> None:
+    # Two integrators of one body: a symplectic Euler step, as rapier does.
+    own, hosted = tank.build(), tank.build_hosted()
+    mass, gravity = own["crate"].mass, np.array([0.0, -9.81])
+    assert mass is not None
+    inertia = mass * (0.3**2 + 0.2**2) / 12.0
+    start = hosted["crate"]
+    position, velocity, angle, spin = start.position, start.velocity, float(start.rotation), float(start.spin)
+
+    def host(h: pt.BodyStep) -> dict[str, pt.Motion]:
+        nonlocal position, velocity, angle, spin
+        load = h.loads["crate"]
+        velocity = velocity + h.dt * (load.force / mass + gravity)
+        spin += h.dt * load.torque / inertia
+        position = position + h.dt * velocity
+        angle += h.dt * spin
+        return {"crate": pt.Motion(position, velocity, angle, spin)}
+
+    own.advance(0.1)
+    hosted.advance(0.1, host)
+    assert hosted.time == own.time == 0.1
+    # The motions differ by the steps of the integrators only: far below the 3 mm that the crate has moved.
+    assert hosted["crate"].centre == pytest.approx(own["crate"].centre, abs=1e-5)
+    assert hosted["crate"].velocity == pytest.approx(own["crate"].velocity, abs=1e-3)
+
+
+def test_a_body_in_3d_takes_matrices_and_quaternions() -> None:
+    scene = pt.Scene.from_toml(TANK_3D)
+    half = np.sqrt(0.5)
+    quaternion = np.array([half, 0.0, 0.0, half])
+    matrix = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+    for rotation in (quaternion, matrix):
+        sim = scene.build_hosted()
+        at = sim["crate"].position + [0.0, 0.0, 0.001]
+        sim.step(lambda h: {"crate": pt.Motion(at, [0.0, 0.0, 1.0], rotation, [0.0, 0.0, 2.0])})
+        assert sim["crate"].rotation == pytest.approx(matrix, abs=1e-12)
+        assert sim["crate"].position == pytest.approx(at) and sim["crate"].spin == pytest.approx([0.0, 0.0, 2.0])
+
+
+def test_a_body_without_motion_is_named() -> None:
+    sim = pt.Scene.from_toml(TANK).build_hosted()
+    with pytest.raises(pt.UsageError, match="crate"):
+        sim.step(lambda h: {})
+    with pytest.raises(pt.UsageError):
+        sim.step(lambda h: {"crat": pt.Motion([0.0, 0.0], [0.0, 0.0])})
+
+
+def test_constraints_belong_to_the_other_program(tank: pt.Scene) -> None:
+    tank["spring"] = [{"name": "line", "between": ["crate"], "from": [0.5, 0.6], "to": [0.5, 1.5], "stiffness": 100.0}]
+    with pytest.raises(pt.SceneError):
+        tank.build_hosted()
