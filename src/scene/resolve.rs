@@ -73,6 +73,7 @@ impl Scene {
         }
         self.domain.iter().try_for_each(|domain| domain.verify(ctx, "domain"))?;
         self.periodic.iter().try_for_each(|periodic| periodic.verify(ctx))?;
+        self.symmetry.iter().try_for_each(|planes| planes.verify(ctx, self.periodic.as_ref()))?;
         self.guard.iter().try_for_each(|guard| guard.verify(ctx))?;
         if self.water.is_empty() {
             return Err(ctx.error_at("water", "the scene has no water"));
@@ -272,7 +273,7 @@ impl Scene {
 }
 
 /// The order in which values are listed.
-const ORDER: [&str; 25] = [
+const ORDER: [&str; 26] = [
     "title",
     "dimension",
     "dp",
@@ -281,6 +282,7 @@ const ORDER: [&str; 25] = [
     "jitter",
     "domain",
     "periodic",
+    "symmetry",
     "guard",
     "water",
     "damping",

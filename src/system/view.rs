@@ -1,10 +1,11 @@
 //! What may be read of a system.
 
-use std::time::Duration;
+use std::{collections::BTreeMap, time::Duration};
 
 use super::{
     Periodic, System,
     memory::{bytes, optional_bytes},
+    reflected,
 };
 use crate::{
     math::{Bounds, Vector},
@@ -81,11 +82,12 @@ impl<const D: usize> System<D> {
         self.equation_of_state.compression_energy(rho / self.properties.rho0 - 1.0)
     }
 
-    /// Energy (J; J/m in 2-D) of a water particle of density `rho` (kg/m³) that moves at `v` (m/s) at `r` (m): motion, height,
-    /// compression.
+    /// Energy (J; J/m in 2-D) of a water particle of density `rho` (kg/m³) that moves at `v` (m/s) at `r` (m), and of its images
+    /// across symmetry planes: motion, height, compression.
     pub(crate) fn particle_energy(&self, r: &Vector<D>, v: &Vector<D>, rho: f64) -> f64 {
         let height = self.non_periodic_gravity().dot(r);
-        self.particle_mass() * (0.5 * v.norm_squared() - height + self.compression_energy(rho))
+        let mass = self.particle_mass() * self.water_multiplicity();
+        mass * (0.5 * v.norm_squared() - height + self.compression_energy(rho))
     }
 
     /// Acceleration (m/s²) of water particle `i` at the last force pass, gravity included; zero in a restored state until the next.
@@ -129,9 +131,10 @@ impl<const D: usize> System<D> {
         LoadContext { loads, wet, sound_crossing_time: self.properties.h / self.properties.c0 }
     }
 
-    /// Energy of the water's motion, Σ ½ m v², J (J/m in 2-D).
+    /// Energy of the water's motion, Σ ½ m v², J (J/m in 2-D), on both sides of symmetry planes.
     pub fn kinetic_energy(&self) -> f64 {
-        0.5 * self.particle_mass() * self.fluid().v.iter().map(|v| v.norm_squared()).sum::<f64>()
+        let half = 0.5 * self.particle_mass() * self.fluid().v.iter().map(|v| v.norm_squared()).sum::<f64>();
+        half * self.water_multiplicity()
     }
 
     /// Acceleration of gravity (m/s²) along the axes that have a height: those that are not periodic.
@@ -150,7 +153,7 @@ impl<const D: usize> System<D> {
         if along.norm_squared() == 0.0 {
             return 0.0;
         }
-        self.particle_mass() * self.fluid().v.iter().map(|v| along.dot(v)).sum::<f64>()
+        self.particle_mass() * self.water_multiplicity() * self.fluid().v.iter().map(|v| along.dot(v)).sum::<f64>()
     }
 
     /// Whether `x` (m) lies between the periodic sides.
@@ -158,13 +161,14 @@ impl<const D: usize> System<D> {
         self.fluid.images.is_inside(x)
     }
 
-    /// The place between the periodic sides that is whole periods from `x` (m).
+    /// The place between the periodic sides that is whole periods from `x` (m), or its image on the computed side of the symmetry
+    /// planes.
     pub fn wrapped(&self, x: &Vector<D>) -> Vector<D> {
         self.fluid.images.wrapped(x)
     }
 
     /// Calls `visit` with index, place (m) and kernel value W (1/mᴰ) of each water particle whose support holds `x` (m). Across
-    /// a periodic side the place is that of its image.
+    /// a periodic side or a symmetry plane the place is that of its image.
     pub fn visit_fluid_near(&self, x: &Vector<D>, visit: &mut dyn FnMut(usize, &Vector<D>, f64)) {
         let real = self.particle_count();
         self.neighbours.visit_fluid_around(x, &mut |i| {
@@ -187,10 +191,30 @@ impl<const D: usize> System<D> {
     /// Calls `visit` with the index of each boundary particle of solid number `solid` beside water, and the force (N; N/m in 2-D)
     /// of the water on it at the last force pass. They sum up to the solid's load.
     pub(crate) fn visit_boundary_forces(&self, solid: usize, visit: &mut dyn FnMut(usize, Vector<D>)) {
-        let (mass, skin) = (self.particle_mass(), &self.solids[solid].boundary);
+        let (mass, own) = (self.particle_mass(), &self.solids[solid]);
+        let skin = if own.copies > 1 { own.boundary.clone() } else { own.boundary_of_copy(0) };
+        let mut forces = BTreeMap::new();
         for (&i, sums) in self.neighbours.boundary_near_fluid().iter().zip(&self.rates.boundary) {
-            if skin.contains(&(i as usize)) && self.fluid.images.is_inside(&self.boundary.particles.r[i as usize]) {
+            let r = &self.boundary.particles.r[i as usize];
+            if !skin.contains(&(i as usize)) || !self.fluid.images.is_inside(r) {
+                continue;
+            }
+            if own.division.cut == 0 {
                 visit(i as usize, sums.acceleration * mass);
+                continue;
+            }
+            // What lies on a plane gets the force from both sides.
+            let (planes, share) = (self.symmetry_planes(), self.computed_share(own, r));
+            let on_planes = planes.axes_of_planes_at(own.division.cut, r, self.model.dp);
+            let both = |f: Vector<D>, axis: usize| f + reflected(1 << axis, f);
+            let axes = (0..D).filter(|axis| on_planes >> axis & 1 == 1);
+            let force = axes.fold(sums.acceleration * (mass * share), both);
+            visit(i as usize, force);
+            forces.insert(i as usize, force);
+        }
+        for (i, original, axes) in self.boundary.each_mirrored((solid, own)) {
+            if let Some(force) = forces.get(&original).filter(|_| own.boundary_of_whole().contains(&i)) {
+                visit(i, reflected(axes, *force));
             }
         }
     }
