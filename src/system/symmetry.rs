@@ -8,17 +8,16 @@
 //! particle within [`ON_PLANE`] of the plane is set on it and is its own image: half of its force counts. The load is that of the
 //! whole solid: the load of the computed part and its reflection. Of any other solid the images are another solid.
 
-use super::{Fluid, System};
 use crate::{
     interaction::PairSums,
-    math::{Bivector, Matrix, Pose, Vector},
-    solid::{Load, Role, Solid, SolidSpec},
+    math::{Bivector, Matrix, Vector},
+    solid::{Role, SolidSpec},
     sph::AuxiliarySums,
 };
 
 /// Distance from a plane within which a boundary particle of a solid that the plane cuts is set on the plane, dp. Rows of symmetric
-/// solids lie at 0 or at 0.37 dp and more.
-pub(super) const ON_PLANE: f64 = 0.35;
+/// solids lie at 0 or at 0.35 dp and more. As many particles are set on the plane from both sides as their images would be.
+pub(super) const ON_PLANE: f64 = 0.34;
 
 /// Distance from a plane at which round-off cannot tell a particle from one on the plane, dp.
 pub(super) const TOLERANCE: f64 = 1e-6;
@@ -83,7 +82,7 @@ impl<const D: usize> SymmetryPlanes<D> {
 
     /// The share of the particle at `r` (m) that belongs to the computed side of the planes normal to the axes `cut`: half if it
     /// lies on a plane.
-    fn share(&self, cut: AxisSet, r: &Vector<D>, dp: f64) -> f64 {
+    pub(super) fn share(&self, cut: AxisSet, r: &Vector<D>, dp: f64) -> f64 {
         0.5f64.powi(self.axes_of_planes_at(cut, r, dp).count_ones() as i32)
     }
 
@@ -108,7 +107,16 @@ impl<const D: usize> SymmetryPlanes<D> {
             division.cut |= 1 << axis;
         }
         let cut = division.cut;
-        division.own = all().filter_map(|(i, r)| Some((i, self.on_computed_side(cut, r, dp)?))).collect();
+        let own = || all().filter_map(|(i, r)| Some((i, self.on_computed_side(cut, r, dp)?)));
+        let is_beyond =
+            |i: u32| self.each().any(|(axis, plane)| plane.depth(points[i as usize][axis]) < -TOLERANCE * dp);
+        division.own = own().filter(|(i, _)| !is_beyond(*i)).collect();
+        // Of a symmetric pair beside the plane one particle remains.
+        for (i, r) in own().filter(|(i, _)| is_beyond(*i)) {
+            if division.own.iter().all(|(_, other)| (other - r).norm() > 0.5 * dp) {
+                division.own.push((i, r));
+            }
+        }
         // The images of the solid itself come first.
         let mut sets: Vec<AxisSet> = (1..1 << D).filter(|set| self.axes() & set == *set).collect();
         sets.sort_by_key(|set| set & !cut != 0);
@@ -140,10 +148,10 @@ impl<const D: usize> SymmetryPlanes<D> {
     fn on_computed_side(&self, cut: AxisSet, mut r: Vector<D>, dp: f64) -> Option<Vector<D>> {
         for (axis, plane) in self.each().filter(|(axis, _)| cut >> axis & 1 == 1) {
             let depth = plane.depth(r[axis]);
-            if depth < -TOLERANCE * dp {
+            if depth < -ON_PLANE * dp {
                 return None;
             }
-            if depth <= ON_PLANE * dp {
+            if depth < ON_PLANE * dp {
                 r[axis] = plane.at;
             }
         }
@@ -208,80 +216,6 @@ pub(super) fn reflected_auxiliary<const D: usize>(
 }
 
 /// The torque or spin `turn`, reflected along `axes`.
-fn reflected_turn<const D: usize>(axes: AxisSet, turn: &Bivector<D>) -> Bivector<D> {
+pub(super) fn reflected_turn<const D: usize>(axes: AxisSet, turn: &Bivector<D>) -> Bivector<D> {
     Bivector(reflected_tensor(axes, &turn.0))
-}
-
-impl<const D: usize> System<D> {
-    /// The symmetry planes.
-    pub(crate) fn symmetry_planes(&self) -> &SymmetryPlanes<D> {
-        &self.fluid.images.planes
-    }
-
-    /// Number of images of the computed water, itself counted: its energy times this number is that of all water.
-    pub(crate) fn water_multiplicity(&self) -> f64 {
-        self.symmetry_planes().multiplicity(0)
-    }
-
-    /// Number of images of solid number `i`, itself counted. A plane that cuts the solid gives it no other image.
-    pub(crate) fn solid_multiplicity(&self, i: usize) -> f64 {
-        self.symmetry_planes().multiplicity(self.solids[i].division.cut)
-    }
-
-    /// The share (–) of the boundary particle at `r` (m) of `solid` that the computed side has.
-    pub(crate) fn computed_share(&self, solid: &Solid<D>, r: &Vector<D>) -> f64 {
-        self.symmetry_planes().share(solid.division.cut, r, self.model.dp)
-    }
-
-    /// Whether the moving solid number `i` at `pose`, which no plane cuts, reaches a plane, where it meets its image.
-    pub(crate) fn meets_its_image(&self, i: usize, pose: &Pose<D>) -> bool {
-        let (planes, cut) = (self.symmetry_planes(), self.solids[i].division.cut);
-        let mut apart = planes.each().filter(|(axis, _)| cut >> axis & 1 == 0).peekable();
-        if apart.peek().is_none() || matches!(self.solids[i].spec.role, Role::Fixed) {
-            return false;
-        }
-        // The rows of the solid and of its image are a row apart then.
-        let near = 0.5 * self.model.dp;
-        let corners: Vec<Vector<D>> = self.boundary.local_bounds[i].corners().map(|x| pose.point(&x)).collect();
-        apart.any(|(axis, plane)| corners.iter().any(|x| plane.depth(x[axis]) < near))
-    }
-
-    /// The load on the whole `solid`, if the computed side gives `load` about its centre.
-    pub(super) fn load_on_whole(&self, solid: &Solid<D>, load: Load<D>) -> Load<D> {
-        let (planes, cut) = (self.symmetry_planes(), solid.division.cut);
-        let cutting = planes.each().filter(|(axis, _)| cut >> axis & 1 == 1);
-        cutting.fold(load, |load, (axis, plane)| {
-            let axes = 1 << axis;
-            let force = reflected(axes, load.force);
-            // The reflected torque is one about the reflected centre.
-            let mut arm = Vector::zeros();
-            arm[axis] = 2.0 * (plane.at - solid.kinematics.centre[axis]);
-            load + Load { force, torque: reflected_turn(axes, &load.torque) + Bivector::torque(&arm, &force) }
-        })
-    }
-
-    /// Force (N; N/m in 2-D) of the computed water and of the computed parts of the solids on the symmetry plane normal to
-    /// axis number `axis`, positive outwards, at the last force pass: what the other side of the plane would get. 0 without a plane.
-    ///
-    /// Along its normal the momentum of the computed side changes by gravity, by this force, and by what holds the solids.
-    pub fn symmetry_plane_force(&self, axis: usize) -> f64 {
-        let Some(plane) = self.symmetry_planes().0.get(axis).copied().flatten() else { return 0.0 };
-        let (mass, g, rates) = (self.particle_mass(), self.properties.gravity[axis], self.fluid_rates());
-        let water: f64 = (0..self.particle_count()).map(|i| rates.of(i).acceleration[axis] - g).sum();
-        let mut solids = 0.0;
-        for (&i, sums) in self.neighbours.boundary_near_fluid().iter().zip(&self.rates.boundary) {
-            let (i, solid) = (i as usize, &self.solids[self.owner(i as usize)]);
-            if i < solid.boundary.start + solid.division.own {
-                solids += sums.acceleration[axis] * self.computed_share(solid, &self.boundary.particles.r[i]);
-            }
-        }
-        mass * (water + solids) * if plane.is_upper { 1.0 } else { -1.0 }
-    }
-
-    /// Velocity (m/s) of water particle `i` as seen at `place` (m), which is its own or that of its image.
-    pub(crate) fn velocity_seen_at(&self, i: usize, place: &Vector<D>) -> Vector<D> {
-        let Fluid { particles, images, .. } = &self.fluid;
-        let axes = images.planes.axes_beyond(place) ^ images.planes.axes_beyond(&particles.r[i]);
-        reflected(axes, particles.v[i])
-    }
 }

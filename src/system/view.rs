@@ -3,15 +3,16 @@
 use std::{collections::BTreeMap, time::Duration};
 
 use super::{
-    Periodic, System,
+    Fluid, Periodic, System,
     memory::{bytes, optional_bytes},
     reflected,
+    symmetry::{SymmetryPlanes, reflected_turn},
 };
 use crate::{
-    math::{Bounds, Vector},
+    math::{Bivector, Bounds, Pose, Vector},
     model::{Model, TimeScheme},
     particles::ParticlesView,
-    solid::{Constraints, Load, LoadContext, Solid},
+    solid::{Constraints, Load, LoadContext, Role, Solid},
     sph::{FluidProperties, boundary::WallExtrapolation},
 };
 
@@ -154,6 +155,78 @@ impl<const D: usize> System<D> {
             return 0.0;
         }
         self.particle_mass() * self.water_multiplicity() * self.fluid().v.iter().map(|v| along.dot(v)).sum::<f64>()
+    }
+
+    /// The symmetry planes.
+    pub(crate) fn symmetry_planes(&self) -> &SymmetryPlanes<D> {
+        &self.fluid.images.planes
+    }
+
+    /// Number of images of the computed water, itself counted: its energy times this number is that of all water.
+    pub(crate) fn water_multiplicity(&self) -> f64 {
+        self.symmetry_planes().multiplicity(0)
+    }
+
+    /// Number of images of solid number `i`, itself counted. A plane that cuts the solid gives it no other image.
+    pub(crate) fn solid_multiplicity(&self, i: usize) -> f64 {
+        self.symmetry_planes().multiplicity(self.solids[i].division.cut)
+    }
+
+    /// The share (–) of the boundary particle at `r` (m) of `solid` that the computed side has.
+    pub(crate) fn computed_share(&self, solid: &Solid<D>, r: &Vector<D>) -> f64 {
+        self.symmetry_planes().share(solid.division.cut, r, self.model.dp)
+    }
+
+    /// Whether the moving solid number `i` at `pose`, which no plane cuts, reaches a plane, where it meets its image.
+    pub(crate) fn meets_its_image(&self, i: usize, pose: &Pose<D>) -> bool {
+        let (planes, cut) = (self.symmetry_planes(), self.solids[i].division.cut);
+        let mut apart = planes.each().filter(|(axis, _)| cut >> axis & 1 == 0).peekable();
+        if apart.peek().is_none() || matches!(self.solids[i].spec.role, Role::Fixed) {
+            return false;
+        }
+        // The rows of the solid and of its image are a row apart then.
+        let near = 0.5 * self.model.dp;
+        let corners: Vec<Vector<D>> = self.boundary.local_bounds[i].corners().map(|x| pose.point(&x)).collect();
+        apart.any(|(axis, plane)| corners.iter().any(|x| plane.depth(x[axis]) < near))
+    }
+
+    /// The load on the whole `solid`, if the computed side gives `load` about its centre.
+    pub(super) fn load_on_whole(&self, solid: &Solid<D>, load: Load<D>) -> Load<D> {
+        let (planes, cut) = (self.symmetry_planes(), solid.division.cut);
+        let cutting = planes.each().filter(|(axis, _)| cut >> axis & 1 == 1);
+        cutting.fold(load, |load, (axis, plane)| {
+            let axes = 1 << axis;
+            let force = reflected(axes, load.force);
+            // The reflected torque is one about the reflected centre.
+            let mut arm = Vector::zeros();
+            arm[axis] = 2.0 * (plane.at - solid.kinematics.centre[axis]);
+            load + Load { force, torque: reflected_turn(axes, &load.torque) + Bivector::torque(&arm, &force) }
+        })
+    }
+
+    /// Force (N; N/m in 2-D) of the computed water and of the computed parts of the solids on the symmetry plane normal to
+    /// axis number `axis`, positive outwards, at the last force pass: what the other side of the plane would get. 0 without a plane.
+    ///
+    /// Along its normal the momentum of the computed side changes by gravity, by this force, and by what holds the solids.
+    pub fn symmetry_plane_force(&self, axis: usize) -> f64 {
+        let Some(plane) = self.symmetry_planes().0.get(axis).copied().flatten() else { return 0.0 };
+        let (mass, g, rates) = (self.particle_mass(), self.properties.gravity[axis], self.fluid_rates());
+        let water: f64 = (0..self.particle_count()).map(|i| rates.of(i).acceleration[axis] - g).sum();
+        let mut solids = 0.0;
+        for (&i, sums) in self.neighbours.boundary_near_fluid().iter().zip(&self.rates.boundary) {
+            let (i, solid) = (i as usize, &self.solids[self.owner(i as usize)]);
+            if i < solid.boundary.start + solid.division.own {
+                solids += sums.acceleration[axis] * self.computed_share(solid, &self.boundary.particles.r[i]);
+            }
+        }
+        mass * (water + solids) * if plane.is_upper { 1.0 } else { -1.0 }
+    }
+
+    /// Velocity (m/s) of water particle `i` as seen at `place` (m), which is its own or that of its image.
+    pub(crate) fn velocity_seen_at(&self, i: usize, place: &Vector<D>) -> Vector<D> {
+        let Fluid { particles, images, .. } = &self.fluid;
+        let axes = images.planes.axes_beyond(place) ^ images.planes.axes_beyond(&particles.r[i]);
+        reflected(axes, particles.v[i])
     }
 
     /// Whether `x` (m) lies between the periodic sides.
