@@ -297,10 +297,12 @@ impl<const D: usize> Setup<D> {
         let kept: Vec<usize> = (0..depths.len()).filter(|&i| depths[i] >= 0.0).collect();
         let places: Vec<Vector<D>> = kept.iter().map(|&i| self.water[i]).collect();
         let cells = PointCells::new(&places, dp);
+        let poses: Vec<_> = self.solids.iter().map(|solid| (&solid.shape, solid.initial_kinematics().pose)).collect();
         for i in (0..depths.len()).filter(|&i| depths[i] < 0.0) {
             let mut image = self.water[i];
             image[axis] = 2.0 * plane.plane.at - image[axis];
-            let mut is_near = false;
+            // A solid beside the plane displaces water that its image, which is not given, does not.
+            let mut is_near = poses.iter().any(|(shape, pose)| shape.signed_distance(&pose.local(&image)) < dp);
             cells.visit_near(&image, dp, |_, x| is_near = is_near || (x - image).norm() < dp);
             if !is_near {
                 let what = format!(
