@@ -301,10 +301,11 @@ impl<const D: usize> Setup<D> {
         for i in (0..depths.len()).filter(|&i| depths[i] < 0.0) {
             let mut image = self.water[i];
             image[axis] = 2.0 * plane.plane.at - image[axis];
-            // A solid beside the plane displaces water that its image, which is not given, does not.
-            let mut is_near = poses.iter().any(|(shape, pose)| shape.signed_distance(&pose.local(&image)) < dp);
+            let mut is_near = false;
             cells.visit_near(&image, dp, |_, x| is_near = is_near || (x - image).norm() < dp);
-            if !is_near {
+            // A solid beside the plane displaces water that its image, which is not given, does not.
+            let is_displaced = || poses.iter().any(|(shape, pose)| shape.signed_distance(&pose.local(&image)) < dp);
+            if !is_near && !is_displaced() {
                 let what = format!(
                     "the water is not symmetric about {title}: there is water at {:?} m and none at {:?} m",
                     self.water[i].as_slice(),
@@ -315,8 +316,8 @@ impl<const D: usize> Setup<D> {
         }
         self.water = places;
         self.surface_levels = kept.iter().map(|&i| self.surface_levels[i]).collect();
-        for numbers in [&mut self.pressure].into_iter().filter(|numbers| !numbers.is_empty()) {
-            *numbers = kept.iter().map(|&i| numbers[i]).collect();
+        if !self.pressure.is_empty() {
+            self.pressure = kept.iter().map(|&i| self.pressure[i]).collect();
         }
         if !self.velocity.is_empty() {
             self.velocity = kept.iter().map(|&i| self.velocity[i]).collect();
