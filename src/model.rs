@@ -16,11 +16,11 @@ use crate::{
         boundary::Repulsion,
         continuity::Continuity,
         density_diffusion::Fourtakas,
-        gradient_correction::{CorrectedGradientTerm, RenormalizationTerm},
+        gradient_correction::CorrectedGradientTerm,
         kernel::{self, Kernel as _, SUPPORT_RATIO},
         particle_shifting::{Shift, ShiftTerm, ShiftingSuppressionTerm},
         pressure::{Pressure, Tensile},
-        viscosity::{Artificial, TermConsumer},
+        viscosity::{Riemann, TermConsumer},
     },
 };
 
@@ -51,7 +51,10 @@ pub enum PressureGradient {
     /// The plain kernel gradient.
     #[default]
     Plain,
-    /// Corrected for the arrangement of the neighbours (Bonet & Lok 1999); with the Wendland kernel and without shifting.
+    /// Corrected for the arrangement of the neighbours (Bonet & Lok 1999) near the surface, to some 8 dp below it; with the Wendland
+    /// kernel and without shifting.
+    NearSurface,
+    /// Corrected at every depth, which stirs still water; with the Wendland kernel and without shifting.
     Corrected,
 }
 
@@ -191,16 +194,16 @@ pub(crate) const C0_FACTOR: f64 = 10.0;
 /// Depth of the water over dp beyond which scenes with free bodies get [`Model::deep_water`], –.
 pub(crate) const DEEP: f64 = 100.0;
 
+/// Default of h over dp in 2-D where a paddle makes waves, –.
+pub(crate) const WAVES_H_OVER_DP: f64 = 2.0;
+
 /// Default of h over dp in deep 2-D water, –.
 const DEEP_H_OVER_DP: f64 = 2.1;
 
-/// Depth over dp at which α = 0.02 gives the viscosity that deep water gets, –: a body of ten rows in water as deep as itself.
-const VISCOUS_ROWS: f64 = 10.0;
-
 impl Model {
     /// Water `depth` (m) deep at spacing `dp` (m) in `dimension` 2 or 3, with the choices of a scene that names
-    /// none: Wendland, h = 1.7 dp (1.5 dp in 3-D), c₀ = 10 √(g·depth), α = 0.02, Fourtakas' δ = 0.1, no shifting, walls
-    /// relaxed Adami with free slip, symplectic at CFL 0.4. The methods below change one choice each.
+    /// none: Wendland, h = 1.7 dp (1.5 dp in 3-D), c₀ = 10 √(g·depth), Riemann dissipation, Fourtakas' δ = 0.1, no shifting,
+    /// walls relaxed Adami with free slip, symplectic at CFL 0.4. The methods below change one choice each.
     pub fn water(dimension: usize, dp: f64, depth: f64) -> Self {
         const G: f64 = 9.81;
         let mut gravity = vec![0.0; dimension];
@@ -216,7 +219,7 @@ impl Model {
             gamma: 7.0,
             gravity,
             gradient: PressureGradient::Plain,
-            viscosity: Viscosity::Artificial(Artificial::default()),
+            viscosity: Viscosity::Riemann(Riemann::default()),
             diffusion: Diffusion::Fourtakas(Fourtakas::default()),
             shifting: Shifting::None,
             walls: Walls::RelaxedAdami,
@@ -228,17 +231,21 @@ impl Model {
         }
     }
 
-    /// The same model with the defaults for free bodies in water `depth` (m) deep: none changes up to 100 dp. Beyond, α becomes
-    /// 0.02 √(10 dp/depth), so that the numerical viscosity, which goes with α c₀ h, no longer grows with the depth. In 2-D h
-    /// becomes 2.1 dp: the arrangement of the particles resists slow bodies in proportion to the pressure, and less with a wider
+    /// The same model with the default h of scenes in which a paddle makes waves by name: 2 dp in 2-D.
+    pub fn waves(self) -> Self {
+        let h = if self.gravity.len() == 2 { WAVES_H_OVER_DP * self.dp } else { self.h };
+        Self { h, ..self }
+    }
+
+    /// The same model with the defaults for free bodies in water `depth` (m) deep: none changes up to 100 dp. Beyond, h becomes 2.1 dp
+    /// in 2-D: the arrangement of the particles resists slow bodies in proportion to the pressure, and less with a wider
     /// kernel.
     pub fn deep_water(self, depth: f64) -> Self {
         if depth <= DEEP * self.dp {
             return self;
         }
-        let alpha = Artificial::default().alpha * (VISCOUS_ROWS * self.dp / depth).sqrt();
         let h = if self.gravity.len() == 2 { DEEP_H_OVER_DP * self.dp } else { self.h };
-        Self { h, viscosity: Viscosity::Artificial(Artificial { alpha }), ..self }
+        Self { h, ..self }
     }
 
     /// The same model with this kernel.
@@ -384,7 +391,7 @@ impl Model {
     pub fn conflict(&self) -> Option<&'static str> {
         let alone = matches!(self.kernel, KernelKind::Wendland) && self.shifting == Shifting::None;
         let clash = "corrected gradients are made for the Wendland kernel without shifting";
-        (self.gradient == PressureGradient::Corrected && !alone).then_some(clash)
+        (self.gradient != PressureGradient::Plain && !alone).then_some(clash)
     }
 
     /// The shifting parameters, if any.
@@ -431,10 +438,10 @@ impl Model {
         match self.kernel {
             KernelKind::Wendland => match self.gradient {
                 PressureGradient::Plain => make.with_shifting(kernel::Wendland::new(h, D), plain),
-                PressureGradient::Corrected => make.with_viscosity(
+                PressureGradient::NearSurface | PressureGradient::Corrected => make.with_viscosity(
                     kernel::Wendland::new(h, D),
                     ((Pressure, CorrectedGradientTerm), Continuity),
-                    ((Pressure, RenormalizationTerm), Continuity),
+                    plain,
                 ),
             },
             KernelKind::Cubic { tensile: false } => make.with_shifting(kernel::Cubic::new(h, D), plain),

@@ -152,7 +152,7 @@ fn text(tables: &BenchReport) -> String {
         text += "\nWhat each adds, processor time per particle and step over that of the standard work:\n";
         text += &table(&term_rows(&tables.terms));
     }
-    text += "\nEffective kinematic viscosity of the shipped default in this water, α c₀ h/(4 (D + 2)):\n";
+    text += "\nEffective kinematic viscosity of the shipped default in this water, at a shear of 1/s:\n";
     text += &table(&viscosity_rows(&tables.default_viscosity));
     text
 }

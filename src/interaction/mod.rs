@@ -19,7 +19,7 @@ use crate::{
     particles::Particles,
     sph::{
         AuxiliarySums, FluidProperties, Term, Units, boundary::WallExtrapolation, equation_of_state::EquationOfState,
-        kernel::Kernel,
+        gradient_correction::RenormalizationTerm, kernel::Kernel,
     },
 };
 
@@ -85,6 +85,10 @@ pub trait PairLoop<const D: usize>: Send + Sync {
         fits: &mut [WallExtrapolation<f64, D>],
     );
 
+    /// Writes the moments M (–) of the neighbours of the water to `moments`, if the terms correct gradients. Call before
+    /// [`PairLoop::rates`], as the extrapolation; the neighbour lists must hold.
+    fn moments(&mut self, input: &PairLoopInput<'_, D>, moments: &mut [Matrix<D>]);
+
     /// Takes the acceleration of gravity of the next pass from `properties`.
     fn set_gravity(&mut self, properties: &FluidProperties<D>) {
         let _ = properties;
@@ -123,9 +127,12 @@ where
     W: Term<D> + 'static,
 {
     let laws = Box::new(compiled::CompiledTerms::new(kernel, inner, wall, medium));
+    let moments = T::GRADIENT_CORRECTION.then(|| -> Box<dyn compiled::PairTerms<D>> {
+        Box::new(compiled::CompiledTerms::new(kernel, RenormalizationTerm, RenormalizationTerm, medium))
+    });
     let fits = Box::new(boundary_sums::KernelSums(kernel.normalised_on_lattice(medium)));
     match level {
-        Some(level) => Box::new(simd::SimdPairLoop::new(laws, fits, units, level)),
-        None => Box::new(reference::ReferencePairLoop::new(laws, fits)),
+        Some(level) => Box::new(simd::SimdPairLoop::new(laws, moments, fits, units, level)),
+        None => Box::new(reference::ReferencePairLoop::new(laws, moments, fits)),
     }
 }

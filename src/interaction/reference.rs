@@ -13,7 +13,7 @@ use super::{
 };
 use crate::{
     math::{Matrix, Vector},
-    neighbours::{CHUNK, NeighbourLists, PairLists, ParticleListChunk},
+    neighbours::{CHUNK, NeighbourLists, PairLists, ParticleListChunk, ParticleLists},
     particles::{PARTICLES_PER_TASK, Particles},
     sph::{
         AuxiliarySums, FluidProperties, Pair, PairSide, Term, boundary::WallExtrapolation, kernel::Kernel,
@@ -24,6 +24,8 @@ use crate::{
 /// The reference with its terms.
 pub(super) struct ReferencePairLoop<const D: usize> {
     laws: Box<dyn PairTerms<D>>,
+    /// The moments of the neighbours, if the terms correct gradients.
+    moments: Option<Box<dyn PairTerms<D>>>,
     fits: Box<dyn BoundarySums<D>>,
     nodes: [Vec<ReferenceParticle<D>>; 2],
     /// The sums of the water.
@@ -43,10 +45,45 @@ pub(super) struct ReferenceParticle<const D: usize> {
 
 impl<const D: usize> ReferencePairLoop<D> {
     /// The reference with those terms, in SI.
-    pub(super) fn new(laws: Box<dyn PairTerms<D>>, fits: Box<dyn BoundarySums<D>>) -> Self {
+    pub(super) fn new(
+        laws: Box<dyn PairTerms<D>>,
+        moments: Option<Box<dyn PairTerms<D>>>,
+        fits: Box<dyn BoundarySums<D>>,
+    ) -> Self {
         let (nodes, fluid, auxiliary) = ([Vec::new(), Vec::new()], Vec::new(), Vec::new());
-        Self { laws, fits, nodes, fluid, auxiliary, spent: Duration::ZERO }
+        Self { laws, moments, fits, nodes, fluid, auxiliary, spent: Duration::ZERO }
     }
+
+    /// Reads the particles.
+    fn set_nodes(&mut self, input: &PairLoopInput<'_, D>) {
+        let needs = self.laws.required_sums();
+        nodes(
+            input,
+            input.fluid,
+            &input.fluid.v,
+            [input.stress, input.gradient_correction],
+            &[],
+            needs,
+            &mut self.nodes[0],
+        );
+        nodes(
+            input,
+            input.boundary,
+            input.boundary_velocity,
+            [&[], &[]],
+            input.shifting_suppressed,
+            needs,
+            &mut self.nodes[1],
+        );
+    }
+}
+
+/// The lists of particles.
+fn lists<'a, const D: usize>(input: &PairLoopInput<'a, D>) -> &'a ParticleLists {
+    let PairLists::Lists(lists) = input.neighbours.pair_lists() else {
+        unreachable!("the reference has lists of particles")
+    };
+    lists
 }
 
 /// Adds the contribution of neighbour `b` by `law` to `sum`; returns |v_ab·r_ab|/(r² + η²).
@@ -175,28 +212,8 @@ impl<const D: usize> PairLoop<D> for ReferencePairLoop<D> {
         flow: bool,
         extrapolate_to_boundary: &mut [WallExtrapolation<f64, D>],
     ) {
-        let PairLists::Lists(lists) = input.neighbours.pair_lists() else {
-            unreachable!("the oracle has lists of particles")
-        };
-        let needs = self.laws.required_sums();
-        nodes(
-            input,
-            input.fluid,
-            &input.fluid.v,
-            [input.stress, input.gradient_correction],
-            &[],
-            needs,
-            &mut self.nodes[0],
-        );
-        nodes(
-            input,
-            input.boundary,
-            input.boundary_velocity,
-            [&[], &[]],
-            input.shifting_suppressed,
-            needs,
-            &mut self.nodes[1],
-        );
+        let lists = lists(input);
+        self.set_nodes(input);
         let start = Instant::now();
         let (sums, nodes) = (&self.fits, [&self.nodes[0][..], &self.nodes[1][..]]);
         let chunks = extrapolate_to_boundary
@@ -209,33 +226,28 @@ impl<const D: usize> PairLoop<D> for ReferencePairLoop<D> {
         self.spent += start.elapsed();
     }
 
+    fn moments(&mut self, input: &PairLoopInput<'_, D>, moments: &mut [Matrix<D>]) {
+        self.set_nodes(input);
+        let Some(terms) = &self.moments else { return };
+        let (lists, none) = (lists(input), AuxiliarySums::filled_with(0.0));
+        let nodes = [&self.nodes[0][..], &self.nodes[1][..]];
+        moments.par_chunks_mut(CHUNK).enumerate().for_each(|(c, moments)| {
+            let (mut sums, mut auxiliary) = (vec![PairSums::zero(); moments.len()], vec![none; moments.len()]);
+            terms.sum_fluid(nodes, c * CHUNK, &lists.fluid[c], &mut sums, &mut auxiliary);
+            for (moment, sums) in moments.iter_mut().zip(&auxiliary) {
+                *moment = Matrix::from_fn(|i, j| sums.renormalization[i.max(j)][i.min(j)]);
+            }
+        });
+    }
+
     fn set_gravity(&mut self, properties: &FluidProperties<D>) {
         self.laws.set_gravity(&properties.gravity.into());
     }
 
     fn rates(&mut self, input: &PairLoopInput<'_, D>, boundary: &mut [PairSums<D>]) -> StepLimits {
-        let PairLists::Lists(lists) = input.neighbours.pair_lists() else {
-            unreachable!("the oracle has lists of particles")
-        };
+        let lists = lists(input);
+        self.set_nodes(input);
         let needs = self.laws.required_sums();
-        nodes(
-            input,
-            input.fluid,
-            &input.fluid.v,
-            [input.stress, input.gradient_correction],
-            &[],
-            needs,
-            &mut self.nodes[0],
-        );
-        nodes(
-            input,
-            input.boundary,
-            input.boundary_velocity,
-            [&[], &[]],
-            input.shifting_suppressed,
-            needs,
-            &mut self.nodes[1],
-        );
         let start = Instant::now();
         self.fluid.resize(input.fluid.len(), PairSums::zero());
         let count = if needs.any_auxiliary() { input.fluid.len() } else { 0 };

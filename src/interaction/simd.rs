@@ -19,8 +19,8 @@ use super::{
     simd_layout::{PackedCluster, PackedParticles, clusters},
 };
 use crate::{
-    math::Vector,
     math::simd::{self, LANES, LaneRow, Level, Simd, SimdTask, f32x8, i32x8},
+    math::{Matrix, Vector},
     neighbours::{Clusters, ListPart, NeighbourLists, Slab},
     particles::PARTICLES_PER_TASK,
     sph::{AuxiliarySums, FluidProperties, Pair, PairSide, Term, Units, boundary::WallExtrapolation, kernel::Kernel},
@@ -30,6 +30,8 @@ use crate::{
 pub(super) struct SimdPairLoop<const D: usize> {
     /// The sums over pairs.
     laws: Box<dyn PairTerms<D>>,
+    /// The moments of the neighbours, if the terms correct gradients.
+    moments: Option<Box<dyn PairTerms<D>>>,
     /// The extrapolation of the water to boundary particles.
     fits: Box<dyn BoundarySums<D>>,
     units: Units,
@@ -48,10 +50,16 @@ pub(super) struct SimdPairLoop<const D: usize> {
 
 impl<const D: usize> SimdPairLoop<D> {
     /// The pair loop with those terms, in `units`.
-    pub(super) fn new(laws: Box<dyn PairTerms<D>>, fits: Box<dyn BoundarySums<D>>, units: Units, level: Level) -> Self {
+    pub(super) fn new(
+        laws: Box<dyn PairTerms<D>>,
+        moments: Option<Box<dyn PairTerms<D>>>,
+        fits: Box<dyn BoundarySums<D>>,
+        units: Units,
+        level: Level,
+    ) -> Self {
         let (packed, sums, at) = (PackedParticles::default(), Vec::new(), Vec::new());
         let (gravity, spent) = (Vector::zeros(), Duration::ZERO);
-        Self { laws, fits, units, level, gravity, packed, has_water: false, sums, at, spent }
+        Self { laws, moments, fits, units, level, gravity, packed, has_water: false, sums, at, spent }
     }
 
     /// Allocates the sums of all slabs, `rows` a cluster; returns the number of rows that each slab writes.
@@ -117,12 +125,14 @@ impl<const D: usize> SimdPairLoop<D> {
         }
     }
 
-    /// Computes the sums of all slabs; returns the largest |v_ab·r_ab|/(r² + η²), 1/s.
-    fn sum_pairs(&mut self, clusters: &Clusters) -> f64 {
-        let lengths = self.lay_out(clusters, self.laws.required_sums().sum_rows(D));
+    /// Computes the sums of all slabs, with `moments` those of the moments; returns the largest |v_ab·r_ab|/(r² + η²), 1/s.
+    fn sum_pairs(&mut self, clusters: &Clusters, moments: bool) -> f64 {
+        let terms = if moments { self.moments.as_ref() } else { Some(&self.laws) };
+        let lengths = self.lay_out(clusters, terms.map_or(0, |terms| terms.required_sums().sum_rows(D)));
         let start = Instant::now();
         let works = works(clusters, &lengths, &mut self.sums);
-        let (laws, level, packed) = (&self.laws, self.level, &self.packed);
+        let (level, packed) = (self.level, &self.packed);
+        let Some(laws) = (if moments { self.moments.as_ref() } else { Some(&self.laws) }) else { return 0.0 };
         let closing = works
             .into_par_iter()
             .with_max_len(1)
@@ -177,6 +187,19 @@ impl<const D: usize> PairLoop<D> for SimdPairLoop<D> {
         );
     }
 
+    fn moments(&mut self, input: &PairLoopInput<'_, D>, moments: &mut [Matrix<D>]) {
+        let Some(needs) = self.moments.as_ref().map(|terms| terms.required_sums()) else { return };
+        let clusters = clusters(input.neighbours);
+        self.packed.pack(input, clusters, &self.units, self.has_water);
+        self.has_water = true;
+        self.sum_pairs(clusters, true);
+        let slots = clusters.fluid_slots.par_iter().with_min_len(PARTICLES_PER_TASK);
+        moments.par_iter_mut().zip(slots).for_each(|(moment, &slot)| {
+            let sums = self.auxiliary_sums_of(slot, needs).renormalization;
+            *moment = Matrix::from_fn(|i, j| sums[i.max(j)][i.min(j)]);
+        });
+    }
+
     fn set_gravity(&mut self, properties: &FluidProperties<D>) {
         self.laws.set_gravity(&properties.in_units(&self.units).gravity.into());
     }
@@ -188,7 +211,7 @@ impl<const D: usize> PairLoop<D> for SimdPairLoop<D> {
         if needs.input_rows(D) > 0 {
             self.packed.pack_rows(input, clusters, &self.units, needs);
         }
-        let closing = self.sum_pairs(clusters);
+        let closing = self.sum_pairs(clusters, false);
         self.gravity = input.properties.gravity;
         let water = clusters.fluid_slots.par_iter().with_min_len(PARTICLES_PER_TASK);
         let a2 = water
@@ -200,10 +223,10 @@ impl<const D: usize> PairLoop<D> for SimdPairLoop<D> {
     }
 
     fn memory_bytes(&self) -> usize {
-        let PackedParticles { clusters, rows } = &self.packed;
+        let PackedParticles { clusters, rows, corrected } = &self.packed;
         // The extrapolation to the walls has more rows of sums than some pair loops, and shorter vectors keep their
         // memory.
-        let packed = size_of_val(&clusters[..]) + rows.capacity() * size_of::<LaneRow>();
+        let packed = size_of_val(&clusters[..]) + rows.capacity() * size_of::<LaneRow>() + corrected.capacity();
         let sums = self.sums.capacity() * size_of::<LaneRow>();
         let places = size_of_val(&self.at[..]);
         packed + sums + places
@@ -262,6 +285,8 @@ struct SlabInput<'a, S: Simd, K, const D: usize> {
     clusters: &'a [PackedCluster<D>],
     /// Rows of input.
     rows: &'a [LaneRow],
+    /// Whether a particle of the cluster has a gradient correction, if terms read it.
+    corrected: &'a [bool],
     /// The slab's first cluster.
     first: usize,
     /// The needs of all terms together.
@@ -284,6 +309,7 @@ impl<K: Kernel, T: Term<D>, W: Term<D>, const D: usize> SimdTask for SlabTask<'_
             zero: f32x8::splat(simd, 0.0),
             clusters: &packed.clusters,
             rows: &packed.rows,
+            corrected: &packed.corrected,
             first: *first,
             needs,
         };
@@ -300,11 +326,23 @@ impl<K: Kernel, T: Term<D>, W: Term<D>, const D: usize> SimdTask for SlabTask<'_
                 // First pairs of water particles; a boundary particle is paired with water only, by the wall terms.
                 for ListPart { base, water, .. } in slab.list(slot) {
                     let water = if is_water { water } else { &[] };
-                    given.add_pairs(&laws.fluid, &one, (base, water), sums, &mut sum, &mut closing);
+                    if !needs.gradient_correction || given.corrected[c] {
+                        given.add_pairs::<_, true>(&laws.fluid, &one, (base, water), sums, &mut sum, &mut closing);
+                        continue;
+                    }
+                    // Far from the surface no particle has a correction, and most partners have none.
+                    let corrected = |entry: &u16| given.corrected[first + base + usize::from(*entry)];
+                    for run in water.chunk_by(|a, b| corrected(a) == corrected(b)) {
+                        if corrected(&run[0]) {
+                            given.add_pairs::<_, true>(&laws.fluid, &one, (base, run), sums, &mut sum, &mut closing);
+                        } else {
+                            given.add_pairs::<_, false>(&laws.fluid, &one, (base, run), sums, &mut sum, &mut closing);
+                        }
+                    }
                 }
                 for ListPart { base, water, boundary } in slab.list(slot) {
                     let others = if is_water { boundary } else { water };
-                    given.add_pairs(&laws.wall, &one, (base, others), sums, &mut sum, &mut closing);
+                    given.add_pairs::<_, true>(&laws.wall, &one, (base, others), sums, &mut sum, &mut closing);
                 }
                 let mine = &mut sums[(c - first) * needs.sum_rows(D)..][..needs.sum_rows(D)];
                 sum.for_each_row(needs, needs, |row, sum| mine[row].0[l] += simd::sum_lanes(*sum));
@@ -320,12 +358,14 @@ impl<S: Simd, K: Kernel, const D: usize> SlabInput<'_, S, K, D> {
     fn particle_in_lane(&self, c: usize, l: usize) -> BroadcastParticle<S, D> {
         let PackedCluster { x, v, s } = &self.clusters[c];
         let all = |x: f32| f32x8::splat(self.simd, x);
-        let mut one = BroadcastParticle {
-            cluster: c,
-            x: [i32x8::splat(self.simd, 0); D],
-            v: [self.zero; D],
-            side: self.pair_side(c, [all(s[0][l]), all(s[1][l]), all(s[2][l]), all(s[3][l])], |row| all(row[l])),
-        };
+        let mut one =
+            BroadcastParticle {
+                cluster: c,
+                x: [i32x8::splat(self.simd, 0); D],
+                v: [self.zero; D],
+                side: self
+                    .pair_side::<true>(c, [all(s[0][l]), all(s[1][l]), all(s[2][l]), all(s[3][l])], |row| all(row[l])),
+            };
         for k in 0..D {
             one.x[k] = i32x8::splat(self.simd, x[k][l]);
             one.v[k] = all(v[k][l]);
@@ -335,7 +375,12 @@ impl<S: Simd, K: Kernel, const D: usize> SlabInput<'_, S, K, D> {
 
     /// A side of a pair from densities, pressure and volume `s`, and from the additional rows of cluster `c` as `read` reads them.
     #[inline(always)]
-    fn pair_side(&self, c: usize, s: [f32x8<S>; 4], read: impl Fn(&[f32; LANES]) -> f32x8<S>) -> PairSide<f32x8<S>, D> {
+    fn pair_side<const CORRECTED: bool>(
+        &self,
+        c: usize,
+        s: [f32x8<S>; 4],
+        read: impl Fn(&[f32; LANES]) -> f32x8<S>,
+    ) -> PairSide<f32x8<S>, D> {
         let [x, low, p, s] = s;
         let (repulsion, mark, none) = (self.zero, self.zero, [[self.zero; D]; D]);
         let mut side = PairSide {
@@ -361,7 +406,7 @@ impl<S: Simd, K: Kernel, const D: usize> SlabInput<'_, S, K, D> {
             if self.needs.stress {
                 for_each_symmetric_entry(&mut side.stress, self.needs.stress_row(), &mut entry);
             }
-            if self.needs.gradient_correction {
+            if CORRECTED && self.needs.gradient_correction {
                 for_each_symmetric_entry(
                     &mut side.gradient_correction,
                     self.needs.gradient_correction_row(D),
@@ -372,10 +417,11 @@ impl<S: Simd, K: Kernel, const D: usize> SlabInput<'_, S, K, D> {
         side
     }
 
-    /// Pairs `one` with the clusters `others`, counted from `base` in the slab, by the terms `law`: adds their contribution to `sum` and its contribution to their `sums`. Its own
-    /// cluster is paired lane by lane, so there its contribution is discarded into the last rows.
+    /// Pairs `one` with the clusters `others`, counted from `base` in the slab, by the terms `law`: adds their contribution to `sum` and its
+    /// contribution to their `sums`. Its own cluster is paired lane by lane, so there its contribution is discarded into the last
+    /// rows. Unless `CORRECTED`, no particle of the pairs has a gradient correction.
     #[inline(always)]
-    fn add_pairs<L: Term<D>>(
+    fn add_pairs<L: Term<D>, const CORRECTED: bool>(
         &self,
         law: &L,
         one: &BroadcastParticle<S, D>,
@@ -401,7 +447,7 @@ impl<S: Simd, K: Kernel, const D: usize> SlabInput<'_, S, K, D> {
                 r2 = d.mul_add(*d, r2);
             }
             let load = |row: &[f32; LANES]| simd::load(simd, row);
-            let side = self.pair_side(j, [load(&s[0]), load(&s[1]), load(&s[2]), load(&s[3])], load);
+            let side = self.pair_side::<CORRECTED>(j, [load(&s[0]), load(&s[1]), load(&s[2]), load(&s[3])], load);
             let factor = self.kernel.slope(r2);
             let ab = Pair::new(r_ab, v_ab, r2, self.kernel.w(r2), self.eta2, one.side, side);
             let along_r = factor * law.along_r(&ab, zero);
@@ -414,7 +460,7 @@ impl<S: Simd, K: Kernel, const D: usize> SlabInput<'_, S, K, D> {
                     *force = along_v.mul_add(*v, *force);
                 }
             }
-            if L::VECTOR {
+            if L::STRESS || L::VECTOR && CORRECTED {
                 let vector = law.vector(&ab, [zero; D]);
                 for (force, vector) in force.iter_mut().zip(&vector) {
                     *force = factor.mul_add(*vector, *force);

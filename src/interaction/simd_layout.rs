@@ -40,6 +40,8 @@ impl<const D: usize> PackedCluster<D> {
 pub(super) struct PackedParticles<const D: usize> {
     pub(super) clusters: Vec<PackedCluster<D>>,
     pub(super) rows: Vec<LaneRow>,
+    /// Whether a particle of the cluster has a gradient correction, if terms read it.
+    pub(super) corrected: Vec<bool>,
 }
 
 impl<const D: usize> PackedParticles<D> {
@@ -107,6 +109,13 @@ impl<const D: usize> PackedParticles<D> {
                 }
             }
         });
+        if needs.gradient_correction {
+            let first = needs.gradient_correction_row(D);
+            let any = |rows: &[LaneRow]| rows[first..].iter().any(|row| row.0.iter().any(|&c| c != 0.0));
+            self.corrected.clear();
+            self.corrected.reserve_exact(clusters.len());
+            self.corrected.extend(self.rows.chunks(count).map(any));
+        }
     }
 }
 

@@ -1,7 +1,7 @@
 //! The effective viscosity of the water and the Reynolds number U L/ν of each moving body.
 //!
 //! ν is ν₀ of a laminar viscosity; of an artificial one ν = α c₀ h/(4 (D + 2)), half of the value of Monaghan (2005) because the
-//! term acts between approaching particles only @monaghan2005. L is the D-th root of the body's volume. U is, for a driven body,
+//! term acts between approaching particles only @monaghan2005; of the Riemann dissipation that at the shear U/L. L is the D-th root of the body's volume. U is, for a driven body,
 //! its largest speed across its faces; for a free body the largest of √(|1 − s| g L), with s its density over the water's, its
 //! speed at the start, and the orbital speed π H/T of the waves.
 
@@ -43,13 +43,8 @@ pub(super) fn body_flows<const D: usize>(
     findings: &mut Vec<Finding>,
 ) -> Vec<BodyFlow> {
     let model = context.system.model();
-    let viscosity_m2ps = model.viscosity.effective(model.c0, model.h, D);
-    let flows: Vec<BodyFlow> = context
-        .solids()
-        .iter()
-        .enumerate()
-        .filter_map(|(i, s)| body_flow(context, i, s, waves, viscosity_m2ps))
-        .collect();
+    let flows: Vec<BodyFlow> =
+        context.solids().iter().enumerate().filter_map(|(i, s)| body_flow(context, i, s, waves)).collect();
     for flow in &flows {
         let Some(reynolds) = flow.reynolds.filter(|re| *re < LEAST) else { continue };
         // A laminar viscosity is the scene's own.
@@ -75,7 +70,6 @@ fn body_flow<const D: usize>(
     i: usize,
     solid: &Solid<D>,
     waves: &[GeneratedWave],
-    nu: f64,
 ) -> Option<BodyFlow> {
     let volume = solid.spec.shape.volume_properties().volume;
     let size_m = volume.powf(1.0 / D as f64);
@@ -94,6 +88,8 @@ fn body_flow<const D: usize>(
         }
     };
     let known = speed_mps > 0.0 && size_m.is_finite();
+    let model = context.system.model();
+    let nu = model.viscosity.effective(model.c0, model.h, D, speed_mps / size_m);
     let reynolds = (nu > 0.0).then(|| speed_mps * size_m / nu);
     let name = solid.spec.name.clone();
     known.then_some(BodyFlow { name, speed_mps, speed_from, size_m, viscosity_m2ps: nu, reynolds })

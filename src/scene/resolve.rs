@@ -3,7 +3,7 @@
 use std::{cell::RefCell, fmt};
 
 use super::{
-    FramesChoice, Scene,
+    DrivenConfig, FramesChoice, Scene,
     context::{Context, Defaults},
     section::{
         analysis::{self, ProbeSeries},
@@ -14,7 +14,11 @@ use super::{
     },
     toml_source::ValueSource,
 };
-use crate::{error::Result, model::Model, probe::GaugeSurface};
+use crate::{
+    error::Result,
+    model::{Model, PressureGradient},
+    probe::GaugeSurface,
+};
 
 /// A value in force and its source.
 #[derive(Clone, Debug, PartialEq)]
@@ -106,8 +110,16 @@ impl Scene {
     fn usual_model(&self) -> Model {
         // Lengths are in dp: h over dp is exact.
         let usual = Model::water(self.dimension, 1.0, 1.0);
-        let weightless = self.context().gravity.is_some_and(|gravity| gravity.strongest == 0.0);
-        if weightless || self.solid.iter().all(|solid| solid.free.is_none()) {
+        let (free, weightless) = (
+            self.solid.iter().any(|solid| solid.free.is_some()),
+            self.context().gravity.is_some_and(|gravity| gravity.strongest == 0.0),
+        );
+        let waves = self.solid.iter().any(|solid| solid.driven.as_ref().is_some_and(DrivenConfig::makes_waves));
+        let mut usual = if waves { usual.waves() } else { usual };
+        if (free || waves) && !weightless && self.model.allows_corrected_gradients() {
+            usual.gradient = PressureGradient::NearSurface;
+        }
+        if weightless || !free {
             return usual;
         }
         // Water that cannot be built has no depth; its construction reports the error.
@@ -132,7 +144,7 @@ impl Scene {
         for value in scene.gravity.iter_mut().flat_map(|gravity| gravity.components_mut()) {
             value.0.fill(fills, "gravity");
         }
-        scene.model.fill(ctx, fills, &usual);
+        scene.model.fill(fills, &usual);
         scene.time.fill(fills, &usual);
         scene.guard.get_or_insert_default().fill(fills);
         for (i, layer) in scene.damping.iter_mut().enumerate() {

@@ -10,13 +10,29 @@
 //! which changes its sign when a and b swap, so that momentum is kept @zhang2024; angular momentum is no longer, to the extent to
 //! which M differs from 1. It acts among water alone: at faces it would count boundary particles above a waterline as neighbours,
 //! and bodies would float a tenth of dp too deep. Where few neighbours are left, as in spray, the correction fades:
-//! B = 1 + w (M⁻¹ − 1), w = min(1, 2ᴰ⁻¹ det M) @ren2023, by half at a flat free surface, where det M = 2⁻ᴰ. The B that acts is
-//! that of the pass before.
+//! B = 1 + w (M⁻¹ − 1), w = min(1, 2ᴰ⁻¹ det M) @ren2023, by half at a flat free surface, where det M = 2⁻ᴰ. B belongs to the
+//! positions for which the neighbour lists were built: particles move by less than a tenth of the support until the next lists.
+//!
+//! The pair force has the power −Σ V_a P_a (B_a − 1) : (∇v)_a, which no compression takes up. It stirs still water, the more the
+//! higher the pressure. Near the surface alone, where waves need the correction (Schulze et al. 2025), it does not:
+//!
+//!   B = 1 + s w (M⁻¹ − 1),   s = min(max(2 − P_a/(n ρ₀ |g| dp), 0), 1),   n = 4.
 
 use super::{AuxiliarySums, Num, Pair, Term};
 
 /// det M, –, below which there is nothing to tell a slope from.
 const SINGULAR: f64 = 1e-9;
+
+/// Force passes after which corrections are made anew.
+pub(crate) const PASSES: u64 = 20;
+
+/// n: from twice this depth over dp on, –, gradients are not corrected in [`near_surface`].
+const SURFACE_DEPTH: f64 = 4.0;
+
+/// s (–) of water with pressure `p` (P/ρ₀, m²/s²), where one dp of water weighs `weight` (|g| dp, m²/s²).
+pub fn near_surface(p: f64, weight: f64) -> f64 {
+    if weight > 0.0 { (2.0 - p / (SURFACE_DEPTH * weight)).clamp(0.0, 1.0) } else { 1.0 }
+}
 
 /// C = B − 1 (–) from the `moment` M of a particle (`[i][j]` with j ≤ i is read).
 pub fn correction<const D: usize>(moment: &[[f64; D]; D]) -> [[f64; D]; D] {
@@ -43,7 +59,7 @@ pub fn correction<const D: usize>(moment: &[[f64; D]; D]) -> [[f64; D]; D] {
     std::array::from_fn(|i| std::array::from_fn(|j| weight * (inverse[i][j] - f64::from(u8::from(i == j)))))
 }
 
-/// The moments between water and solids.
+/// The moments M of the neighbours, water and solids alike.
 #[derive(Clone, Copy, Debug)]
 pub struct RenormalizationTerm;
 
@@ -62,13 +78,12 @@ impl<const D: usize> Term<D> for RenormalizationTerm {
     }
 }
 
-/// What the correction adds to the pressure among water, and the moments for the next pass.
+/// The share of the correction in the pressure force among water.
 #[derive(Clone, Copy, Debug)]
 pub struct CorrectedGradientTerm;
 
 impl<const D: usize> Term<D> for CorrectedGradientTerm {
     const GRADIENT_CORRECTION: bool = true;
-    const RENORMALIZATION: bool = true;
 
     #[inline(always)]
     fn vector<N: Num>(&self, ab: &Pair<N, D>, mut sum: [N; D]) -> [N; D] {
@@ -83,11 +98,6 @@ impl<const D: usize> Term<D> for CorrectedGradientTerm {
             }
         }
         sum
-    }
-
-    #[inline(always)]
-    fn auxiliary<N: Num>(&self, ab: &Pair<N, D>, factor: N, a: &mut AuxiliarySums<N, D>, b: &mut AuxiliarySums<N, D>) {
-        RenormalizationTerm.auxiliary(ab, factor, a, b);
     }
 }
 

@@ -15,7 +15,7 @@ pub(crate) struct Fluid<const D: usize> {
     pub(super) images: Images<D>,
     /// Stress from the last pass, m²/s²; `None` unless the viscosity has one.
     pub(super) stress: Option<Vec<Matrix<D>>>,
-    /// B − 1 of the corrected gradients from the last pass, –; `None` unless gradients are corrected.
+    /// B − 1 of the corrected gradients at the positions of the neighbour lists, –; `None` unless gradients are corrected.
     pub(super) gradient_correction: Option<Vec<Matrix<D>>>,
     /// Which particles a new solid displaces: they are removed when the lists are rebuilt.
     pub(super) displaced: Option<Vec<bool>>,
@@ -34,7 +34,7 @@ impl<const D: usize> Fluid<D> {
         let zeros = |needed: bool| needed.then(|| vec![Matrix::zeros(); r.len()]);
         Self {
             stress: zeros(model.viscosity.stress().is_some()),
-            gradient_correction: zeros(model.gradient == PressureGradient::Corrected),
+            gradient_correction: zeros(model.gradient != PressureGradient::Plain),
             particles: Particles { id: (0..r.len() as u32).collect(), r, v, rho },
             images,
             displaced: None,

@@ -30,7 +30,7 @@ pub use step_check::{Escape, ExitPath, ParticleLimits, RemovedParticle};
 pub(crate) use step_check::{LimitViolation, StepCheck};
 pub(crate) use symmetry::{AxisSet, reflected};
 
-use symmetry::{reflected_auxiliary, reflected_sums};
+use symmetry::{reflected_auxiliary, reflected_sums, reflected_tensor};
 
 pub use crate::interaction::StepLimits;
 
@@ -45,7 +45,7 @@ use crate::{
     error::{Error, Result},
     interaction::{PairLoop, PairLoopInput, PairSums},
     math::{Bounds, Matrix, Pose, Vector},
-    model::Model,
+    model::{Model, PressureGradient},
     neighbours::{CHUNK, NeighbourLists},
     particles::{PARTICLES_PER_TASK, Particles},
     solid::{Constraints, Load, Solid, TimeFunction},
@@ -87,6 +87,8 @@ struct FluidDomain<const D: usize> {
 pub(crate) struct Rates<const D: usize> {
     /// Whether the sums of the water belong to the present neighbour lists.
     current: bool,
+    /// Whether the gradient corrections belong to the present neighbour lists.
+    corrections_current: bool,
     /// One for each boundary particle near water.
     pub(crate) boundary: Vec<PairSums<D>>,
 }
@@ -212,7 +214,7 @@ impl<const D: usize> System<D> {
         let mut system = Self {
             pair_loop,
             neighbours: NeighbourLists::new(support, model.dp, model.pair_loop.instruction_set()),
-            rates: Rates { current: false, boundary: Vec::new() },
+            rates: Rates { current: false, corrections_current: false, boundary: Vec::new() },
             boundary: Boundary::new(&model),
             gap_pressure: GapPressure::new(&model),
             model,
@@ -297,7 +299,7 @@ impl<const D: usize> System<D> {
     /// water near them before.
     fn rebuild_lists(&mut self) -> Vec<u32> {
         let start = Instant::now();
-        self.rates.current = false;
+        (self.rates.current, self.rates.corrections_current) = (false, false);
         self.pair_loop.free_buffers();
         let mut dried = self.neighbours.boundary_near_fluid().to_vec();
         self.neighbours.build(&self.fluid.particles.r, &self.boundary.particles.r);
@@ -346,6 +348,7 @@ impl<const D: usize> System<D> {
         self.update_wall_state();
         self.boundary.update_copies(&self.solids, &self.fluid.images);
         self.boundary.update_mirrored(&self.solids);
+        self.update_gradient_corrections();
         let Self { pair_loop, neighbours, fluid, boundary, properties, equation_of_state, rates, gap_pressure, .. } =
             self;
         let input = Self::pair_input(neighbours, fluid, boundary, properties, equation_of_state);
@@ -353,7 +356,7 @@ impl<const D: usize> System<D> {
         rates.current = true;
         Self::add_gap_pressure(gap_pressure, &input, &mut rates.boundary);
         self.limit_step_by_originals();
-        self.update_fluid_tensors();
+        self.update_stress();
         let loads = self.loads(&self.rates.boundary);
         self.solids.iter_mut().zip(loads).for_each(|(solid, load)| solid.load = load);
         self.status.passes += 1;
@@ -392,25 +395,47 @@ impl<const D: usize> System<D> {
         (particles, FluidRates { pair_loop, neighbours, originals, reflections, real })
     }
 
-    /// The stress and the corrected gradients that the next force pass reads, from the sums of this one.
-    fn update_fluid_tensors(&mut self) {
-        let (stress, correction) = (self.fluid.stress.take(), self.fluid.gradient_correction.take());
+    /// The stress that the next force pass reads, from the sums of this one.
+    fn update_stress(&mut self) {
+        let Some((mut stress, law)) = self.fluid.stress.take().zip(self.model.viscosity.stress()) else { return };
         let (medium, rates, rho) = (&self.properties, self.fluid_rates(), &self.fluid.particles.rho);
-        let stress = stress.zip(self.model.viscosity.stress()).map(|(mut stress, law)| {
-            stress.par_iter_mut().enumerate().with_min_len(PARTICLES_PER_TASK).for_each(|(i, stress)| {
-                let rows = law.stress(&rates.auxiliary_of(i).strain, medium.rho0 / rho[i], medium);
-                *stress = Matrix::from_fn(|i, j| rows[i][j]);
-            });
-            stress
+        stress.par_iter_mut().enumerate().with_min_len(PARTICLES_PER_TASK).for_each(|(i, stress)| {
+            let rows = law.stress(&rates.auxiliary_of(i).strain, medium.rho0 / rho[i], medium);
+            *stress = Matrix::from_fn(|i, j| rows[i][j]);
         });
-        let correction = correction.map(|mut corrections| {
-            corrections.par_iter_mut().enumerate().with_min_len(PARTICLES_PER_TASK).for_each(|(i, correction)| {
-                let rows = gradient_correction::correction(&rates.auxiliary_of(i).renormalization);
-                *correction = Matrix::from_fn(|i, j| rows[i][j]);
-            });
-            corrections
+        self.fluid.stress = Some(stress);
+    }
+
+    /// The corrected gradients, made for new neighbour lists and for every [`gradient_correction::PASSES`]th pass. Still water keeps
+    /// its lists for long, and corrections that do not change make it circulate.
+    fn update_gradient_corrections(&mut self) {
+        if self.rates.corrections_current && !self.status.passes.is_multiple_of(gradient_correction::PASSES) {
+            return;
+        }
+        self.rates.corrections_current = true;
+        let Some(mut corrections) = self.fluid.gradient_correction.take() else { return };
+        let Self { pair_loop, neighbours, fluid, boundary, properties, equation_of_state, .. } = self;
+        let input = Self::pair_input(neighbours, fluid, boundary, properties, equation_of_state);
+        pair_loop.moments(&input, &mut corrections);
+        let weight = properties.gravity.norm() * properties.dp;
+        let everywhere = self.model.gradient == PressureGradient::Corrected;
+        let (rho, rho0) = (&fluid.particles.rho, properties.rho0);
+        corrections.par_iter_mut().zip(rho).with_min_len(PARTICLES_PER_TASK).for_each(|(correction, &rho)| {
+            let share = if everywhere {
+                1.0
+            } else {
+                gradient_correction::near_surface(equation_of_state.pressure(rho / rho0 - 1.0), weight)
+            };
+            let moment = std::array::from_fn(|i| std::array::from_fn(|j| correction[(i, j)]));
+            let rows = if share > 0.0 { gradient_correction::correction(&moment) } else { [[0.0; D]; D] };
+            *correction = Matrix::from_fn(|i, j| share * rows[i][j]);
         });
-        (self.fluid.stress, self.fluid.gradient_correction) = (stress, correction);
+        let real = corrections.len() - fluid.images.originals.len();
+        let (real, images) = corrections.split_at_mut(real);
+        let Images { originals, reflections, .. } = &fluid.images;
+        images.iter_mut().zip(originals).for_each(|(image, &i)| *image = real[i as usize]);
+        images.iter_mut().zip(reflections).for_each(|(image, &axes)| *image = reflected_tensor(axes, image));
+        fluid.gradient_correction = Some(corrections);
     }
 
     /// Computes the sums of another pair loop at the state of the last force pass; returns the loads that they give on the solids.

@@ -8,7 +8,7 @@ use crate::{
     error::Result,
     model::{
         C0_FACTOR, Diffusion, KernelKind, Model, PairLoopKind, PressureGradient, Shifting, Slip, TimeScheme, Viscosity,
-        Walls,
+        WAVES_H_OVER_DP, Walls,
     },
     scene::context::{Context, Defaults},
 };
@@ -101,6 +101,11 @@ impl ModelConfig {
         Ok(())
     }
 
+    /// Whether the kernel and the shifting of the scene allow corrected gradients.
+    pub(crate) fn allows_corrected_gradients(&self) -> bool {
+        matches!(self.kernel, None | Some(KernelKind::Wendland)) && matches!(self.shifting, None | Some(Shifting::None))
+    }
+
     /// The key that gives the smoothing length.
     fn smoothing_key(&self) -> &'static str {
         if self.c_h.is_some() { "model.c_h" } else { "model.h_over_dp" }
@@ -122,6 +127,9 @@ impl ModelConfig {
             let dimension = usual.gravity.len();
             let why = match dimension {
                 3 => "waves lose height below 1.5 dp and keep no more above; about 110 neighbours",
+                _ if ratio == WAVES_H_OVER_DP => {
+                    "short waves keep most height, and still water is quiet; about 50 neighbours"
+                }
                 _ if ratio > default_h_over_dp(dimension) => {
                     "free bodies in water deeper than 100 dp: below, the pressure's errors slow them; about 55 neighbours"
                 }
@@ -132,18 +140,15 @@ impl ModelConfig {
     }
 
     /// Fills in the other defaults; `usual` are the values of water.
-    pub(crate) fn fill(&mut self, ctx: &Context, defaults: &mut Defaults, usual: &Model) {
-        let deep = *usual != Model::water(ctx.dimension, 1.0, 1.0);
+    pub(crate) fn fill(&mut self, defaults: &mut Defaults, usual: &Model) {
         let wendland = "no pairing of particles and less noise than the cubic spline, at the same cost";
         defaults.fill("model.kernel", &mut self.kernel, usual.kernel, wendland);
-        let why = "each pair by its own places alone; \"corrected\" where waves travel";
-        defaults.fill("model.gradient", &mut self.gradient, usual.gradient, why);
-        let why = match deep {
-            true => {
-                "α = 0.02 √(10 dp/depth), a free body in water deeper than 100 dp: the viscosity does not grow with the depth"
-            }
-            false => "robust in any flow; α = 0.02 as in the method",
+        let why = match usual.gradient {
+            PressureGradient::Plain => "no paddle makes waves by name, and no body is free",
+            _ => "waves keep their height, and bodies move as in theory",
         };
+        defaults.fill("model.gradient", &mut self.gradient, usual.gradient, why);
+        let why = "stops impacts and hardly damps waves; it does not grow with the depth";
         defaults.fill("model.viscosity", &mut self.viscosity, usual.viscosity, why);
         let why = "damps the density's noise and keeps still water still; δ = 0.1 as in the method";
         defaults.fill("model.diffusion", &mut self.diffusion, usual.diffusion, why);

@@ -37,6 +37,11 @@ pub struct DrivenConfig {
 }
 
 impl DrivenConfig {
+    /// Whether it makes a wave by name.
+    pub(crate) fn makes_waves(&self) -> bool {
+        self.wave.is_some() || self.motions.iter().flatten().any(Self::makes_waves)
+    }
+
     /// A translation by `formula` (m, of t in s) in the direction `along`.
     pub fn slide(along: impl Into<Vec<f64>>, formula: impl Into<String>) -> Self {
         let distance = TimeFunctionConfig { formula: Some(formula.into()), ..TimeFunctionConfig::default() };

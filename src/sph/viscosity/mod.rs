@@ -3,10 +3,12 @@
 
 mod artificial;
 mod laminar;
+mod riemann;
 mod sps;
 
 pub use artificial::Artificial;
 pub use laminar::{Laminar, LaminarTerm};
+pub use riemann::{Riemann, RiemannTerm};
 pub use sps::{Sps, SpsTerm};
 
 use schemars::JsonSchema;
@@ -24,6 +26,8 @@ pub enum Viscosity {
     None,
     /// Artificial viscosity (Monaghan 1992).
     Artificial(Artificial),
+    /// Dissipation of a limited Riemann solver (Zhang, Hu & Adams 2017).
+    Riemann(Riemann),
     /// Laminar viscosity (Lo & Shao 2002; Morris 1997).
     Laminar(Laminar),
     /// Laminar viscosity with sub-particle-scale turbulence (Dalrymple & Rogers 2006).
@@ -55,6 +59,7 @@ impl Viscosity {
                 let wall = Artificial { alpha: law.alpha * wall_share };
                 next.with_terms(law.term(properties), wall.term(properties))
             }
+            Self::Riemann(law) => next.with_terms(law.term(properties, 1.0), law.term(properties, wall_share)),
             Self::Laminar(law) => {
                 let wall = Laminar { nu0: law.nu0 * wall_share };
                 next.with_terms(law.term(units, viscous_sum()), wall.term(units, viscous_sum()))
@@ -71,17 +76,19 @@ impl Viscosity {
         let nu0 = match self {
             Self::Laminar(law) => law.nu0,
             Self::Sps(law) => law.nu0,
-            Self::None | Self::Artificial(_) => 0.0,
+            Self::None | Self::Artificial(_) | Self::Riemann(_) => 0.0,
         };
         h * h / (8.0 * nu0)
     }
 
     /// The effective kinematic viscosity ν (m²/s) of a shear flow in water with speed of sound `c0` (m/s) and smoothing length `h`
     /// (m), in `dimension` D: ν₀, or α c₀ h/(4 (D + 2)) of the artificial viscosity, which acts on approaching pairs only
-    /// @monaghan2005. The eddy viscosity of SPS is not part of it.
-    pub fn effective(&self, c0: f64, h: f64, dimension: usize) -> f64 {
+    /// @monaghan2005; of the Riemann dissipation at the rate of `shear` (1/s) see [`Riemann::effective`]. The eddy viscosity of SPS is
+    /// not part of it.
+    pub fn effective(&self, c0: f64, h: f64, dimension: usize, shear: f64) -> f64 {
         match self {
             Self::None => 0.0,
+            Self::Riemann(law) => law.effective(h, dimension, shear),
             Self::Artificial(law) => law.alpha * c0 * h / (4.0 * (dimension as f64 + 2.0)),
             Self::Laminar(law) => law.nu0,
             Self::Sps(law) => law.nu0,

@@ -7,7 +7,7 @@ use pontoon::{
     simulation::{Setup, Simulation},
     sph::{
         AuxiliarySums, Pair, PairSide, Term,
-        gradient_correction::{self, CorrectedGradientTerm},
+        gradient_correction::{self, RenormalizationTerm},
         kernel::{Kernel as _, Wendland},
         viscosity::Laminar,
     },
@@ -43,7 +43,7 @@ fn the_corrected_gradient_of_a_linear_field_is_exact_on_disordered_particles() {
         let r = centre - *b;
         let factor: f64 = kernel.slope(r.norm_squared()) * volume;
         let pair = Pair::new(r.into(), [0.0; 3], r.norm_squared(), 0.0, 0.0, side, side);
-        CorrectedGradientTerm.auxiliary(&pair, factor, &mut sums, &mut other);
+        RenormalizationTerm.auxiliary(&pair, factor, &mut sums, &mut other);
     }
     let form = gradient_correction::correction(&sums.renormalization);
     let mut found = [Vector::<3>::zeros(); 2];

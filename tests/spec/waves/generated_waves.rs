@@ -117,12 +117,15 @@ fn a_focused_group_of_small_steepness_focuses_at_the_requested_position_and_time
     let mut sim = flume(0.02, [3.6, 0.3], &piston, "");
     let places = [1.4, 1.5, 1.6, 1.7, 1.8, 1.9, 2.0, 2.1];
     let crests = gauges(&mut sim, places, 3.9, 4.9).map(|eta| crest(&eta));
-    // 5 % as for regular waves, and 3 % of the peak period, which is about 4 cm of travel. Measured: 0.0296 m, 18 ms early.
+    // Second order for a narrow band of amplitude a at the peak, kd = 1.06: Stokes' k a²/4 coth kd (3 coth² kd − 1) = 3.9 mm less the
+    // set-down of the group, g a²/2 (2 c_g/c − 1/2)/(g d − c_g²) = 2.7 mm (Longuet-Higgins & Stewart 1962).
+    let second_order = 0.003892 - 0.002638;
+    // 5 % as for regular waves, and 3 % of the peak period, which is about 4 cm of travel. Measured: 0.0324 m, 9 ms early.
     let (when, top) = crests[4];
-    assert!((top / height - 1.0).abs() < 0.05 && (when - time).abs() < 0.036, "{top} m at {when} s");
-    // The highest crest is 0.0305 m at 1.6 m, 0.11 of the peak wavelength before the focus. The bound is a sixth of the wavelength: an
+    assert!((top / (height + second_order) - 1.0).abs() < 0.05 && (when - time).abs() < 0.036, "{top} m at {when} s");
+    // The highest crest is 0.0328 m at 1.7 m, 0.06 of the peak wavelength before the focus. The bound is a sixth of the wavelength: an
     // error of a quarter would put a trough beside the crest.
     let highest = (0..places.len()).max_by(|&a, &b| crests[a].1.total_cmp(&crests[b].1)).unwrap();
     let (off, top) = ((places[highest] - place).abs(), crests[highest].1);
-    assert!(off < 1.77 / 6.0 && (top / height - 1.0).abs() < 0.05, "{top} m, {off} m off");
+    assert!(off < 1.77 / 6.0 && (top / (height + second_order) - 1.0).abs() < 0.05, "{top} m, {off} m off");
 }
