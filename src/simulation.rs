@@ -113,11 +113,12 @@ impl<const D: usize> Simulation<D> {
     }
 
     /// Sets up a simulation whose free solids the engine moves, or an `external` program.
-    fn with_bodies(setup: Setup<D>, pair_loop: Box<dyn PairLoop<D>>, external: bool) -> Result<Self>
+    fn with_bodies(mut setup: Setup<D>, pair_loop: Box<dyn PairLoop<D>>, external: bool) -> Result<Self>
     where
         Dim<D>: Dimension<D>,
     {
         setup.check()?;
+        setup.apply_symmetry()?;
         let (solids, dp) = (&setup.solids, setup.model.dp);
         for solid in solids {
             solid.check()?;
@@ -366,12 +367,14 @@ impl<const D: usize> Simulation<D> {
     pub fn set_water_velocity(&mut self, field: impl Fn(&Vector<D>) -> Vector<D> + Sync) {
         let fluid = &mut self.system.fluid.particles;
         fluid.v.par_iter_mut().zip(&fluid.r).for_each(|(v, r)| *v = field(r));
+        self.system.fluid.update_reflected_images();
     }
 
     /// Gives each water particle the density (kg/m³) that `field` says for its place (m).
     pub fn set_water_density(&mut self, field: impl Fn(&Vector<D>) -> f64 + Sync) {
         let fluid = &mut self.system.fluid.particles;
         fluid.rho.par_iter_mut().zip(&fluid.r).for_each(|(rho, r)| *rho = field(r));
+        self.system.fluid.update_reflected_images();
     }
 
     /// Contact forces in the last step, pair by pair.

@@ -93,7 +93,8 @@ impl<const D: usize> AcousticAddedMass<D> {
         }
         let of = |k: usize| (k as u32, pose.local(&system.place_on_solid(i, k)));
         let near_face = |(_, r): &(u32, Vector<D>)| -shape.signed_distance(r) < 0.75 * medium.dp;
-        let all = solid.boundary.clone().map(of).filter(near_face);
+        let own = if solid.copies > 1 { solid.boundary.clone() } else { solid.boundary_of_copy(0) };
+        let all = own.map(of).filter(near_face);
         let outer = all.map(|(i, r)| (i, shape.outward_normal(&r, 0.05 * medium.dp))).collect();
         let state = AddedMassState { pending: Six::zeros(), contacts: Six::zeros(), stiffness_sum: 0.0 };
         Some(Self { solid: i, outer, state, given: Six::zeros() })
@@ -217,8 +218,8 @@ impl<const D: usize> AcousticAddedMass<D> {
         let mut sum = Six::zeros();
         self.for_each_wet(system, |part, x, normal, along| {
             let (mut weight, mut flow) = (0.0, Vector::<D>::zeros());
-            system.visit_fluid_near(&(x + way), &mut |i, _, w| {
-                (weight, flow) = (weight + w, flow + system.fluid().v[i] * w)
+            system.visit_fluid_near(&(x + way), &mut |i, r, w| {
+                (weight, flow) = (weight + w, flow + system.velocity_seen_at(i, r) * w)
             });
             if weight > 0.0 {
                 sum += along * (part * normal.dot(&flow) / weight);
@@ -234,6 +235,7 @@ impl<const D: usize> AcousticAddedMass<D> {
         let turn = &solid.kinematics.pose.rotation;
         let wet = system.neighbours.boundary_near_fluid();
         let wetness = system.boundary.wetness.as_deref().unwrap_or_default();
+        let of_whole = system.symmetry_planes().multiplicity(!solid.division.cut);
         let mut k = wet.partition_point(|&i| (i as usize) < solid.boundary.start);
         for (i, normal) in &self.outer {
             k += wet[k..].iter().take_while(|w| *w < i).count();
@@ -242,9 +244,11 @@ impl<const D: usize> AcousticAddedMass<D> {
                 if !system.is_between_sides(x) {
                     continue;
                 }
+                // The springs beyond planes that cut the body act alike along the motions that are free.
+                let images = system.computed_share(solid, x) * of_whole;
                 let arm = system.place_on_solid(self.solid, *i as usize) - solid.kinematics.centre;
                 let torque = Bivector::torque(&arm, &normal);
-                visit((wetness[k] / FULL).min(1.0), x, &normal, to_six(&Load { force: normal, torque }));
+                visit((wetness[k] / FULL).min(1.0) * images, x, &normal, to_six(&Load { force: normal, torque }));
             }
         }
     }

@@ -180,6 +180,9 @@ impl<const D: usize> Bodies<D> {
         }
         hook(&mut step)?;
         let (solids, transfers) = step.finish()?;
+        if let Some(i) = (0..solids.len()).find(|&i| system.meets_its_image(i, &solids[i].pose)) {
+            return Err(fault_error(system, at_plane(i, &solids[i]), self.steps, over.t));
+        }
         self.steps += 1;
         place(system, Some(over.dt), |i, solid| match &solid.spec.role {
             Role::Fixed => None,
@@ -392,6 +395,18 @@ fn escaped<const D: usize>(solid: usize, now: &Kinematics<D>) -> EngineFault<D> 
         reason: "escape from the domain".into(),
         cause: "Usual cause: it starts beside the tank, an impact threw it over a wall, or nothing supports it. If it may go \
                 there, set domain.min and domain.max wider.",
+        position: now.centre,
+        velocity: now.velocity,
+    }
+}
+
+/// Returns the fault of solid number `solid`, which has met its image at a symmetry plane.
+fn at_plane<const D: usize>(solid: usize, now: &Kinematics<D>) -> EngineFault<D> {
+    EngineFault {
+        code: ErrorCode::LeftDomain,
+        solid,
+        reason: "contact with its mirror image at a symmetry plane".into(),
+        cause: "Contacts do not act across symmetry planes. Start it further from the plane, hold it with a line or a lock, or                 compute both sides:  leave symmetry out.",
         position: now.centre,
         velocity: now.velocity,
     }

@@ -14,7 +14,7 @@ use super::{
 use crate::{
     math::Vector,
     model::Dimension,
-    solid::{Dim, FreeBody, Kinematics, Load, Role},
+    solid::{Dim, FreeBody, Kinematics, Load, Role, Solid},
     system::{RemovedParticle, System},
 };
 
@@ -187,10 +187,10 @@ impl<const D: usize> Accounting<D> {
             self.budget.walls += (total_power(system) - viscous - diffusion - gradient) * dt;
             self.budget.driven += system.periodic_gravity_power() * dt;
         }
-        for (solid, work) in system.solids().iter().zip(&mut self.work) {
+        for (i, (solid, work)) in system.solids().iter().zip(&mut self.work).enumerate() {
             *work = solid.load.power(&solid.kinematics) * dt;
             if let Role::Driven(_) = solid.spec.role {
-                self.budget.driven -= *work;
+                self.budget.driven -= *work * system.solid_multiplicity(i);
             }
         }
     }
@@ -199,14 +199,17 @@ impl<const D: usize> Accounting<D> {
     pub(crate) fn add_gravity_change(&mut self, system: &System<D>, change: &Vector<D>) {
         if self.energy {
             let water: f64 = system.fluid().r.iter().map(|r| system.non_periodic(change).dot(r)).sum();
-            let bodies: f64 = system.solids().iter().map(|solid| -solid.potential_energy(change)).sum();
-            self.budget.driven -= system.particle_mass() * water + bodies;
+            let body = |(i, solid): (usize, &Solid<D>)| -solid.potential_energy(change) * system.solid_multiplicity(i);
+            let bodies: f64 = system.solids().iter().enumerate().map(body).sum();
+            self.budget.driven -= system.particle_mass() * system.water_multiplicity() * water + bodies;
         }
     }
 
     /// Adds the work of moving the water by `shifts` (m).
     pub(crate) fn add_shifting(&mut self, system: &System<D>, shifts: &[Vector<D>]) {
-        self.budget.shifting -= system.particle_mass() * shifts.iter().map(|s| system.gravity().dot(s)).sum::<f64>();
+        let own = shifts.iter().take(system.fluid().len());
+        let mass = system.particle_mass() * system.water_multiplicity();
+        self.budget.shifting -= mass * own.map(|s| system.gravity().dot(s)).sum::<f64>();
     }
 
     /// Subtracts the energy of removed particles.
@@ -265,7 +268,8 @@ impl<const D: usize> Accounting<D> {
             spin: (before.spin + after.spin) * 0.5,
             ..*after
         };
-        let work = |load: Load<D>| load.power(&mean) * dt;
+        let images = system.solid_multiplicity(i);
+        let work = |load: Load<D>| load.power(&mean) * dt * images;
         let budget = &mut self.budget;
         budget.motors += work(breakdown.motors);
         budget.springs += work(breakdown.springs + breakdown.moorings);
@@ -273,7 +277,7 @@ impl<const D: usize> Accounting<D> {
         budget.contacts += work(breakdown.contacts);
         budget.joints += work(breakdown.joints + breakdown.ropes);
         let sunk = breakdown.weight.force.dot(&(after.centre - before.centre));
-        budget.coupling += work(water + breakdown.weight) - sunk - self.work[i];
+        budget.coupling += work(water + breakdown.weight) - (sunk + self.work[i]) * images;
         self.breakdown[i] = breakdown;
     }
 }

@@ -23,7 +23,7 @@ use crate::{
     math::Vector,
     model::{Diffusion, Dimension, Model, PressureGradient, Shifting, Viscosity},
     neighbours::CHUNK,
-    solid::{Dim, Load},
+    solid::{Dim, Load, Solid},
     system::{FluidRates, System},
 };
 
@@ -70,7 +70,9 @@ impl<const D: usize> PowerMeter<D> {
         let before = plain.as_mut().map(|plain| pass(&mut **plain));
         let all = gains(system, system.fluid_rates());
         let on_solids = |more: &dyn Fn(usize) -> Load<D>| -> f64 {
-            system.solids.iter().enumerate().map(|(i, solid)| more(i).power(&solid.kinematics)).sum()
+            let power =
+                |(i, solid): (usize, &Solid<D>)| more(i).power(&solid.kinematics) * system.solid_multiplicity(i);
+            system.solids.iter().enumerate().map(power).sum()
         };
         let powers = PowerBreakdown {
             viscous: all[0] - gained[0] + on_solids(&|i| system.solids[i].load - loads[i]),
@@ -85,12 +87,13 @@ impl<const D: usize> PowerMeter<D> {
 /// Returns viscous + diffusion + gradient + walls, W: the power on the water at the last force pass without the work of
 /// the solids.
 pub(super) fn total_power<const D: usize>(system: &System<D>) -> f64 {
-    let on_solids: f64 = system.solids.iter().map(|solid| solid.load.power(&solid.kinematics)).sum();
+    let power = |(i, solid): (usize, &Solid<D>)| solid.load.power(&solid.kinematics) * system.solid_multiplicity(i);
+    let on_solids: f64 = system.solids.iter().enumerate().map(power).sum();
     gains(system, system.fluid_rates()).iter().sum::<f64>() + on_solids
 }
 
 /// Returns the powers (W) on the motion and on the compression of the water by its `rates`, without the weight
-/// of the water. The sums over chunks are added in order.
+/// of the water. The sums over chunks are added in order, and count the images across symmetry planes.
 fn gains<const D: usize>(system: &System<D>, rates: FluidRates<'_, D>) -> [f64; 2] {
     let (water, rho0, g) = (system.fluid(), system.properties().rho0, system.gravity());
     let particles = water.v.par_chunks(CHUNK).zip(water.rho.par_chunks(CHUNK));
@@ -101,6 +104,6 @@ fn gains<const D: usize>(system: &System<D>, rates: FluidRates<'_, D>) -> [f64; 
         })
     };
     let parts: Vec<[f64; 2]> = particles.enumerate().map(chunk).collect();
-    let mass = system.particle_mass();
+    let mass = system.particle_mass() * system.water_multiplicity();
     parts.iter().fold([0.0; 2], |[a, b], part| [a + part[0] * mass, b + part[1] * mass])
 }

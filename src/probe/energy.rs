@@ -3,6 +3,7 @@
 //! Water: kinetic Σ ½ m v²; potential −Σ m g·r since the start; compression Σ m e(ρ) with
 //! e = ∫ P/ρ² dρ from ρ₀ to ρ.
 //! Bodies: ½ M V² + ½ Ω·I Ω; −M g·R₀ since the start.
+//! With symmetry planes all sums include the images.
 
 use serde::{Deserialize, Serialize};
 
@@ -53,9 +54,10 @@ impl EnergyProbe {
     /// Returns the kinetic, potential and compression energy of the water, and the kinetic and potential energy of the
     /// bodies.
     fn parts<const D: usize>(&self, system: &System<D>) -> [f64; 5] {
-        let (mass, fluid) = (system.particle_mass(), system.fluid());
+        let (mass, fluid) = (system.particle_mass() * system.water_multiplicity(), system.fluid());
         let compressed = mass * fluid.rho.iter().map(|&rho| system.compression_energy(rho)).sum::<f64>();
-        let moving = system.solids().iter().map(Solid::kinetic_energy).sum::<f64>();
+        let of_all = |(i, solid): (usize, &Solid<D>)| solid.kinetic_energy() * system.solid_multiplicity(i);
+        let moving = system.solids().iter().enumerate().map(of_all).sum::<f64>();
         let (water, bodies) = (
             water_potential(system) - self.initial_water_potential,
             bodies_potential(system) - self.initial_bodies_potential,
@@ -88,10 +90,12 @@ impl<const D: usize> Probe<D> for EnergyProbe {
 /// Returns −Σ m g·r of the water (J). A periodic axis does not contribute, because gravity does work along it.
 fn water_potential<const D: usize>(system: &System<D>) -> f64 {
     let g = system.non_periodic_gravity();
-    -system.particle_mass() * system.fluid().r.iter().map(|r| g.dot(r)).sum::<f64>()
+    -system.particle_mass() * system.water_multiplicity() * system.fluid().r.iter().map(|r| g.dot(r)).sum::<f64>()
 }
 
 /// Returns −Σ M g·R₀ of the free bodies (J).
 fn bodies_potential<const D: usize>(system: &System<D>) -> f64 {
-    system.solids().iter().map(|solid| solid.potential_energy(&system.gravity())).sum()
+    let of_all =
+        |(i, solid): (usize, &Solid<D>)| solid.potential_energy(&system.gravity()) * system.solid_multiplicity(i);
+    system.solids().iter().enumerate().map(of_all).sum()
 }

@@ -86,7 +86,7 @@ impl<const D: usize> PatchProbe<D> {
         // A place on an edge of the box belongs to it; no boundary particle lies deeper than the kernel reaches.
         let (inside, near) = (part.grown(1e-9), part.grown(system.model().support_radius() + dp));
         let (mut behind, mut places) = (Vec::new(), Vec::new());
-        for r in of.boundary.clone().map(|i| system.place_on_solid(number, i)) {
+        for r in of.boundary_of_whole().map(|i| system.place_on_solid(number, i)) {
             let local = pose.local(&r);
             let depth = -shape.signed_distance(&local);
             let foot = local + shape.outward_normal(&local, 0.05 * dp) * depth;

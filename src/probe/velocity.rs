@@ -79,8 +79,9 @@ impl<const D: usize> Probe<D> for VelocityProbe<D> {
     }
 
     fn sample(&self, sim: &Simulation<D>) -> Vec<f64> {
-        let (system, v) = (sim.system(), sim.system().fluid().v);
-        let mean = interpolate(system, &self.at.position(system), |b, _| -> [f64; D] { v[b].into() });
+        let system = sim.system();
+        let seen = |b: usize, r: &Vector<D>| -> [f64; D] { system.velocity_seen_at(b, r).into() };
+        let mean = interpolate(system, &self.at.position(system), seen);
         if !self.at.is_mounted() {
             return mean.unwrap_or([f64::NAN; D]).to_vec();
         }

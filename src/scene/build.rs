@@ -206,9 +206,28 @@ impl Scene {
         solids: &[SolidSpec<D>],
     ) -> SizeEstimate {
         let (fluid, boundary) = estimated_counts(ctx, water, solids);
+        let fluid = fluid * self.computed_share(water);
         let dt = (model.cfl * model.h / model.c0).min(model.dt_max);
         let passes = if matches!(model.scheme, TimeScheme::Verlet { .. }) { 1.0 } else { 2.0 };
         SizeEstimate { dimension: D, fluid, boundary, dt, steps: (self.until / dt).ceil(), passes }
+    }
+
+    /// Returns the share of the water on the computed side of the symmetry planes, by the boxes around it.
+    fn computed_share<const D: usize>(&self, water: &[WaterBody<D>]) -> f64 {
+        let planes: [Option<f64>; D] = self.symmetry.clone().unwrap_or_default().build();
+        let boxes: Vec<Bounds<D>> = water.iter().map(|b| world_bounds(&b.region.shape, &b.region.pose)).collect();
+        let mut share = 1.0;
+        for (axis, at) in planes.into_iter().enumerate().filter_map(|(axis, at)| Some((axis, at?))) {
+            let is_upper = boxes.iter().any(|bounds| bounds.max[axis] > at + 0.5 * self.dp);
+            let side = |x: f64| if is_upper { x.max(at) } else { x.min(at) };
+            let length = |bounds: &Bounds<D>, of: &dyn Fn(f64) -> f64| of(bounds.max[axis]) - of(bounds.min[axis]);
+            let volume = |of: &dyn Fn(f64) -> f64| -> f64 {
+                let others = |bounds: &Bounds<D>| bounds.size().product() / length(bounds, &|x| x);
+                boxes.iter().map(|bounds| others(bounds) * length(bounds, of)).sum()
+            };
+            share *= volume(&side) / volume(&|x| x);
+        }
+        share
     }
 
     /// Returns the approximate number of water particles, without the volume of the solids, or 0 if the water cannot be
@@ -383,7 +402,7 @@ impl<const D: usize> SceneParts<D> {
             placed.specs[i].dry.get_or_insert(false);
         });
         let solids = placed.specs;
-        let setup = Setup {
+        let mut setup = Setup {
             model,
             gravity_law,
             water: filled.r,
@@ -394,9 +413,11 @@ impl<const D: usize> SceneParts<D> {
             constraints,
             domain,
             periodic,
+            symmetry: scene.symmetry.clone().unwrap_or_default().build(),
             limits,
             sponge_layers,
         };
+        setup.apply_symmetry().map_err(|e| ctx.with_location(e, "symmetry"))?;
         Ok(BuiltScene {
             setup,
             plan,

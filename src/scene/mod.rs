@@ -95,7 +95,7 @@ pub use {
     build::SizeEstimate,
     resolve::ResolvedValue,
     section::analysis::{CheckConfig, RaoConfig, StatisticConfig},
-    section::domain::{GuardConfig, PeriodicConfig},
+    section::domain::{GuardConfig, PeriodicConfig, SymmetryConfig},
     section::force_element::ForceFrame,
     section::joint::LimitsConfig,
     section::lifetime::StrengthConfig,
@@ -139,6 +139,8 @@ pub struct Scene {
     pub domain: Option<BoxConfig>,
     /// Periodic sides.
     pub periodic: Option<PeriodicConfig>,
+    /// Symmetry planes, of which one side is computed.
+    pub symmetry: Option<SymmetryConfig>,
     /// The valid range of water particles.
     pub guard: Option<GuardConfig>,
     /// Bodies of water.

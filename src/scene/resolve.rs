@@ -77,6 +77,7 @@ impl Scene {
         }
         self.domain.iter().try_for_each(|domain| domain.verify(ctx, "domain"))?;
         self.periodic.iter().try_for_each(|periodic| periodic.verify(ctx))?;
+        self.symmetry.iter().try_for_each(|planes| planes.verify(ctx, self.periodic.as_ref()))?;
         self.guard.iter().try_for_each(|guard| guard.verify(ctx))?;
         if self.water.is_empty() {
             return Err(ctx.error_at("water", "the scene has no water"));
@@ -294,7 +295,7 @@ impl Scene {
 }
 
 /// The order in which values are listed.
-const ORDER: [&str; 27] = [
+const ORDER: [&str; 28] = [
     "title",
     "dimension",
     "dp",
@@ -303,6 +304,7 @@ const ORDER: [&str; 27] = [
     "jitter",
     "domain",
     "periodic",
+    "symmetry",
     "guard",
     "water",
     "damping",

@@ -48,6 +48,11 @@ where
             return Err(Error::scene(format!("solids cannot come into a simulation that is periodic along {name}"))
                 .help("put them in at set-up, where it is seen whether they end at a periodic side"));
         }
+        if let Some((axis, _)) = self.system.symmetry_planes().each().next() {
+            let name = ["x", "y", "z"][axis];
+            let what = format!("solids cannot come into a simulation with a symmetry plane normal to {name}");
+            return Err(Error::scene(what).help("put them in at set-up, where it is seen how the plane divides them"));
+        }
         let start = match &spec.role {
             Role::Driven(motion) => motion.kinematics(&spec.pose, self.clock.time),
             Role::Fixed | Role::Free(_) => spec.initial_kinematics(),

@@ -148,6 +148,17 @@ pub struct Kinematics<const D: usize> {
     pub spin: Bivector<D>,
 }
 
+/// How symmetry planes divide a solid in a running system.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct SolidDivision {
+    /// Axes of the planes that cut it, bit by bit.
+    pub(crate) cut: u8,
+    /// Number of its boundary particles on the computed side, or in one periodic copy; they come first.
+    pub(crate) own: usize,
+    /// Number of the boundary particles of the whole solid.
+    pub(crate) whole: usize,
+}
+
 /// A solid in a running system.
 #[derive(Clone, Debug)]
 pub struct Solid<const D: usize> {
@@ -157,10 +168,13 @@ pub struct Solid<const D: usize> {
     pub body: Option<FreeBody<D>>,
     /// Its present kinematics.
     pub kinematics: Kinematics<D>,
-    /// Indices of its boundary particles. A free solid in a periodic sea has several copies, one after the other.
+    /// Indices of its boundary particles. A free solid in a periodic sea has several copies, one after the other; beside a symmetry
+    /// plane their mirror images come last.
     pub boundary: Range<usize>,
     /// Number of copies of its boundary particles.
     pub(crate) copies: usize,
+    /// How symmetry planes divide it and its boundary particles.
+    pub(crate) division: SolidDivision,
     /// Acceleration of `kinematics.centre`, a mean over the last few steps, m/s².
     pub acceleration: Vector<D>,
     /// Angular acceleration, the same mean, rad/s².
@@ -178,8 +192,14 @@ const ACCELERATION_FILTER: f64 = 0.2;
 impl<const D: usize> Solid<D> {
     /// Indices of the boundary particles of its copy number `copy`.
     pub(crate) fn boundary_of_copy(&self, copy: usize) -> Range<usize> {
-        let (start, count) = (self.boundary.start, self.boundary.len() / self.copies);
+        let (start, count) = (self.boundary.start, self.division.own);
         start + copy * count..start + (copy + 1) * count
+    }
+
+    /// Indices of the boundary particles of the whole solid, without those of its images.
+    pub(crate) fn boundary_of_whole(&self) -> Range<usize> {
+        self.boundary.start
+            ..self.boundary.start + if self.copies > 1 { self.boundary.len() } else { self.division.whole }
     }
 
     /// Moves it to `next` over `dt` (s).

@@ -11,13 +11,14 @@ use super::{
     boundary_extension::ExtensionParticle,
     memory::{bytes, optional_bytes},
     periodic::Images,
+    symmetry::{AxisSet, Division, MirroredParticle, reflected},
 };
 use crate::{
     error::{Error, Result},
     math::{Bounds, Pose, Vector},
     model::{Model, Walls},
     particles::{PARTICLES_PER_TASK, Particles},
-    solid::{Kinematics, Role, Solid, SolidSpec, boundary_motion},
+    solid::{Kinematics, Role, Solid, SolidDivision, SolidSpec, boundary_motion},
     sph::boundary::{DynamicBoundary, Slip, SupportCoverage, WallExtrapolation, WallTarget, no_slip_velocity},
 };
 
@@ -41,6 +42,8 @@ pub(crate) struct Boundary<const D: usize> {
     coverage: SupportCoverage,
     /// The box around the boundary particles of each solid, in its frame, m.
     pub(super) local_bounds: Vec<Bounds<D>>,
+    /// The mirror images of the boundary particles of each solid, in their order in the arrays; empty without a symmetry plane.
+    mirrored: Vec<Vec<MirroredParticle>>,
     /// Poses of the solids when the neighbour lists were built; `None` if they must be built anew.
     pub(super) poses_at_rebuild: Option<Vec<Pose<D>>>,
 }
@@ -74,19 +77,21 @@ impl<const D: usize> Boundary<D> {
                 D,
             ),
             local_bounds: Vec::new(),
+            mirrored: Vec::new(),
             poses_at_rebuild: None,
         }
     }
 
-    /// Appends `copies` of the boundary particles of a solid that moves as `kinematics`, the `extension` last in each;
-    /// returns their range. All copies stand in the place of the solid.
+    /// Appends `copies` of the boundary particles of a solid that moves as `kinematics`, the `extension` last in each, and their
+    /// mirror images across the symmetry planes; returns their range. All copies stand in the place of the solid.
     pub(super) fn append(
         &mut self,
         model: &Model,
         spec: &SolidSpec<D>,
         (kinematics, copies): (&Kinematics<D>, usize),
         extension: &[ExtensionParticle<D>],
-    ) -> Result<Range<usize>> {
+        images: &Images<D>,
+    ) -> Result<(Range<usize>, SolidDivision)> {
         let first = self.particles.len();
         let mut faces = spec
             .shape
@@ -95,11 +100,27 @@ impl<const D: usize> Boundary<D> {
             .map(|point| point.r)
             .collect::<Vec<_>>();
         let local: Vec<Vector<D>> = faces.iter().copied().chain(extension.iter().map(|particle| particle.r)).collect();
-        self.particles.reserve_exact(copies * local.len());
+        faces.extend(extension.iter().map(|particle| particle.behind_face));
+        let (local, faces, division, mirrored) = match images.planes.any() {
+            false => (local, faces, None, Vec::new()),
+            true => {
+                let points: Vec<_> = local.iter().map(|r| kinematics.pose.point(r)).collect();
+                let Division { cut, own, mirrored, whole } =
+                    images.planes.divide(spec, &points, (model.dp, images.width));
+                let local: Vec<_> = own.iter().map(|(_, r)| kinematics.pose.local(r)).collect();
+                let faces = own.iter().map(|(i, _)| faces[*i as usize]).collect();
+                (local, faces, Some(SolidDivision { cut, own: own.len(), whole }), mirrored)
+            }
+        };
+        let division = division.unwrap_or(SolidDivision { cut: 0, own: local.len(), whole: local.len() });
+        self.particles.reserve_exact(copies * local.len() + mirrored.len());
         for r in (0..copies).flat_map(|_| &local) {
             self.particles.push(kinematics.pose.point(r), model.rho0);
         }
-        faces.extend(extension.iter().map(|particle| particle.behind_face));
+        for image in &mirrored {
+            let own = kinematics.pose.point(&local[image.own as usize]);
+            self.particles.push(images.planes.mirrored(image.axes, &own), model.rho0);
+        }
         if self.particles.len() == first {
             return Err(Error::scene(format!("solid {:?} is too small for a single boundary particle", spec.name))
                 .help("make it larger or dp smaller"));
@@ -107,24 +128,28 @@ impl<const D: usize> Boundary<D> {
         if let Some(depths) = &mut self.depths {
             let own: Vec<f64> = faces.par_iter().map(|r| -spec.shape.signed_distance(r)).collect();
             (0..copies).for_each(|_| depths.extend_from_slice(&own));
+            depths.extend(mirrored.iter().map(|image| own[image.own as usize]));
         }
         if let Some(normals) = &mut self.normals {
             let own: Vec<_> = faces.par_iter().map(|r| spec.shape.outward_normal(r, 0.05 * model.dp)).collect();
             (0..copies).for_each(|_| normals.extend_from_slice(&own));
+            normals.extend(mirrored.iter().map(|image| own[image.own as usize]));
         }
+        self.mirrored.push(mirrored);
         self.local_bounds.push(Bounds::around(&local));
         self.local_positions.push(if matches!(spec.role, Role::Fixed) { Vec::new() } else { local });
-        Ok(first..self.particles.len())
+        Ok((first..self.particles.len(), division))
     }
 
     /// Removes the boundary particles `gone`, which are those of solid number `solid`.
     pub(super) fn remove_range(&mut self, gone: &Range<usize>, solid: usize) {
         let Self { particles: Particles { r, v, rho, id }, local_positions, depths, normals, .. } = self;
-        let Self { target_density, extrapolated_velocity, local_bounds, .. } = self;
+        let Self { target_density, extrapolated_velocity, local_bounds, mirrored, .. } = self;
         for vectors in [r, v].into_iter().chain(normals).chain(extrapolated_velocity) {
             remove_range(vectors, gone);
         }
         local_positions[solid] = Vec::new();
+        mirrored[solid] = Vec::new();
         [rho].into_iter().chain(depths).for_each(|numbers| remove_range(numbers, gone));
         if let Some(targets) = target_density {
             targets.retain(|target| !gone.contains(&(target.particle as usize)));
@@ -139,6 +164,7 @@ impl<const D: usize> Boundary<D> {
     pub(super) fn memory_bytes(&self) -> usize {
         let Particles { r, v, rho, id } = &self.particles;
         let local: usize = self.local_positions.iter().map(|local| bytes(local)).sum();
+        let local = local + self.mirrored.iter().map(|mirrored| bytes(mirrored)).sum::<usize>();
         let vectors = optional_bytes(&self.normals) + optional_bytes(&self.extrapolated_velocity);
         let numbers = optional_bytes(&self.depths) + optional_bytes(&self.wetness);
         let marks = optional_bytes(&self.target_density) + optional_bytes(&self.shifting_suppressed);
@@ -173,6 +199,7 @@ impl<const D: usize> Boundary<D> {
                 let local = &self.local_positions[numbered.0];
                 r[range].iter_mut().zip(local).for_each(|(r, local)| *r = pose.point(local) + way);
             }
+            self.each_mirrored(numbered).for_each(|(i, own, axes)| r[i] = images.planes.mirrored(axes, &r[own]));
         }
         r
     }
@@ -186,6 +213,31 @@ impl<const D: usize> Boundary<D> {
             boundary_motion::place_boundary_particles(&solid.kinematics, local, r, &mut v[range]);
             if way != Vector::<D>::zeros() {
                 r.iter_mut().for_each(|r| *r += way);
+            }
+        }
+        let Self { particles: Particles { r, v, .. }, mirrored, .. } = self;
+        for (i, own, axes) in mirrored_of(&mirrored[number], solid) {
+            (r[i], v[i]) = (images.planes.mirrored(axes, &r[own]), reflected(axes, v[own]));
+        }
+    }
+
+    /// The mirror images of the boundary particles of a solid: their indices, those of their originals, and the axes of the planes.
+    pub(super) fn each_mirrored<'a>(
+        &'a self,
+        (number, solid): (usize, &'a Solid<D>),
+    ) -> impl Iterator<Item = (usize, usize, AxisSet)> + 'a {
+        mirrored_of(&self.mirrored[number], solid)
+    }
+
+    /// Gives the mirror image of each boundary particle its density and, reflected, the velocity with which it acts.
+    pub(super) fn update_mirrored(&mut self, solids: &[Solid<D>]) {
+        let Self { particles: Particles { rho, .. }, extrapolated_velocity, mirrored, .. } = self;
+        for (mirrored, solid) in mirrored.iter().zip(solids) {
+            for (i, own, axes) in mirrored_of(mirrored, solid) {
+                rho[i] = rho[own];
+                if let Some(acting) = extrapolated_velocity {
+                    acting[i] = reflected(axes, acting[own]);
+                }
             }
         }
     }
@@ -314,7 +366,7 @@ impl<const D: usize> System<D> {
             let pressure = fit.pressure(&pull, &medium.gravity, depths[i]);
             let density = medium.rho0 * (1.0 + self.equation_of_state.compression(pressure));
             let (approach, cover) = (fit.approach(&particles.v[i]), coverage.cover(fit.weight_sum, depths[i]));
-            let water_in_place = self.particle_mass() * owner.boundary_of_copy(0).len() as f64;
+            let water_in_place = self.particle_mass() * owner.division.whole as f64;
             let heaviness = owner.body.as_ref().map_or(f64::INFINITY, |body| body.mass / water_in_place);
             let (own, rho0, c0) = (particles.rho[i], medium.rho0, medium.c0);
             TargetDensity { particle, target: WallTarget::new(density, own, approach, cover, heaviness, rho0, c0) }
@@ -344,7 +396,7 @@ impl<const D: usize> System<D> {
     }
 
     /// Number of the solid of boundary particle `i`.
-    fn owner(&self, i: usize) -> usize {
+    pub(super) fn owner(&self, i: usize) -> usize {
         self.solids.partition_point(|solid| solid.boundary.end <= i)
     }
 
@@ -377,6 +429,15 @@ impl<const D: usize> System<D> {
         let middle = self.boundary.middle(solid, &own.kinematics.pose);
         own.boundary_of_copy(self.fluid.images.home_copy(&middle, own.copies))
     }
+}
+
+/// The mirror images of the boundary particles of `solid`: their indices, those of their originals, and the axes of the planes.
+fn mirrored_of<const D: usize>(
+    mirrored: &[MirroredParticle],
+    solid: &Solid<D>,
+) -> impl Iterator<Item = (usize, usize, AxisSet)> {
+    let (start, first) = (solid.boundary.start, solid.boundary.start + solid.division.own);
+    mirrored.iter().enumerate().map(move |(k, image)| (first + k, start + image.own as usize, image.axes))
 }
 
 /// Removes `gone` from an array that may be shorter.

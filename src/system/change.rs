@@ -6,7 +6,7 @@ use super::{Reordering, System, boundary_extension::ExtensionParticle};
 use crate::{
     error::Result,
     math::{Bivector, Vector},
-    solid::{Kinematics, Load, Role, Solid, SolidSpec},
+    solid::{Kinematics, Load, Role, Solid, SolidDivision, SolidSpec},
 };
 
 impl<const D: usize> System<D> {
@@ -18,7 +18,8 @@ impl<const D: usize> System<D> {
         extension: &[ExtensionParticle<D>],
     ) -> Result<()> {
         let copies = self.fluid.images.copies(&spec);
-        let skin = self.boundary.append(&self.model, &spec, (&kinematics, copies), extension)?;
+        let (skin, division) =
+            self.boundary.append(&self.model, &spec, (&kinematics, copies), extension, &self.fluid.images)?;
         let (acceleration, whirl, load) = (Vector::zeros(), Bivector::zero(), Load::zero());
         let yielding = Default::default();
         self.solids.push(Solid {
@@ -29,6 +30,7 @@ impl<const D: usize> System<D> {
             angular_acceleration: whirl,
             boundary: skin,
             copies,
+            division,
             load,
             absorption: yielding,
         });
@@ -84,6 +86,7 @@ impl<const D: usize> System<D> {
         (solid.acceleration, solid.angular_acceleration) = (Vector::zeros(), Bivector::zero());
         solid.load = Load::zero();
         solid.boundary = gone.start..gone.start;
+        solid.division = SolidDivision { cut: 0, own: 0, whole: 0 };
         for later in &mut self.solids[i + 1..] {
             later.boundary = later.boundary.start - gone.len()..later.boundary.end - gone.len();
         }

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use serde::{Deserialize, Serialize};
 
-use super::{Escape, System};
+use super::{AxisSet, Escape, System};
 use crate::{
     error::{Error, ErrorKind, Result},
     interaction::PairSums,
@@ -24,6 +24,8 @@ pub(crate) struct SystemState<'a, const D: usize> {
     fluid: Cow<'a, Particles<D>>,
     /// Index of the original of each image; the images are the last of the fluid.
     images: Cow<'a, [u32]>,
+    /// Along which axes each image is reflected; empty without a symmetry plane.
+    reflections: Cow<'a, [AxisSet]>,
     /// Number of boundary particles.
     boundary_count: usize,
     /// The boundary particles whose density is not ρ₀, in ascending order, with their densities, kg/m³.
@@ -47,6 +49,7 @@ impl<const D: usize> System<D> {
         SystemState {
             fluid: Cow::Borrowed(&self.fluid.particles),
             images: Cow::Borrowed(&self.fluid.images.originals),
+            reflections: Cow::Borrowed(&self.fluid.images.reflections),
             boundary_count: self.boundary.particles.len(),
             boundary_density: density.filter(|(_, rho)| *rho != self.properties.rho0).collect(),
             kinematics: self.solids.iter().map(|s| s.kinematics).collect(),
@@ -74,6 +77,7 @@ impl<const D: usize> System<D> {
         let fewer = self.status.solids_added || self.fluid_domain.limits.escape == Escape::Remove;
         let all = if fewer { real <= self.fluid_domain.initial_count } else { real == self.fluid_domain.initial_count };
         all && state.images.iter().all(|&i| (i as usize) < real)
+            && state.reflections.len() == if self.symmetry_planes().any() { state.images.len() } else { 0 }
             && state.boundary_count == self.boundary.particles.len()
             && state.boundary_density.iter().all(|&(i, _)| (i as usize) < state.boundary_count)
             && state.kinematics.len() == solids
@@ -111,6 +115,7 @@ impl<const D: usize> System<D> {
         self.fluid.gradient_correction =
             self.fluid.gradient_correction.take().map(|_| state.gradient_correction.into_owned());
         self.fluid.images.originals = state.images.into_owned();
+        self.fluid.images.reflections = state.reflections.into_owned();
         self.rates.current = false;
         let loads = state.kinematics.into_iter().zip(state.loads);
         for (i, (solid, (kinematics, load))) in self.solids.iter_mut().zip(loads).enumerate() {

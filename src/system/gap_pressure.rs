@@ -60,28 +60,32 @@ impl<const D: usize> GapPressure<D> {
         self.particles.clear();
         let Some(support) = self.support else { return };
         let reach = support + 2.0 * margin;
-        let around: Vec<Bounds<D>> = solids.iter().map(|solid| Bounds::around(&r[solid.boundary.clone()])).collect();
-        let is_free = |i: usize| matches!(solids[i].spec.role, Role::Free(_));
+        // The images of a solid across symmetry planes are other solids.
+        let whole = solids.iter().map(|solid| (solid, solid.boundary_of_whole()));
+        let images = solids.iter().map(|solid| (solid, solid.boundary_of_whole().end..solid.boundary.end));
+        let groups: Vec<_> = whole.chain(images.filter(|(_, range)| !range.is_empty())).collect();
+        let around: Vec<Bounds<D>> = groups.iter().map(|(_, range)| Bounds::around(&r[range.clone()])).collect();
+        let is_free = |i: usize| matches!(groups[i].0.spec.role, Role::Free(_));
         let faces = |i: usize, j: usize| i != j && (is_free(i) || is_free(j));
-        // Candidates, by place and solid: near the box around a solid with which their own can have a gap.
+        // Candidates, by place and group: near the box around a group with which their own can have a gap.
         let mut candidates: Vec<(usize, usize)> = Vec::new();
-        for (i, solid) in solids.iter().enumerate() {
+        for (i, (_, range)) in groups.iter().enumerate() {
             let own = around[i].grown(reach);
-            let others = (0..solids.len()).filter(|&j| faces(i, j) && own.meets(&around[j]));
+            let others = (0..groups.len()).filter(|&j| faces(i, j) && own.meets(&around[j]));
             let others: Vec<Bounds<D>> = others.map(|j| around[j].grown(reach)).collect();
             if !others.is_empty() {
                 let place = |end: usize| wet.partition_point(|&w| (w as usize) < end);
                 let near = |&k: &usize| others.iter().any(|bounds| bounds.contains(&r[wet[k] as usize]));
-                let places = place(solid.boundary.start)..place(solid.boundary.end);
+                let places = place(range.start)..place(range.end);
                 candidates.extend(places.filter(near).map(|k| (k, i)));
             }
         }
         let points: Vec<Vector<D>> = candidates.iter().map(|&(k, _)| r[wet[k] as usize]).collect();
         let cells = PointCells::new(&points, reach);
-        let with_partners = |(n, &(place, solid)): (usize, &(usize, usize))| {
+        let with_partners = |(n, &(place, group)): (usize, &(usize, usize))| {
             let mut partners = Vec::new();
             cells.visit_near(&points[n], reach, |m, x| {
-                if faces(solid, candidates[m].1) && (x - points[n]).norm_squared() < reach * reach {
+                if faces(group, candidates[m].1) && (x - points[n]).norm_squared() < reach * reach {
                     partners.push(m as u32);
                 }
             });

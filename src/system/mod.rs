@@ -14,18 +14,23 @@ pub(crate) mod periodic;
 mod setup;
 mod sponge_layer;
 mod step_check;
+mod symmetric_setup;
+pub(crate) mod symmetry;
 mod view;
 
 pub(crate) use boundary::Boundary;
 pub(crate) use checkpoint::SystemState;
 pub(crate) use fluid::{Fluid, permute};
 use gap_pressure::GapPressure;
-use periodic::Images;
 pub(crate) use periodic::Periodic;
+use periodic::{Images, SortedWater};
 pub use setup::Setup;
 pub use sponge_layer::SpongeLayer;
 pub use step_check::{Escape, ExitPath, ParticleLimits, RemovedParticle};
 pub(crate) use step_check::{LimitViolation, StepCheck};
+pub(crate) use symmetry::{AxisSet, reflected};
+
+use symmetry::{reflected_auxiliary, reflected_sums, reflected_tensor};
 
 pub use crate::interaction::StepLimits;
 
@@ -94,6 +99,7 @@ pub(crate) struct FluidRates<'a, const D: usize> {
     pair_loop: &'a dyn PairLoop<D>,
     neighbours: &'a NeighbourLists<D>,
     originals: &'a [u32],
+    reflections: &'a [AxisSet],
     /// Number of particles that are no images.
     real: usize,
 }
@@ -102,12 +108,19 @@ impl<'a, const D: usize> FluidRates<'a, D> {
     /// Acceleration and density rate of water particle `i`.
     #[inline]
     pub(crate) fn of(&self, i: usize) -> PairSums<D> {
-        self.pair_loop.fluid_sums(self.neighbours, self.original(i))
+        let sums = self.pair_loop.fluid_sums(self.neighbours, self.original(i));
+        if self.reflections.is_empty() { sums } else { reflected_sums(self.reflection(i), sums) }
     }
 
     /// The sums of water particle `i` that only some laws need.
     pub(crate) fn auxiliary_of(&self, i: usize) -> AuxiliarySums<f64, D> {
-        self.pair_loop.auxiliary_sums(self.neighbours, self.original(i))
+        let sums = self.pair_loop.auxiliary_sums(self.neighbours, self.original(i));
+        if self.reflections.is_empty() { sums } else { reflected_auxiliary(self.reflection(i), sums) }
+    }
+
+    /// Along which axes particle `i` is reflected.
+    fn reflection(&self, i: usize) -> AxisSet {
+        i.checked_sub(self.real).map_or(0, |image| self.reflections[image])
     }
 
     /// The positions of the water for which the lists were made, m.
@@ -138,6 +151,8 @@ pub(crate) struct Status {
 pub(crate) struct Reordering<const D: usize> {
     /// New order of the water: `order[new] = old`.
     pub(crate) order: Vec<u32>,
+    /// Along which axes the vectors of each particle, in the new order, are reflected; empty without a symmetry plane.
+    pub(crate) reflections: Vec<AxisSet>,
     /// Boundary particles that have no water near them any more.
     pub(crate) dried: Vec<u32>,
     /// Particles that were removed.
@@ -146,9 +161,9 @@ pub(crate) struct Reordering<const D: usize> {
 
 /// An impulse that was shared equally by some water particles, and given to their images.
 pub(crate) struct MomentumTransfer<const D: usize> {
-    /// The water particles and their images.
-    pub(crate) particles: Vec<usize>,
-    /// Change of the velocity of each, m/s.
+    /// The water particles and their images, each with the axes along which its velocity is reflected.
+    pub(crate) particles: Vec<(usize, AxisSet)>,
+    /// Change of the velocity of each, before the reflection, m/s.
     pub(crate) velocity: Vector<D>,
     /// Energy that the water gained, J (J/m in 2-D).
     pub(crate) energy: f64,
@@ -157,6 +172,7 @@ pub(crate) struct MomentumTransfer<const D: usize> {
 impl<const D: usize> System<D> {
     /// Places the water of `setup` in hydrostatic balance below its levels, and the solids with their boundary particles.
     pub(crate) fn new(setup: Setup<D>, pair_loop: Box<dyn PairLoop<D>>) -> Result<Self> {
+        let planes = setup.symmetry_planes();
         let Setup {
             mut model,
             gravity_law,
@@ -168,6 +184,7 @@ impl<const D: usize> System<D> {
             constraints,
             domain,
             periodic,
+            symmetry: _,
             limits,
             sponge_layers,
         } = setup;
@@ -185,7 +202,7 @@ impl<const D: usize> System<D> {
         let head = water.iter().zip(&surface_levels).map(depth).zip(more).map(|(head, p)| head + p / properties.rho0);
         let rho = head.map(|head| properties.rho0 * (1.0 + equation_of_state.hydrostatic_compression(head))).collect();
         drop(surface_levels);
-        let fluid = Fluid::new(&model, water, velocity, rho, Images::new(periodic, support));
+        let fluid = Fluid::new(&model, water, velocity, rho, Images::new(periodic, planes, support));
         let particles = &fluid.particles;
         let region = FluidDomain {
             domain: domain.unwrap_or_else(Bounds::empty),
@@ -228,6 +245,13 @@ impl<const D: usize> System<D> {
             let everything = fluid.union(&Bounds::around(&system.boundary.particles.r));
             system.fluid_domain.domain = everything.grown(everything.size().max() + support);
         }
+        // Images may be as far beyond a plane as the water is before it.
+        let Bounds { min, max } = system.fluid_domain.domain;
+        for (axis, _) in planes.each() {
+            let bounds = &mut system.fluid_domain.domain;
+            let ends = [&min, &max].map(|end| planes.mirrored(1 << axis, end)[axis]);
+            (bounds.min[axis], bounds.max[axis]) = (min[axis].min(ends[1]), max[axis].max(ends[0]));
+        }
         for i in 0..system.solids.len() {
             system.place_boundary(i);
         }
@@ -245,9 +269,9 @@ impl<const D: usize> System<D> {
             return None;
         }
         let start = Instant::now();
-        let (order, lost) = self.sort_water();
+        let (SortedWater { order, reflections }, removed) = self.sort_water();
         self.status.neighbour_time += start.elapsed();
-        Some(Reordering { order, dried: self.rebuild_lists(), removed: lost })
+        Some(Reordering { order, reflections, dried: self.rebuild_lists(), removed })
     }
 
     /// Rebuilds the neighbour lists within a step, if that is needed; the water keeps its order.
@@ -323,6 +347,7 @@ impl<const D: usize> System<D> {
     pub(crate) fn update_rates(&mut self) {
         self.update_wall_state();
         self.boundary.update_copies(&self.solids, &self.fluid.images);
+        self.boundary.update_mirrored(&self.solids);
         self.update_gradient_corrections();
         let Self { pair_loop, neighbours, fluid, boundary, properties, equation_of_state, rates, gap_pressure, .. } =
             self;
@@ -357,16 +382,17 @@ impl<const D: usize> System<D> {
 
     /// The sums of the water from the last pass of a pair loop at the present lists.
     pub(crate) fn fluid_rates_of<'a>(&'a self, pair_loop: &'a dyn PairLoop<D>) -> FluidRates<'a, D> {
-        let originals = &self.fluid.images.originals[..];
-        FluidRates { pair_loop, neighbours: &self.neighbours, originals, real: self.particle_count() }
+        let Images { originals, reflections, .. } = &self.fluid.images;
+        FluidRates { pair_loop, neighbours: &self.neighbours, originals, reflections, real: self.particle_count() }
     }
 
     /// The water's particles, and their sums from the last force pass.
     pub(crate) fn fluid_and_rates(&mut self) -> (&mut Particles<D>, FluidRates<'_, D>) {
         let real = self.particle_count();
         let Fluid { particles, images, .. } = &mut self.fluid;
-        let (pair_loop, neighbours, originals) = (&*self.pair_loop, &self.neighbours, &images.originals[..]);
-        (particles, FluidRates { pair_loop, neighbours, originals, real })
+        let (pair_loop, neighbours) = (&*self.pair_loop, &self.neighbours);
+        let Images { originals, reflections, .. } = images;
+        (particles, FluidRates { pair_loop, neighbours, originals, reflections, real })
     }
 
     /// The stress that the next force pass reads, from the sums of this one.
@@ -406,7 +432,9 @@ impl<const D: usize> System<D> {
         });
         let real = corrections.len() - fluid.images.originals.len();
         let (real, images) = corrections.split_at_mut(real);
-        images.iter_mut().zip(&fluid.images.originals).for_each(|(image, &i)| *image = real[i as usize]);
+        let Images { originals, reflections, .. } = &fluid.images;
+        images.iter_mut().zip(originals).for_each(|(image, &i)| *image = real[i as usize]);
+        images.iter_mut().zip(reflections).for_each(|(image, &axes)| *image = reflected_tensor(axes, image));
         fluid.gradient_correction = Some(corrections);
     }
 
@@ -432,14 +460,19 @@ impl<const D: usize> System<D> {
                 // Beyond a periodic side the water is an image, and its load has been counted.
                 let own = wet.iter().map(|&i| &r[i as usize]).zip(sums);
                 let own = own.filter(|(r, _)| self.fluid.images.is_inside(r));
-                own.map(|(r, s)| Load::from_force_at(&(r - centre), s.acceleration * mass)).sum()
+                if solid.division.cut == 0 {
+                    return own.map(|(r, s)| Load::from_force_at(&(r - centre), s.acceleration * mass)).sum();
+                }
+                let force = |r: &Vector<D>, s: &PairSums<D>| s.acceleration * (mass * self.computed_share(solid, r));
+                own.map(|(r, s)| Load::from_force_at(&(r - centre), force(r, s))).sum()
             };
             let parts: Vec<Load<D>> = chunks.map(part).collect();
             parts.into_iter().sum()
         };
         let of = |numbered: (usize, &Solid<D>)| {
             let copies = self.boundary.copies(&self.fluid.images, numbered, &numbered.1.kinematics.pose);
-            copies.map(|copy| of_copy(numbered.1, copy)).sum()
+            let load = copies.map(|copy| of_copy(numbered.1, copy)).sum();
+            if numbered.1.division.cut == 0 { load } else { self.load_on_whole(numbered.1, load) }
         };
         self.solids.iter().enumerate().map(of).collect()
     }
@@ -461,12 +494,15 @@ impl<const D: usize> System<D> {
         self.status.step_limits
     }
 
-    /// Returns the `impulse` (N s) to the water nearest to `solid`, in equal shares.
+    /// Returns the `impulse` (N s) to the water nearest to `solid`, in equal shares. Across a plane that cuts the solid the images of
+    /// that water get their share of it.
     pub(crate) fn return_impulse(&mut self, solid: usize, impulse: &Vector<D>) -> Option<MomentumTransfer<D>> {
         if impulse.norm_squared() == 0.0 {
             return None;
         }
-        let (real, mass) = (self.particle_count(), self.particle_mass());
+        let mass = self.particle_mass() * self.symmetry_planes().multiplicity(!self.solids[solid].division.cut);
+        let real = self.particle_count();
+        let images_of_all = self.solid_multiplicity(solid);
         let own = Bounds::around(&self.boundary.particles.r[self.home_boundary(solid)]);
         let water = &mut self.fluid.particles;
         let mut distance = self.model.support_radius();
@@ -477,12 +513,13 @@ impl<const D: usize> System<D> {
             if !particles.is_empty() {
                 let velocity = impulse / (particles.len() as f64 * mass);
                 let gained: f64 = particles.iter().map(|&i| velocity.dot(&(water.v[i] + velocity * 0.5))).sum();
-                let images = self.fluid.images.originals.iter().zip(real..);
-                let moved = images.filter(|(i, _)| particles.binary_search(&(**i as usize)).is_ok()).map(|(_, k)| k);
-                let moved: Vec<usize> = moved.collect();
-                particles.extend(moved);
-                particles.iter().for_each(|&i| water.v[i] += velocity);
-                return Some(MomentumTransfer { particles, velocity, energy: gained * mass });
+                let Images { originals, reflections, .. } = &self.fluid.images;
+                let is_moved = |(i, _): &(&u32, usize)| particles.binary_search(&(**i as usize)).is_ok();
+                let reflection = |k: usize| reflections.get(k).copied().unwrap_or(0);
+                let moved = originals.iter().zip(0..).filter(is_moved).map(|(_, k)| (real + k, reflection(k)));
+                let particles: Vec<_> = particles.iter().map(|&i| (i, 0)).chain(moved).collect();
+                particles.iter().for_each(|&(i, axes)| water.v[i] += reflected(axes, velocity));
+                return Some(MomentumTransfer { particles, velocity, energy: gained * mass * images_of_all });
             }
             distance *= 2.0;
             if !distance.is_finite() {

@@ -2,7 +2,7 @@
 //!
 //! Water near a side has an image one period away, a particle of the arrays like any other, after all that is real. An
 //! image takes its rates from the particle that it mirrors, so that whoever moves the water moves both alike; only what
-//! counts the water leaves images out.
+//! counts the water leaves images out. The images across symmetry planes are made here too ([`super::symmetry`]).
 //!
 //! Fixed and driven solids have no images: they reach beyond the sides as far as those of the water do. A free solid is
 //! not wrapped: its kinematics go on beyond the sides. Its boundary particles stand in the arrays twice for each periodic
@@ -11,18 +11,22 @@
 //! take its density. A copy moves by two periods when the middle of the solid passes the middle between the sides; then
 //! no water is near it.
 
-use super::{Fluid, RemovedParticle, System};
+use super::{
+    Fluid, RemovedParticle, System,
+    symmetry::{AxisSet, SymmetryPlanes, reflected, reflected_tensor},
+};
 use crate::{
     error::{Error, Result},
     interaction::StepLimits,
     math::{Bounds, Vector},
     model::Model,
+    particles::Particles,
     solid::{Constraints, Role, SolidSpec},
 };
 
 /// How far images reach beyond a side, over the kernel's support: the skin beyond a side sees water as that inside does, also
 /// while lists grow old.
-const WIDTH: f64 = 2.5;
+pub(super) const WIDTH: f64 = 2.5;
 
 /// For each axis where a period begins and ends (m), if it has one.
 pub(crate) type Periodic<const D: usize> = [Option<[f64; 2]>; D];
@@ -30,20 +34,32 @@ pub(crate) type Periodic<const D: usize> = [Option<[f64; 2]>; D];
 /// The images of the water.
 pub(super) struct Images<const D: usize> {
     pub(super) periodic: Periodic<D>,
-    width: f64,
+    pub(super) planes: SymmetryPlanes<D>,
+    pub(super) width: f64,
     /// Which particle each of them mirrors; they follow the real ones in this order.
     pub(super) originals: Vec<u32>,
+    /// Along which axes each of them is reflected; empty without a symmetry plane.
+    pub(super) reflections: Vec<AxisSet>,
+}
+
+/// An image to be made.
+struct NewImage<const D: usize> {
+    /// Index of the particle that it mirrors.
+    original: u32,
+    /// Whole periods from the place of the original, reflected, to its own, m.
+    away: Vector<D>,
+    axes: AxisSet,
 }
 
 impl<const D: usize> Images<D> {
     /// None yet, for a kernel of support `reach` (m).
-    pub(super) fn new(periodic: Periodic<D>, reach: f64) -> Self {
-        Self { periodic, width: WIDTH * reach, originals: Vec::new() }
+    pub(super) fn new(periodic: Periodic<D>, planes: SymmetryPlanes<D>, reach: f64) -> Self {
+        Self { periodic, planes, width: WIDTH * reach, originals: Vec::new(), reflections: Vec::new() }
     }
 
-    /// Whether any side is periodic.
+    /// Whether any side is periodic or a symmetry plane.
     fn any(&self) -> bool {
-        self.periodic.iter().any(Option::is_some)
+        self.periodic.iter().any(Option::is_some) || self.planes.any()
     }
 
     /// Brings particles that have left through a periodic side in at the other.
@@ -58,27 +74,33 @@ impl<const D: usize> Images<D> {
         }
     }
 
-    /// Makes the images of the particles at `r` (m): which they mirror, and how far away they are (m).
-    fn make(&self, r: &[Vector<D>]) -> Vec<(u32, Vector<D>)> {
+    /// Makes the images of the particles at `r` (m).
+    fn make(&self, r: &[Vector<D>]) -> Vec<NewImage<D>> {
         let mut images = Vec::new();
-        for (axis, side) in self.periodic.iter().enumerate() {
-            let Some([from, to]) = *side else { continue };
-            let mirror = |i: u32, away: Vector<D>, images: &mut Vec<_>| {
-                let x = r[i as usize][axis];
-                for (near, sign) in [(x < from + self.width, 1.0), (x >= to - self.width, -1.0)] {
-                    if near {
-                        let mut away = away;
-                        away[axis] += sign * (to - from);
-                        images.push((i, away));
+        for axis in 0..D {
+            let mirror = |original: u32, away: Vector<D>, axes: AxisSet, images: &mut Vec<_>| {
+                let x = r[original as usize][axis];
+                if let Some([from, to]) = self.periodic[axis] {
+                    for (near, sign) in [(x < from + self.width, 1.0), (x >= to - self.width, -1.0)] {
+                        if near {
+                            let mut away = away;
+                            away[axis] += sign * (to - from);
+                            images.push(NewImage { original, away, axes });
+                        }
                     }
+                }
+                if self.planes.0[axis].is_some_and(|plane| plane.depth(x) < self.width) {
+                    images.push(NewImage { original, away, axes: axes | 1 << axis });
                 }
             };
             // Those of the axes before have images along this one too: the corners.
             let before = images.len();
-            (0..r.len() as u32).for_each(|i| mirror(i, Vector::zeros(), &mut images));
+            if self.periodic[axis].is_some() || self.planes.0[axis].is_some() {
+                (0..r.len() as u32).for_each(|i| mirror(i, Vector::zeros(), 0, &mut images));
+            }
             for k in 0..before {
-                let (i, away) = images[k];
-                mirror(i, away, &mut images);
+                let NewImage { original, away, axes } = images[k];
+                mirror(original, away, axes, &mut images);
             }
         }
         images
@@ -111,9 +133,9 @@ impl<const D: usize> Images<D> {
         (0..copies).find(is_home).unwrap_or(0)
     }
 
-    /// The place between the sides that is whole periods from `x` (m).
+    /// The place between the sides that is whole periods from `x` (m), or its image on the computed side of the symmetry planes.
     pub(super) fn wrapped(&self, x: &Vector<D>) -> Vector<D> {
-        let mut r = [*x];
+        let mut r = [self.planes.folded(x)];
         self.wrap(&mut r);
         r[0]
     }
@@ -125,11 +147,61 @@ impl<const D: usize> Images<D> {
     }
 }
 
+/// How the arrays of particles change when the water is sorted.
+pub(super) struct SortedWater {
+    /// `order[new] = old`; for an image that of its original.
+    pub(super) order: Vec<u32>,
+    /// Along which axes the vectors of each particle are reflected; empty without a symmetry plane.
+    pub(super) reflections: Vec<AxisSet>,
+}
+
+impl<const D: usize> Fluid<D> {
+    /// Lets those of the first `real` particles that have crossed a symmetry plane change places with their images. Returns the axes
+    /// along which each of them is reflected, or an empty list without a plane.
+    fn fold_at_planes(&mut self, real: usize) -> Vec<AxisSet> {
+        if !self.images.planes.any() {
+            return Vec::new();
+        }
+        let folded: Vec<AxisSet> = self.particles.r[..real].iter().map(|r| self.images.planes.axes_beyond(r)).collect();
+        folded.iter().enumerate().filter(|(_, axes)| **axes != 0).for_each(|(i, axes)| self.reflect(i, *axes));
+        folded
+    }
+
+    /// Reflects the images after the first `real` particles, which stand in the places of their originals.
+    fn reflect_images(&mut self, real: usize) {
+        for image in 0..self.images.reflections.len() {
+            self.reflect(real + image, self.images.reflections[image]);
+        }
+    }
+
+    /// Reflects particle `i` at the planes normal to `axes`.
+    fn reflect(&mut self, i: usize, axes: AxisSet) {
+        self.particles.r[i] = self.images.planes.mirrored(axes, &self.particles.r[i]);
+        self.particles.v[i] = reflected(axes, self.particles.v[i]);
+        for tensors in self.stress.iter_mut().chain(&mut self.gradient_correction) {
+            tensors[i] = reflected_tensor(axes, &tensors[i]);
+        }
+    }
+
+    /// Gives the images across symmetry planes velocity and density of their originals, after these were changed by hand.
+    pub(crate) fn update_reflected_images(&mut self) {
+        let real = self.particles.len() - self.images.originals.len();
+        for image in 0..self.images.reflections.len() {
+            let original = self.images.originals[image] as usize;
+            let Particles { v, rho, .. } = &mut self.particles;
+            v[real + image] = reflected(self.images.reflections[image], v[original]);
+            rho[real + image] = rho[original];
+        }
+    }
+}
+
 impl<const D: usize> System<D> {
-    /// Wraps the water round the periodic sides, removes what left the domain or is displaced, sorts it along the columns and
-    /// puts new images at its end. Returns the order, `order[new] = old` (for an image that of its original), and what was removed.
-    pub(super) fn sort_water(&mut self) -> (Vec<u32>, Vec<RemovedParticle<D>>) {
+    /// Wraps the water round the periodic sides and folds it at the symmetry planes, removes what left the domain or is displaced,
+    /// sorts it along the columns and puts new images at its end. Returns how the arrays of particles have changed, and what was
+    /// removed.
+    pub(super) fn sort_water(&mut self) -> (SortedWater, Vec<RemovedParticle<D>>) {
         let real = self.particle_count();
+        let folded = self.fluid.fold_at_planes(real);
         let Fluid { particles, images, displaced, .. } = &mut self.fluid;
         images.wrap(&mut particles.r[..real]);
         let mut order = self.neighbours.column_order(&particles.r[..real]);
@@ -144,15 +216,23 @@ impl<const D: usize> System<D> {
         if images.any() {
             let sorted: Vec<Vector<D>> = order.iter().map(|&i| particles.r[i as usize]).collect();
             copies = images.make(&sorted);
-            order.extend(copies.iter().map(|(of, _)| order[*of as usize]).collect::<Vec<_>>());
+            order.extend(copies.iter().map(|image| order[image.original as usize]).collect::<Vec<_>>());
         }
         self.fluid.permute(&order);
-        let Fluid { particles, images, .. } = &mut self.fluid;
-        for (r, (_, away)) in particles.r[real..].iter_mut().zip(&copies) {
-            *r += away;
+        let images = &mut self.fluid.images;
+        images.originals = copies.iter().map(|image| image.original).collect();
+        let mut reflections = Vec::new();
+        if images.planes.any() {
+            images.reflections = copies.iter().map(|image| image.axes).collect();
+            self.fluid.reflect_images(real);
+            let of_image = |new: usize| new.checked_sub(real).map_or(0, |image| copies[image].axes);
+            let of_original = |old: u32| folded.get(old as usize).copied().unwrap_or(0);
+            reflections = order.iter().enumerate().map(|(new, &old)| of_original(old) ^ of_image(new)).collect();
         }
-        images.originals = copies.into_iter().map(|(of, _)| of).collect();
-        (order, lost)
+        for (r, image) in self.fluid.particles.r[real..].iter_mut().zip(&copies) {
+            *r += image.away;
+        }
+        (SortedWater { order, reflections }, lost)
     }
 
     /// Limits the next step by the acceleration of the water without its images.

@@ -53,6 +53,9 @@ pub struct Setup<const D: usize> {
     pub domain: Option<Bounds<D>>,
     /// Which sides are periodic.
     pub periodic: Periodic<D>,
+    /// Coordinate of the symmetry plane normal to each axis, m. The water on one side is computed: the side with all the water,
+    /// or, of water on both sides, that of greater coordinates. Solids that a plane cuts are given whole.
+    pub symmetry: [Option<f64>; D],
     /// The valid range of a water particle.
     pub limits: ParticleLimits,
     /// Where water loses its motion.
@@ -73,6 +76,7 @@ impl<const D: usize> Setup<D> {
             constraints: Constraints::default(),
             domain: None,
             periodic: [None; D],
+            symmetry: [None; D],
             limits: ParticleLimits::default(),
             sponge_layers: Vec::new(),
         }
@@ -192,6 +196,15 @@ impl<const D: usize> Setup<D> {
     /// If `axis` is not less than the dimension.
     pub fn periodic(mut self, axis: usize, min: f64, max: f64) -> Self {
         self.periodic[axis] = Some([min, max]);
+        self
+    }
+
+    /// The same setup with a symmetry plane normal to axis number `axis` at the coordinate `at` (m): see [`Setup::symmetry`].
+    ///
+    /// # Panics
+    /// If `axis` is not less than the dimension.
+    pub fn symmetry_plane(mut self, axis: usize, at: f64) -> Self {
+        self.symmetry[axis] = Some(at);
         self
     }
 

@@ -1,16 +1,18 @@
 //! What may be read of a system.
 
-use std::time::Duration;
+use std::{collections::BTreeMap, time::Duration};
 
 use super::{
-    Periodic, System,
+    Fluid, Periodic, System,
     memory::{bytes, optional_bytes},
+    reflected,
+    symmetry::{SymmetryPlanes, reflected_turn},
 };
 use crate::{
-    math::{Bounds, Vector},
+    math::{Bivector, Bounds, Pose, Vector},
     model::{Model, TimeScheme},
     particles::ParticlesView,
-    solid::{Constraints, Load, LoadContext, Solid},
+    solid::{Constraints, Load, LoadContext, Role, Solid},
     sph::{FluidProperties, boundary::WallExtrapolation},
 };
 
@@ -81,11 +83,12 @@ impl<const D: usize> System<D> {
         self.equation_of_state.compression_energy(rho / self.properties.rho0 - 1.0)
     }
 
-    /// Energy (J; J/m in 2-D) of a water particle of density `rho` (kg/m³) that moves at `v` (m/s) at `r` (m): motion, height,
-    /// compression.
+    /// Energy (J; J/m in 2-D) of a water particle of density `rho` (kg/m³) that moves at `v` (m/s) at `r` (m), and of its images
+    /// across symmetry planes: motion, height, compression.
     pub(crate) fn particle_energy(&self, r: &Vector<D>, v: &Vector<D>, rho: f64) -> f64 {
         let height = self.non_periodic_gravity().dot(r);
-        self.particle_mass() * (0.5 * v.norm_squared() - height + self.compression_energy(rho))
+        let mass = self.particle_mass() * self.water_multiplicity();
+        mass * (0.5 * v.norm_squared() - height + self.compression_energy(rho))
     }
 
     /// Acceleration (m/s²) of water particle `i` at the last force pass, gravity included; zero in a restored state until the next.
@@ -129,9 +132,10 @@ impl<const D: usize> System<D> {
         LoadContext { loads, wet, sound_crossing_time: self.properties.h / self.properties.c0 }
     }
 
-    /// Energy of the water's motion, Σ ½ m v², J (J/m in 2-D).
+    /// Energy of the water's motion, Σ ½ m v², J (J/m in 2-D), on both sides of symmetry planes.
     pub fn kinetic_energy(&self) -> f64 {
-        0.5 * self.particle_mass() * self.fluid().v.iter().map(|v| v.norm_squared()).sum::<f64>()
+        let half = 0.5 * self.particle_mass() * self.fluid().v.iter().map(|v| v.norm_squared()).sum::<f64>();
+        half * self.water_multiplicity()
     }
 
     /// Acceleration of gravity (m/s²) along the axes that have a height: those that are not periodic.
@@ -150,7 +154,79 @@ impl<const D: usize> System<D> {
         if along.norm_squared() == 0.0 {
             return 0.0;
         }
-        self.particle_mass() * self.fluid().v.iter().map(|v| along.dot(v)).sum::<f64>()
+        self.particle_mass() * self.water_multiplicity() * self.fluid().v.iter().map(|v| along.dot(v)).sum::<f64>()
+    }
+
+    /// The symmetry planes.
+    pub(crate) fn symmetry_planes(&self) -> &SymmetryPlanes<D> {
+        &self.fluid.images.planes
+    }
+
+    /// Number of images of the computed water, itself counted: its energy times this number is that of all water.
+    pub(crate) fn water_multiplicity(&self) -> f64 {
+        self.symmetry_planes().multiplicity(0)
+    }
+
+    /// Number of images of solid number `i`, itself counted. A plane that cuts the solid gives it no other image.
+    pub(crate) fn solid_multiplicity(&self, i: usize) -> f64 {
+        self.symmetry_planes().multiplicity(self.solids[i].division.cut)
+    }
+
+    /// The share (–) of the boundary particle at `r` (m) of `solid` that the computed side has.
+    pub(crate) fn computed_share(&self, solid: &Solid<D>, r: &Vector<D>) -> f64 {
+        self.symmetry_planes().share(solid.division.cut, r, self.model.dp)
+    }
+
+    /// Whether the moving solid number `i` at `pose`, which no plane cuts, reaches a plane, where it meets its image.
+    pub(crate) fn meets_its_image(&self, i: usize, pose: &Pose<D>) -> bool {
+        let (planes, cut) = (self.symmetry_planes(), self.solids[i].division.cut);
+        let mut apart = planes.each().filter(|(axis, _)| cut >> axis & 1 == 0).peekable();
+        if apart.peek().is_none() || matches!(self.solids[i].spec.role, Role::Fixed) {
+            return false;
+        }
+        // The rows of the solid and of its image are a row apart then.
+        let near = 0.5 * self.model.dp;
+        let corners: Vec<Vector<D>> = self.boundary.local_bounds[i].corners().map(|x| pose.point(&x)).collect();
+        apart.any(|(axis, plane)| corners.iter().any(|x| plane.depth(x[axis]) < near))
+    }
+
+    /// The load on the whole `solid`, if the computed side gives `load` about its centre.
+    pub(super) fn load_on_whole(&self, solid: &Solid<D>, load: Load<D>) -> Load<D> {
+        let (planes, cut) = (self.symmetry_planes(), solid.division.cut);
+        let cutting = planes.each().filter(|(axis, _)| cut >> axis & 1 == 1);
+        cutting.fold(load, |load, (axis, plane)| {
+            let axes = 1 << axis;
+            let force = reflected(axes, load.force);
+            // The reflected torque is one about the reflected centre.
+            let mut arm = Vector::zeros();
+            arm[axis] = 2.0 * (plane.at - solid.kinematics.centre[axis]);
+            load + Load { force, torque: reflected_turn(axes, &load.torque) + Bivector::torque(&arm, &force) }
+        })
+    }
+
+    /// Force (N; N/m in 2-D) of the computed water and of the computed parts of the solids on the symmetry plane normal to
+    /// axis number `axis`, positive outwards, at the last force pass: what the other side of the plane would get. 0 without a plane.
+    ///
+    /// Along its normal the momentum of the computed side changes by gravity, by this force, and by what holds the solids.
+    pub fn symmetry_plane_force(&self, axis: usize) -> f64 {
+        let Some(plane) = self.symmetry_planes().0.get(axis).copied().flatten() else { return 0.0 };
+        let (mass, g, rates) = (self.particle_mass(), self.properties.gravity[axis], self.fluid_rates());
+        let water: f64 = (0..self.particle_count()).map(|i| rates.of(i).acceleration[axis] - g).sum();
+        let mut solids = 0.0;
+        for (&i, sums) in self.neighbours.boundary_near_fluid().iter().zip(&self.rates.boundary) {
+            let (i, solid) = (i as usize, &self.solids[self.owner(i as usize)]);
+            if i < solid.boundary.start + solid.division.own {
+                solids += sums.acceleration[axis] * self.computed_share(solid, &self.boundary.particles.r[i]);
+            }
+        }
+        mass * (water + solids) * if plane.is_upper { 1.0 } else { -1.0 }
+    }
+
+    /// Velocity (m/s) of water particle `i` as seen at `place` (m), which is its own or that of its image.
+    pub(crate) fn velocity_seen_at(&self, i: usize, place: &Vector<D>) -> Vector<D> {
+        let Fluid { particles, images, .. } = &self.fluid;
+        let axes = images.planes.axes_beyond(place) ^ images.planes.axes_beyond(&particles.r[i]);
+        reflected(axes, particles.v[i])
     }
 
     /// Whether `x` (m) lies between the periodic sides.
@@ -158,13 +234,14 @@ impl<const D: usize> System<D> {
         self.fluid.images.is_inside(x)
     }
 
-    /// The place between the periodic sides that is whole periods from `x` (m).
+    /// The place between the periodic sides that is whole periods from `x` (m), or its image on the computed side of the symmetry
+    /// planes.
     pub fn wrapped(&self, x: &Vector<D>) -> Vector<D> {
         self.fluid.images.wrapped(x)
     }
 
     /// Calls `visit` with index, place (m) and kernel value W (1/mᴰ) of each water particle whose support holds `x` (m). Across
-    /// a periodic side the place is that of its image.
+    /// a periodic side or a symmetry plane the place is that of its image.
     pub fn visit_fluid_near(&self, x: &Vector<D>, visit: &mut dyn FnMut(usize, &Vector<D>, f64)) {
         let real = self.particle_count();
         self.neighbours.visit_fluid_around(x, &mut |i| {
@@ -187,10 +264,30 @@ impl<const D: usize> System<D> {
     /// Calls `visit` with the index of each boundary particle of solid number `solid` beside water, and the force (N; N/m in 2-D)
     /// of the water on it at the last force pass. They sum up to the solid's load.
     pub(crate) fn visit_boundary_forces(&self, solid: usize, visit: &mut dyn FnMut(usize, Vector<D>)) {
-        let (mass, skin) = (self.particle_mass(), &self.solids[solid].boundary);
+        let (mass, own) = (self.particle_mass(), &self.solids[solid]);
+        let skin = if own.copies > 1 { own.boundary.clone() } else { own.boundary_of_copy(0) };
+        let mut forces = BTreeMap::new();
         for (&i, sums) in self.neighbours.boundary_near_fluid().iter().zip(&self.rates.boundary) {
-            if skin.contains(&(i as usize)) && self.fluid.images.is_inside(&self.boundary.particles.r[i as usize]) {
+            let r = &self.boundary.particles.r[i as usize];
+            if !skin.contains(&(i as usize)) || !self.fluid.images.is_inside(r) {
+                continue;
+            }
+            if own.division.cut == 0 {
                 visit(i as usize, sums.acceleration * mass);
+                continue;
+            }
+            // What lies on a plane gets the force from both sides.
+            let (planes, share) = (self.symmetry_planes(), self.computed_share(own, r));
+            let on_planes = planes.axes_of_planes_at(own.division.cut, r, self.model.dp);
+            let both = |f: Vector<D>, axis: usize| f + reflected(1 << axis, f);
+            let axes = (0..D).filter(|axis| on_planes >> axis & 1 == 1);
+            let force = axes.fold(sums.acceleration * (mass * share), both);
+            visit(i as usize, force);
+            forces.insert(i as usize, force);
+        }
+        for (i, original, axes) in self.boundary.each_mirrored((solid, own)) {
+            if let Some(force) = forces.get(&original).filter(|_| own.boundary_of_whole().contains(&i)) {
+                visit(i, reflected(axes, *force));
             }
         }
     }

@@ -17,7 +17,7 @@ use crate::{
     model::{Model, TimeScheme},
     particles::PARTICLES_PER_TASK,
     sph::boundary::relaxation,
-    system::{MomentumTransfer, Reordering, System},
+    system::{MomentumTransfer, Reordering, System, reflected},
 };
 
 /// The chosen scheme with its state.
@@ -50,7 +50,7 @@ impl<const D: usize> Stepper<D> {
         if let Self::Verlet(verlet) = self {
             let before = verlet.previous_velocities_mut();
             for MomentumTransfer { particles, velocity, .. } in transfers {
-                particles.iter().for_each(|&i| before[i] += *velocity);
+                particles.iter().for_each(|&(i, axes)| before[i] += reflected(axes, *velocity));
             }
         }
     }

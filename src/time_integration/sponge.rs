@@ -17,10 +17,11 @@ pub(super) fn damp_velocities<const D: usize>(
     }
     let energy = if measured { system.kinetic_energy() } else { 0.0 };
     let mut v = std::mem::take(&mut system.fluid.particles.v);
-    let (layers, r) = (system.sponge_layers(), &system.fluid.particles.r);
+    let (layers, planes, r) = (system.sponge_layers(), system.symmetry_planes(), &system.fluid.particles.r);
+    let rate_at = |r: &Vector<D>| layers.iter().map(|layer| layer.rate(r)).sum::<f64>();
     for v in [Some(&mut v[..]), before].into_iter().flatten() {
         v.par_iter_mut().zip(r).with_min_len(PARTICLES_PER_TASK).for_each(|(v, r)| {
-            let rate: f64 = layers.iter().map(|layer| layer.rate(r)).sum();
+            let rate = if planes.any() { rate_at(&planes.folded(r)) } else { rate_at(r) };
             if rate > 0.0 {
                 *v *= (-rate * dt).exp();
             }

@@ -21,7 +21,7 @@ use crate::{
     math::Vector,
     model::Model,
     particles::PARTICLES_PER_TASK,
-    system::{Reordering, StepCheck, System, permute},
+    system::{Reordering, StepCheck, System, permute, reflected},
 };
 
 /// How many e-foldings of the difference of even and odd steps are let grow. A still tank (2-D, 10 dp deep, h = √3 dp)
@@ -66,6 +66,7 @@ impl<const D: usize> Verlet<D> {
     /// Follows the water into a new order; the dried boundary particles are at `rho0` (kg/m³).
     pub(crate) fn reorder(&mut self, reordering: &Reordering<D>, rho0: f64) {
         permute(&mut self.v_before, &reordering.order);
+        self.v_before.iter_mut().zip(&reordering.reflections).for_each(|(v, axes)| *v = reflected(*axes, *v));
         permute(&mut self.rho_before, &reordering.order);
         if !self.skin_rho_before.is_empty() {
             reordering.dried.iter().for_each(|&i| self.skin_rho_before[i as usize] = rho0);

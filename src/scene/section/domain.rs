@@ -1,10 +1,10 @@
-//! `domain`, `periodic` and `[guard]`: the region of the water and the valid range of its particles.
+//! `domain`, `periodic`, `symmetry` and `[guard]`: the region of the water and the valid range of its particles.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    error::Result,
+    error::{ErrorCode, Result},
     math::BoxConfig,
     scene::context::{Context, Defaults},
     simulation::{Escape, ParticleLimits},
@@ -61,6 +61,48 @@ impl PeriodicConfig {
     pub(crate) fn build<const D: usize>(&self) -> Periodic<D> {
         let sides = [self.x, self.y, self.z];
         std::array::from_fn(|axis| sides[axis])
+    }
+}
+
+/// Coordinate of the symmetry plane normal to each axis, m.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+#[non_exhaustive]
+pub struct SymmetryConfig {
+    /// Of the plane normal to x, m.
+    pub x: Option<f64>,
+    /// Of the plane normal to y, m.
+    pub y: Option<f64>,
+    /// Of the plane normal to z, m; 3-D only.
+    pub z: Option<f64>,
+}
+
+impl SymmetryConfig {
+    /// Refuses planes that are nowhere, or along an axis that the scene does not have or that is periodic.
+    pub(crate) fn verify(&self, ctx: &Context, periodic: Option<&PeriodicConfig>) -> Result<()> {
+        let sides = periodic.map_or([None; 3], |sides| [sides.x, sides.y, sides.z]);
+        for ((axis, plane), side) in ["x", "y", "z"].into_iter().zip([self.x, self.y, self.z]).zip(sides) {
+            let Some(at) = plane else { continue };
+            let key = format!("symmetry.{axis}");
+            if axis == "z" && ctx.dimension == 2 {
+                return Err(ctx.error_with_help(&key, "a 2-D scene has no z", "its axes are x and y"));
+            }
+            if !at.is_finite() {
+                return Err(ctx.error_at(&key, format!("a symmetry plane at {axis} = {at}")));
+            }
+            if side.is_some() {
+                let help = format!("leave  periodic.{axis}  or  symmetry.{axis}  out");
+                let what = format!("{axis} is periodic and has a symmetry plane");
+                return Err(ctx.error_with_help(&key, what, help).with_code(ErrorCode::ConflictingKeys));
+            }
+        }
+        Ok(())
+    }
+
+    /// The coordinate of each plane.
+    pub(crate) fn build<const D: usize>(&self) -> [Option<f64>; D] {
+        let planes = [self.x, self.y, self.z];
+        std::array::from_fn(|axis| planes[axis])
     }
 }
 

@@ -9,4 +9,5 @@ mod periodic;
 mod simd;
 mod still_water;
 mod symmetry;
+mod symmetry_planes;
 mod time_integration;

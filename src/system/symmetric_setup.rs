@@ -1,0 +1,351 @@
+//! Set-up with symmetry planes: which side is computed, what contradicts the symmetry, and the locks of the bodies on a plane.
+
+use super::{
+    Setup,
+    setup::gravity_at,
+    symmetry::{SymmetryPlane, SymmetryPlanes, TOLERANCE},
+};
+use crate::{
+    error::{Error, ErrorCode, Result},
+    geometry::cells::PointCells,
+    math::{Bounds, Vector},
+    solid::{Kinematics, Role, SolidSpec, TimeFunction},
+};
+
+/// Largest distance of the rows next to a plane from their place half a dp before it, dp.
+const ROW_TOLERANCE: f64 = 0.05;
+
+/// Largest difference between the depths of a boundary particle and of its image below the faces of their solid, dp.
+const SHAPE_TOLERANCE: f64 = 0.05;
+
+/// Times (s) at which laws are looked at.
+fn times() -> impl Iterator<Item = f64> {
+    (0..=400).map(|k| 0.17 * f64::from(k))
+}
+
+/// A plane with its axis, for messages.
+#[derive(Clone, Copy)]
+struct Named {
+    axis: usize,
+    plane: SymmetryPlane,
+}
+
+impl Named {
+    /// The name of its axis.
+    fn name(&self) -> &'static str {
+        ["x", "y", "z"][self.axis]
+    }
+
+    /// As in "the symmetry plane x = 0.5".
+    fn title(&self) -> String {
+        format!("the symmetry plane {} = {}", self.name(), self.plane.at)
+    }
+
+    /// Distance (m) of `x` (m) from the plane, positive on the computed side.
+    fn depth<const D: usize>(&self, x: &Vector<D>) -> f64 {
+        self.plane.depth(x[self.axis])
+    }
+
+    /// The least and the greatest depth (m) of a box.
+    fn depths<const D: usize>(&self, bounds: &Bounds<D>) -> [f64; 2] {
+        let ends = [self.depth(&bounds.min), self.depth(&bounds.max)];
+        [ends[0].min(ends[1]), ends[0].max(ends[1])]
+    }
+}
+
+impl<const D: usize> Setup<D> {
+    /// The symmetry planes, each with the side that is computed.
+    pub(crate) fn symmetry_planes(&self) -> SymmetryPlanes<D> {
+        let plane = |axis: usize| {
+            let at = self.symmetry[axis]?;
+            let is_upper = self.water.iter().any(|r| r[axis] > at) || self.water.is_empty();
+            Some(SymmetryPlane { at, is_upper })
+        };
+        SymmetryPlanes(std::array::from_fn(plane))
+    }
+
+    /// Leaves the water on the computed side of the symmetry planes only, and locks the bodies that a plane cuts to the motions that
+    /// keep the symmetry. A second call changes nothing.
+    ///
+    /// # Errors
+    /// `Scene` if something contradicts the symmetry: says what, and the remedy.
+    pub(crate) fn apply_symmetry(&mut self) -> Result<()> {
+        let planes = self.symmetry_planes();
+        for (axis, plane) in planes.each() {
+            let plane = Named { axis, plane };
+            self.check_plane(&plane)?;
+            for i in 0..self.solids.len() {
+                self.check_solid(i, &plane)?;
+            }
+            self.check_ties(&plane)?;
+            self.cut_water(&plane)?;
+            self.lock_bodies(&plane);
+        }
+        if planes.any() && self.periodic.iter().any(Option::is_some) {
+            return self.check_periodic();
+        }
+        Ok(())
+    }
+
+    /// Refuses a plane that is nowhere, on a periodic axis, or across gravity.
+    fn check_plane(&self, plane: &Named) -> Result<()> {
+        let (axis, name) = (plane.axis, plane.name());
+        if !plane.plane.at.is_finite() {
+            return Err(Error::scene(format!("a symmetry plane at {name} = {} m", plane.plane.at))
+                .with_code(ErrorCode::OutOfRange)
+                .help("give a coordinate, in metres"));
+        }
+        if self.periodic[axis].is_some() {
+            let what = format!("{name} is periodic and has a symmetry plane");
+            return Err(Error::scene(what)
+                .with_code(ErrorCode::ConflictingKeys)
+                .help(format!("leave  periodic.{name}  or  symmetry.{name}  out")));
+        }
+        let gravity = |t: f64| match self.gravity_law.is_empty() {
+            true => self.model.gravity[axis],
+            false => gravity_at::<D>(&self.gravity_law, t)[axis],
+        };
+        if let Some(t) = times().find(|&t| gravity(t) != 0.0) {
+            let what =
+                format!("gravity has a component of {} m/s² along {name}, normal to {}", gravity(t), plane.title());
+            return Err(Error::scene(what).help("gravity must lie in the plane: turn it, or compute both sides"));
+        }
+        Ok(())
+    }
+
+    /// Whether the plane cuts the solid.
+    fn is_cut(&self, solid: &SolidSpec<D>, plane: &Named) -> bool {
+        let bounds = solid.shape.bounds_at(&solid.initial_kinematics().pose);
+        plane.depths(&bounds)[0] < -TOLERANCE * self.model.dp
+    }
+
+    /// Refuses solid number `i` if it lies beyond the plane, ends at it, or is cut by it and not symmetric.
+    fn check_solid(&self, i: usize, plane: &Named) -> Result<()> {
+        let (solid, dp) = (&self.solids[i], self.model.dp);
+        let pose = solid.initial_kinematics().pose;
+        let [least, most] = plane.depths(&solid.shape.bounds_at(&pose));
+        let (name, title) = (&solid.name, plane.title());
+        if most <= TOLERANCE * dp {
+            return Err(Error::scene(format!("solid {name:?} lies beyond {title}, where nothing is computed"))
+                .help("leave it out: the mirror images of the solids on the side with the water stand there"));
+        }
+        let width = self.model.support_radius() + self.model.boundary_layers() as f64 * dp;
+        if least >= 0.5 * dp {
+            return Ok(());
+        }
+        if least > -TOLERANCE * dp {
+            let what = format!("solid {name:?} ends at {title}, {least:.2e} m before it");
+            let help = match solid.role {
+                Role::Free(_) => {
+                    "give the whole body, with its middle on the plane; of a body of its own the face lies \
+                                  dp/2 or more before the plane"
+                        .into()
+                }
+                _ => format!(
+                    "let it reach {width:.4} m or more beyond the plane, where its mirror image stands; or let it end dp/2 \
+                     or more before the plane"
+                ),
+            };
+            return Err(Error::scene(what).help(help));
+        }
+        self.check_shape(solid, plane, width)?;
+        self.check_motion(solid, plane)
+    }
+
+    /// Refuses a solid that `plane` cuts if its shape is not symmetric: the whole shape of a free one, of any other the part within
+    /// `width` (m) of the plane.
+    fn check_shape(&self, solid: &SolidSpec<D>, plane: &Named, width: f64) -> Result<()> {
+        let (pose, dp) = (solid.initial_kinematics().pose, self.model.dp);
+        let planes = SymmetryPlanes::<D>(std::array::from_fn(|axis| (axis == plane.axis).then_some(plane.plane)));
+        let is_free = matches!(solid.role, Role::Free(_));
+        for point in solid.shape.boundary_points(dp, self.model.boundary_layers()) {
+            let x = pose.point(&point.r);
+            let depth = plane.depth(&x);
+            if depth < 0.0 || !(is_free || depth < self.model.support_radius()) {
+                continue;
+            }
+            let image = pose.local(&planes.mirrored(1 << plane.axis, &x));
+            let [own, other] = [&point.r, &image].map(|r| solid.shape.signed_distance(r));
+            if (own - other).abs() > SHAPE_TOLERANCE * dp {
+                let place: Vec<f64> = x.iter().map(|x| (x * 1e6).round() / 1e6).collect();
+                let what = format!(
+                    "solid {:?} is not symmetric about {}: {place:?} lies {:.4} m below its faces, and the mirror image {:.4} m",
+                    solid.name,
+                    plane.title(),
+                    -own,
+                    -other
+                );
+                return Err(Error::scene(what).help(match is_free {
+                    true => "place its middle on the plane, with its own plane of symmetry there".into(),
+                    false => format!("let it reach {width:.4} m or more beyond the plane, unchanged"),
+                }));
+            }
+        }
+        Ok(())
+    }
+
+    /// Refuses motions of a solid that `plane` cuts which lead out of the symmetry.
+    fn check_motion(&self, solid: &SolidSpec<D>, plane: &Named) -> Result<()> {
+        let contradicts = |now: &Kinematics<D>| {
+            let turns = now.spin.axial().into_iter().enumerate();
+            let turns = turns.filter(|(i, _)| D == 2 || *i != plane.axis).map(|(_, turn)| turn);
+            now.velocity[plane.axis] != 0.0 || turns.fold(0.0, |most: f64, turn| most.max(turn.abs())) > 1e-12
+        };
+        let (title, name) = (plane.title(), &solid.name);
+        let allowed = match D {
+            2 => "it may move along the plane and not turn",
+            _ => "it may move along the plane and turn about its normal",
+        };
+        match &solid.role {
+            Role::Fixed => Ok(()),
+            Role::Driven(motion) => match times().find(|&t| contradicts(&motion.kinematics(&solid.pose, t))) {
+                Some(t) => Err(Error::scene(format!(
+                    "solid {name:?}, which {title} cuts, leaves the symmetry at t = {t:.2} s"
+                ))
+                .help(format!("{allowed}; or compute both sides"))),
+                None => Ok(()),
+            },
+            Role::Free(_) => {
+                let start = solid.initial_kinematics();
+                let off = plane.depth(&start.centre);
+                if off.abs() > 0.01 * self.model.dp {
+                    return Err(Error::scene(format!("the centre of mass of {name:?} lies {off:.2e} m off {title}"))
+                        .help(
+                            "a body that the plane cuts has its centre of mass on it: correct its place or its centre",
+                        ));
+                }
+                match contradicts(&start) {
+                    true => Err(Error::scene(format!(
+                        "{name:?}, which {title} cuts, starts with a motion out of the symmetry"
+                    ))
+                    .help(allowed)),
+                    false => Ok(()),
+                }
+            }
+        }
+    }
+
+    /// Refuses forces, contacts and constraints that contradict the symmetry.
+    fn check_ties(&self, plane: &Named) -> Result<()> {
+        let (title, axis) = (plane.title(), plane.axis);
+        let is_free = |i: usize| matches!(self.solids[i].role, Role::Free(_));
+        let cut: Vec<bool> = self.solids.iter().map(|solid| self.is_cut(solid, plane)).collect();
+        let acts =
+            |law: &[TimeFunction]| law.get(axis).is_some_and(|law| times().any(|t| law.value_and_rate(t).0 != 0.0));
+        for force in &self.constraints.forces {
+            if cut[force.solid] && acts(&force.force) {
+                let what = format!("force {:?} pushes {:?} out of {title}", force.name, self.solids[force.solid].name);
+                return Err(Error::scene(what).help("leave out its component along the normal of the plane"));
+            }
+        }
+        for wind in &self.constraints.winds {
+            if let Some(target) = wind.targets.iter().find(|target| cut[target.solid] && acts(&wind.velocity)) {
+                let what = format!("the wind pushes {:?} out of {title}", self.solids[target.solid].name);
+                return Err(Error::scene(what).help("let the wind blow along the plane, or compute both sides"));
+            }
+        }
+        let links = self.constraints.joints.iter().map(|joint| (&joint.name, joint.between));
+        let springs = self.constraints.springs.iter().map(|spring| (&spring.name, spring.ends.map(|end| end.solid)));
+        let ropes = self.constraints.ropes.iter().map(|rope| (&rope.name, rope.ends.map(|end| end.solid)));
+        for (name, between) in links.chain(springs).chain(ropes) {
+            let [Some(a), Some(b)] = between else { continue };
+            if cut[a] != cut[b] && (is_free(a) && cut[a] || is_free(b) && cut[b]) {
+                let what = format!(
+                    "{name:?} ties {:?} and {:?}, of which {title} cuts one: its mirror image is missing",
+                    self.solids[a].name, self.solids[b].name
+                );
+                return Err(Error::scene(what).help(
+                    "tie a body that the plane cuts to others that it cuts, or to points of the world on both sides",
+                ));
+            }
+        }
+        for i in (0..cut.len()).filter(|&i| cut[i] && is_free(i)) {
+            if let Some(j) = (0..cut.len()).find(|&j| !cut[j] && self.constraints.can_touch(i, j)) {
+                let [name, other] = [i, j].map(|k| &self.solids[k].name);
+                let what = format!(
+                    "{name:?}, which {title} cuts, may touch {other:?}, whose mirror image does not push it from the other side"
+                );
+                let help = format!("exclude it:  [[contact]]  between = [{name:?}, {other:?}]  touch = false");
+                return Err(Error::scene(what).help(help));
+            }
+        }
+        Ok(())
+    }
+
+    /// Leaves the water on the computed side only, whose rows must begin half a dp before the plane.
+    fn cut_water(&mut self, plane: &Named) -> Result<()> {
+        let (dp, axis, title) = (self.model.dp, plane.axis, plane.title());
+        let depths: Vec<f64> = self.water.iter().map(|r| plane.depth(r)).collect();
+        let mut near: Vec<f64> = depths.iter().copied().filter(|depth| (0.0..dp).contains(depth)).collect();
+        near.sort_by(f64::total_cmp);
+        if let Some(&row) = near.get(near.len() / 2)
+            && (row / dp - 0.5).abs() > ROW_TOLERANCE
+        {
+            let shift = (row - 0.5 * dp) * if plane.plane.is_upper { 1.0 } else { -1.0 };
+            let at = plane.plane.at + shift;
+            let what = format!("the row of water next to {title} lies {:.3} dp before it, not half a dp", row / dp);
+            let help = format!(
+                "write  symmetry.{} = {}, or let the water begin a whole number of dp from the plane",
+                plane.name(),
+                (at * 1e9).round() / 1e9
+            );
+            return Err(Error::scene(what).help(help));
+        }
+        if depths.iter().all(|depth| *depth >= 0.0) {
+            return Ok(());
+        }
+        let kept: Vec<usize> = (0..depths.len()).filter(|&i| depths[i] >= 0.0).collect();
+        let places: Vec<Vector<D>> = kept.iter().map(|&i| self.water[i]).collect();
+        let cells = PointCells::new(&places, dp);
+        let poses: Vec<_> = self.solids.iter().map(|solid| (&solid.shape, solid.initial_kinematics().pose)).collect();
+        for i in (0..depths.len()).filter(|&i| depths[i] < 0.0) {
+            let mut image = self.water[i];
+            image[axis] = 2.0 * plane.plane.at - image[axis];
+            let mut is_near = false;
+            cells.visit_near(&image, dp, |_, x| is_near = is_near || (x - image).norm() < dp);
+            // A solid beside the plane displaces water that its image, which is not given, does not.
+            let is_displaced = || poses.iter().any(|(shape, pose)| shape.signed_distance(&pose.local(&image)) < dp);
+            if !is_near && !is_displaced() {
+                let what = format!(
+                    "the water is not symmetric about {title}: there is water at {:?} m and none at {:?} m",
+                    self.water[i].as_slice(),
+                    image.as_slice()
+                );
+                return Err(Error::scene(what).help("give the water on one side of the plane only, or alike on both"));
+            }
+        }
+        self.water = places;
+        self.surface_levels = kept.iter().map(|&i| self.surface_levels[i]).collect();
+        if !self.pressure.is_empty() {
+            self.pressure = kept.iter().map(|&i| self.pressure[i]).collect();
+        }
+        if !self.velocity.is_empty() {
+            self.velocity = kept.iter().map(|&i| self.velocity[i]).collect();
+        }
+        Ok(())
+    }
+
+    /// Locks the bodies that `plane` cuts.
+    fn lock_bodies(&mut self, plane: &Named) {
+        let cut: Vec<bool> = self.solids.iter().map(|solid| self.is_cut(solid, plane)).collect();
+        for (solid, _) in self.solids.iter_mut().zip(cut).filter(|(_, cut)| *cut) {
+            if let Role::Free(body) = &mut solid.role {
+                body.locked_translations[plane.axis] = true;
+                for turn in (0..3).filter(|turn| if D == 2 { *turn == 0 } else { *turn != plane.axis }) {
+                    body.locked_rotations[turn] = true;
+                }
+            }
+        }
+    }
+
+    /// Refuses free solids beside periodic sides and planes, whose copies and images would be combined.
+    fn check_periodic(&self) -> Result<()> {
+        let free = self.solids.iter().find(|solid| matches!(solid.role, Role::Free(_)));
+        free.map_or(Ok(()), |solid| {
+            let what = format!("free solid {:?} in a scene with periodic sides and a symmetry plane", solid.name);
+            Err(Error::scene(what)
+                .with_code(ErrorCode::ConflictingKeys)
+                .help("put a symmetry plane in place of the periodic sides, or compute both sides of the plane"))
+        })
+    }
+}
