@@ -54,7 +54,7 @@ fn bench_states_the_effective_viscosity_of_the_shipped_default() -> Result<()> {
     // η × 0.0295 h² (2-D) or 0.0243 h² (3-D) at a shear of 1/s, with η = 3 and h = 1.7 dp in 2-D and 1.5 dp in 3-D.
     for (dimension, h_over_dp, dp, constant) in [(2, 1.7, 1.0 / 323.0, 0.0295), (3, 1.5, 1.0 / 47.0, 0.0243)] {
         let found = bench::default_viscosity(dimension, 50_000)?;
-        let exact = 3.0 * constant * (h_over_dp * dp as f64).powi(2);
+        let exact = 3.0 * constant * f64::powi(h_over_dp * dp, 2);
         assert!((found.viscosity_m2ps / exact - 1.0).abs() < 1e-9, "{found:?}, exactly {exact} m²/s");
     }
     Ok(())
