@@ -58,10 +58,10 @@ impl<const D: usize> GapPressure<D> {
     /// neighbour lists were built. `wet` are those near water, and no solid moves by more than `margin` (m) until the next lists.
     pub(super) fn find(&mut self, solids: &[Solid<D>], r: &[Vector<D>], wet: &[u32], margin: f64) {
         self.particles.clear();
-        let Some(support) = self.support else { return };
+        let is_free = |i: usize| matches!(solids[i].spec.role, Role::Free(_));
+        let Some(support) = self.support.filter(|_| (0..solids.len()).any(is_free)) else { return };
         let reach = support + 2.0 * margin;
         let around: Vec<Bounds<D>> = solids.iter().map(|solid| Bounds::around(&r[solid.boundary.clone()])).collect();
-        let is_free = |i: usize| matches!(solids[i].spec.role, Role::Free(_));
         let faces = |i: usize, j: usize| i != j && (is_free(i) || is_free(j));
         // Candidates, by place and solid: near the box around a solid with which their own can have a gap.
         let mut candidates: Vec<(usize, usize)> = Vec::new();
