@@ -20,6 +20,11 @@ pub struct Particles<const D: usize> {
     pub id: Vec<u32>,
 }
 
+/// Memory of an array that some models do not have, B.
+pub(crate) fn optional_bytes<T>(array: &Option<Vec<T>>) -> usize {
+    array.as_ref().map_or(0, |array| size_of_val(&array[..]))
+}
+
 impl<const D: usize> Particles<D> {
     /// Number of particles.
     pub fn len(&self) -> usize {
@@ -34,6 +39,11 @@ impl<const D: usize> Particles<D> {
     /// The first `n` of them.
     pub(crate) fn first_n(&self, n: usize) -> ParticlesView<'_, D> {
         ParticlesView { r: &self.r[..n], v: &self.v[..n], rho: &self.rho[..n], id: &self.id[..n] }
+    }
+
+    /// Memory of the arrays, B.
+    pub(crate) fn memory_bytes(&self) -> usize {
+        size_of_val(&self.r[..]) + size_of_val(&self.v[..]) + size_of_val(&self.rho[..]) + size_of_val(&self.id[..])
     }
 
     /// Makes room for `more` particles, and no more than that.

@@ -227,8 +227,12 @@ impl<const D: usize> PairLoop<D> for ReferencePairLoop<D> {
     }
 
     fn moments(&mut self, input: &PairLoopInput<'_, D>, moments: &mut [Matrix<D>]) {
+        if self.moments.is_none() {
+            return;
+        }
         self.set_nodes(input);
         let Some(terms) = &self.moments else { return };
+        let start = Instant::now();
         let (lists, none) = (lists(input), AuxiliarySums::filled_with(0.0));
         let nodes = [&self.nodes[0][..], &self.nodes[1][..]];
         moments.par_chunks_mut(CHUNK).enumerate().for_each(|(c, moments)| {
@@ -238,6 +242,7 @@ impl<const D: usize> PairLoop<D> for ReferencePairLoop<D> {
                 *moment = Matrix::from_fn(|i, j| sums.renormalization[i.max(j)][i.min(j)]);
             }
         });
+        self.spent += start.elapsed();
     }
 
     fn set_gravity(&mut self, properties: &FluidProperties<D>) {

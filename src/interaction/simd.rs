@@ -124,23 +124,6 @@ impl<const D: usize> SimdPairLoop<D> {
             renormalization,
         }
     }
-
-    /// Computes the sums of all slabs, with `moments` those of the moments; returns the largest |v_ab·r_ab|/(r² + η²), 1/s.
-    fn sum_pairs(&mut self, clusters: &Clusters, moments: bool) -> f64 {
-        let terms = if moments { self.moments.as_ref() } else { Some(&self.laws) };
-        let lengths = self.lay_out(clusters, terms.map_or(0, |terms| terms.required_sums().sum_rows(D)));
-        let start = Instant::now();
-        let works = works(clusters, &lengths, &mut self.sums);
-        let (level, packed) = (self.level, &self.packed);
-        let Some(laws) = (if moments { self.moments.as_ref() } else { Some(&self.laws) }) else { return 0.0 };
-        let closing = works
-            .into_par_iter()
-            .with_max_len(1)
-            .map(|(slab, sums)| laws.sum_slab(level, packed, slab, sums))
-            .reduce(|| 0.0, |a, b| if b > a { b } else { a });
-        self.spent += start.elapsed();
-        f64::from(closing) / self.units.time
-    }
 }
 
 /// The slabs, each with the rows of `sums` that it writes.
@@ -153,6 +136,17 @@ fn works<'a>(clusters: &'a Clusters, lengths: &[usize], sums: &'a mut [LaneRow])
         rest = others;
     }
     works
+}
+
+/// Computes the sums of all slabs by `terms`; returns the largest |v_ab·r_ab|/(r² + η²), in the units of the pair loop.
+fn sum_slabs<const D: usize>(
+    terms: &dyn PairTerms<D>,
+    level: Level,
+    packed: &PackedParticles<D>,
+    works: Vec<(&Slab, &mut [LaneRow])>,
+) -> f32 {
+    let sum = |(slab, sums)| terms.sum_slab(level, packed, slab, sums);
+    works.into_par_iter().with_max_len(1).map(sum).reduce(|| 0.0, |a, b| if b > a { b } else { a })
 }
 
 impl<const D: usize> PairLoop<D> for SimdPairLoop<D> {
@@ -192,7 +186,12 @@ impl<const D: usize> PairLoop<D> for SimdPairLoop<D> {
         let clusters = clusters(input.neighbours);
         self.packed.pack(input, clusters, &self.units, self.has_water);
         self.has_water = true;
-        self.sum_pairs(clusters, true);
+        let lengths = self.lay_out(clusters, needs.sum_rows(D));
+        let start = Instant::now();
+        if let Some(terms) = &self.moments {
+            sum_slabs(&**terms, self.level, &self.packed, works(clusters, &lengths, &mut self.sums));
+        }
+        self.spent += start.elapsed();
         let slots = clusters.fluid_slots.par_iter().with_min_len(PARTICLES_PER_TASK);
         moments.par_iter_mut().zip(slots).for_each(|(moment, &slot)| {
             let sums = self.auxiliary_sums_of(slot, needs).renormalization;
@@ -211,7 +210,10 @@ impl<const D: usize> PairLoop<D> for SimdPairLoop<D> {
         if needs.input_rows(D) > 0 {
             self.packed.pack_rows(input, clusters, &self.units, needs);
         }
-        let closing = self.sum_pairs(clusters, false);
+        let lengths = self.lay_out(clusters, needs.sum_rows(D));
+        let start = Instant::now();
+        let closing = sum_slabs(&*self.laws, self.level, &self.packed, works(clusters, &lengths, &mut self.sums));
+        self.spent += start.elapsed();
         self.gravity = input.properties.gravity;
         let water = clusters.fluid_slots.par_iter().with_min_len(PARTICLES_PER_TASK);
         let a2 = water
@@ -219,7 +221,7 @@ impl<const D: usize> PairLoop<D> for SimdPairLoop<D> {
             .reduce(|| 0.0, f64::max);
         let skin = boundary.par_iter_mut().zip(&clusters.boundary_slots).with_min_len(PARTICLES_PER_TASK);
         skin.for_each(|(out, &slot)| *out = self.pair_sums_of(slot));
-        StepLimits { acceleration: a2.sqrt(), approach_rate: closing }
+        StepLimits { acceleration: a2.sqrt(), approach_rate: f64::from(closing) / self.units.time }
     }
 
     fn memory_bytes(&self) -> usize {
@@ -417,8 +419,8 @@ impl<S: Simd, K: Kernel, const D: usize> SlabInput<'_, S, K, D> {
         side
     }
 
-    /// Pairs `one` with the clusters `others`, counted from `base` in the slab, by the terms `law`: adds their contribution to `sum` and its
-    /// contribution to their `sums`. Its own cluster is paired lane by lane, so there its contribution is discarded into the last
+    /// Pairs `one` with the clusters `others`, counted from `base` in the slab, by the terms `law`: adds their contribution to `sum`
+    /// and its contribution to their `sums`. Its own cluster is paired lane by lane, so there its contribution is discarded into the last
     /// rows. Unless `CORRECTED`, no particle of the pairs has a gradient correction.
     #[inline(always)]
     fn add_pairs<L: Term<D>, const CORRECTED: bool>(

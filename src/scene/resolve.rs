@@ -114,14 +114,16 @@ impl Scene {
     fn usual_model(&self) -> Model {
         // Lengths are in dp: h over dp is exact.
         let usual = Model::water(self.dimension, 1.0, 1.0);
-        let (free, weightless) = (
-            self.solid.iter().any(|solid| solid.free.is_some()),
-            self.context().gravity.is_some_and(|gravity| gravity.strongest == 0.0),
-        );
+        let weightless = self.context().gravity.is_some_and(|gravity| gravity.strongest == 0.0);
+        let free = self.solid.iter().any(|solid| solid.free.is_some());
         let waves = self.solid.iter().any(|solid| solid.driven.as_ref().is_some_and(DrivenConfig::makes_waves));
-        let mut usual = if waves { usual.waves() } else { usual };
-        if (free || waves) && !weightless && self.model.allows_corrected_gradients() {
-            usual.gradient = PressureGradient::NearSurface;
+        let mut usual = match (waves && !weightless, free) {
+            (true, _) => usual.for_waves(),
+            (false, true) => usual.for_free_bodies(),
+            (false, false) => usual,
+        };
+        if !self.model.allows_corrected_gradients() {
+            usual.gradient = PressureGradient::Plain;
         }
         if weightless || !free {
             return usual;

@@ -9,7 +9,6 @@ use rayon::prelude::*;
 use super::{
     System,
     boundary_extension::ExtensionParticle,
-    memory::{bytes, optional_bytes},
     periodic::Images,
     symmetry::{AxisSet, Division, MirroredParticle, reflected},
 };
@@ -17,7 +16,7 @@ use crate::{
     error::{Error, Result},
     math::{Bounds, Pose, Vector},
     model::{Model, Walls},
-    particles::{PARTICLES_PER_TASK, Particles},
+    particles::{PARTICLES_PER_TASK, Particles, optional_bytes},
     solid::{Kinematics, Role, Solid, SolidDivision, SolidSpec, boundary_motion},
     sph::boundary::{DynamicBoundary, Slip, SupportCoverage, WallExtrapolation, WallTarget, no_slip_velocity},
 };
@@ -162,13 +161,12 @@ impl<const D: usize> Boundary<D> {
 
     /// Memory of the arrays, B.
     pub(super) fn memory_bytes(&self) -> usize {
-        let Particles { r, v, rho, id } = &self.particles;
-        let local: usize = self.local_positions.iter().map(|local| bytes(local)).sum();
-        let local = local + self.mirrored.iter().map(|mirrored| bytes(mirrored)).sum::<usize>();
+        let local: usize = self.local_positions.iter().map(|local| size_of_val(&local[..])).sum();
+        let local = local + self.mirrored.iter().map(|mirrored| size_of_val(&mirrored[..])).sum::<usize>();
         let vectors = optional_bytes(&self.normals) + optional_bytes(&self.extrapolated_velocity);
         let numbers = optional_bytes(&self.depths) + optional_bytes(&self.wetness);
         let marks = optional_bytes(&self.target_density) + optional_bytes(&self.shifting_suppressed);
-        bytes(r) + bytes(v) + bytes(rho) + bytes(id) + local + vectors + numbers + marks
+        self.particles.memory_bytes() + local + vectors + numbers + marks
     }
 
     /// Middle (m) of the boundary particles of solid number `number` at `pose`.

@@ -116,7 +116,8 @@ impl<const D: usize> System<D> {
             self.fluid.gradient_correction.take().map(|_| state.gradient_correction.into_owned());
         self.fluid.images.originals = state.images.into_owned();
         self.fluid.images.reflections = state.reflections.into_owned();
-        self.rates.current = false;
+        // The corrections of the state belong to its lists, whatever this system was about to do.
+        (self.rates.current, self.rates.corrections_current) = (false, true);
         let loads = state.kinematics.into_iter().zip(state.loads);
         for (i, (solid, (kinematics, load))) in self.solids.iter_mut().zip(loads).enumerate() {
             (solid.kinematics, solid.load) = (kinematics, load);

@@ -9,7 +9,6 @@ mod checkpoint;
 mod fluid;
 mod free_surface;
 mod gap_pressure;
-mod memory;
 pub(crate) mod periodic;
 mod setup;
 mod sponge_layer;

@@ -3,15 +3,13 @@
 use std::{collections::BTreeMap, time::Duration};
 
 use super::{
-    Fluid, Periodic, System,
-    memory::{bytes, optional_bytes},
-    reflected,
+    Fluid, Periodic, System, reflected,
     symmetry::{SymmetryPlanes, reflected_turn},
 };
 use crate::{
     math::{Bivector, Bounds, Pose, Vector},
     model::{Model, TimeScheme},
-    particles::ParticlesView,
+    particles::{ParticlesView, optional_bytes},
     solid::{Constraints, Load, LoadContext, Role, Solid},
     sph::{FluidProperties, boundary::WallExtrapolation},
 };
@@ -307,22 +305,23 @@ impl<const D: usize> System<D> {
 
     /// Memory of the arrays between two steps, B: particles, lists, and the buffers of a force pass.
     pub(crate) fn memory_bytes(&self) -> usize {
-        let (fluid, water) = (&self.fluid.particles, self.fluid.particles.len());
+        let water = self.fluid.particles.len();
         let tensors = optional_bytes(&self.fluid.stress) + optional_bytes(&self.fluid.gradient_correction);
-        let particles = bytes(&fluid.r) + bytes(&fluid.v) + bytes(&fluid.rho) + bytes(&fluid.id);
         let before = match self.model.scheme {
-            TimeScheme::Verlet { .. } => water * size_of::<(Vector<D>, f64)>() + bytes(&self.boundary.particles.rho),
+            TimeScheme::Verlet { .. } => {
+                water * size_of::<(Vector<D>, f64)>() + size_of_val(&self.boundary.particles.rho[..])
+            }
             TimeScheme::Symplectic => 0,
         };
-        particles
+        self.fluid.particles.memory_bytes()
             + tensors
-            + bytes(&self.fluid.images.originals)
-            + bytes(self.neighbours.positions_at_build())
+            + size_of_val(&self.fluid.images.originals[..])
+            + size_of_val(self.neighbours.positions_at_build())
             + before
             + self.neighbours.memory_bytes()
             + self.pair_loop.memory_bytes()
             + self.boundary.memory_bytes()
-            + bytes(&self.rates.boundary)
+            + size_of_val(&self.rates.boundary[..])
     }
 
     /// Memory that a step takes beside [`System::memory_bytes`] for a while, B: the start of a symplectic step, shifts, and the
@@ -332,7 +331,7 @@ impl<const D: usize> System<D> {
         let start = match self.model.scheme {
             TimeScheme::Verlet { .. } => 0,
             TimeScheme::Symplectic => {
-                water * size_of::<(Vector<D>, Vector<D>, f64)>() + bytes(&self.boundary.particles.rho)
+                water * size_of::<(Vector<D>, Vector<D>, f64)>() + size_of_val(&self.boundary.particles.rho[..])
             }
         };
         let shifts = if self.model.shift().is_some() { water * size_of::<Vector<D>>() } else { 0 };

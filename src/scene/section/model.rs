@@ -11,10 +11,14 @@ use crate::{
         WAVES_H_OVER_DP, Walls,
     },
     scene::context::{Context, Defaults},
+    sph::viscosity::Artificial,
 };
 
-/// Largest Courant number: still water around a float is at rest at 0.6 and boils at 0.8, without another sign.
-const CFL_MAX: f64 = 0.6;
+/// Largest Courant number: still water around a float is at rest at 0.8 and unstable at 1.0, without another sign.
+const CFL_MAX: f64 = 0.8;
+
+/// The same with corrected gradients: it is at rest at 0.6 and boils at 0.8.
+const CORRECTED_CFL_MAX: f64 = 0.6;
 
 /// Least stiffness μ of the lattice, –: below, still water around a float reached 0.07 to 0.13 √(g depth) within a second,
 /// above at most 0.08 (docs/explanation/stability.md).
@@ -144,11 +148,17 @@ impl ModelConfig {
         let wendland = "no pairing of particles and less noise than the cubic spline, at the same cost";
         defaults.fill("model.kernel", &mut self.kernel, usual.kernel, wendland);
         let why = match usual.gradient {
-            PressureGradient::Plain => "no paddle makes waves by name, and no body is free",
-            _ => "waves keep their height, and bodies move as in theory",
+            PressureGradient::Plain => "no paddle makes waves by name",
+            _ => "waves keep their height",
         };
         defaults.fill("model.gradient", &mut self.gradient, usual.gradient, why);
-        let why = "stops impacts and hardly damps waves; it does not grow with the depth";
+        let why = match usual.viscosity {
+            Viscosity::Artificial(law) if law != Artificial::default() => {
+                "α = 0.02 √(10 dp/depth), a free body in water deeper than 100 dp: the viscosity does not grow with the depth"
+            }
+            Viscosity::Artificial(_) => "a body is free: boxes roll as in theory; α = 0.02 as in the method",
+            _ => "stops impacts and hardly damps waves; it does not grow with the depth",
+        };
         defaults.fill("model.viscosity", &mut self.viscosity, usual.viscosity, why);
         let why = "damps the density's noise and keeps still water still; δ = 0.1 as in the method";
         defaults.fill("model.diffusion", &mut self.diffusion, usual.diffusion, why);
@@ -203,11 +213,18 @@ impl ModelConfig {
         })
     }
 
-    /// Refuses laws that exclude each other, and a kernel with which the initial lattice is unstable under its own pressure.
+    /// Refuses laws that exclude each other or the Courant number, and a kernel with which the initial lattice is unstable under its own pressure.
     pub(crate) fn require_stable_lattice<const D: usize>(&self, ctx: &Context, model: &Model) -> Result<()> {
         if let Some(what) = model.conflict() {
             let help = "write  kernel = \"wendland\"  and  shifting = \"none\", or  gradient = \"plain\"";
             return Err(ctx.error_with_help("model.gradient", what, help));
+        }
+        if model.gradient != PressureGradient::Plain && model.cfl > CORRECTED_CFL_MAX {
+            let what = format!(
+                "a Courant number of {}: with corrected gradients water boils above {CORRECTED_CFL_MAX}, often without another sign",
+                model.cfl
+            );
+            return Err(ctx.error_with_help("time.cfl", what, "write  cfl = 0.4, or  model.gradient = \"plain\""));
         }
         if !ctx.has_gravity() {
             return Ok(());

@@ -40,7 +40,7 @@ fn the_default_viscosity_does_not_grow_with_the_depth() -> Result<()> {
     };
     let three = nu(3.0, "")?;
     for depth in [6.0, 12.0] {
-        // The Riemann dissipation has no speed of sound, so that both are the same but for round-off.
+        // Both go with √depth, up to round-off.
         assert!((nu(depth, "")? / three - 1.0).abs() < 1e-12);
     }
     // A value of the scene is taken as it is: α c₀ h/16.

@@ -12,11 +12,12 @@ use pontoon::{
 use crate::common;
 
 /// Both time schemes, wall models and pressure gradients.
-const KINDS: [(TimeScheme, Walls, PressureGradient); 4] = [
+const KINDS: [(TimeScheme, Walls, PressureGradient); 5] = [
     (TimeScheme::Symplectic, Walls::Dynamic, PressureGradient::Plain),
     (TimeScheme::Verlet { euler_every: 50 }, Walls::Dynamic, PressureGradient::Plain),
     (TimeScheme::Symplectic, Walls::RelaxedAdami, PressureGradient::Plain),
     (TimeScheme::Symplectic, Walls::RelaxedAdami, PressureGradient::Corrected),
+    (TimeScheme::Symplectic, Walls::RelaxedAdami, PressureGradient::NearSurface),
 ];
 
 /// A dam break onto two colliding floats, one as light as foam, beside a paddle, with every term that keeps state between steps.
