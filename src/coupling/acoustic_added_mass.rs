@@ -205,12 +205,13 @@ impl<const D: usize> AcousticAddedMass<D> {
     fn springs(&self, system: &System<D>, body: &FreeBody<D>) -> (Square, f64) {
         let mut sum = Square::zeros();
         self.for_each_wet(system, |part, _, _, along| sum += along * along.transpose() * part);
-        let trace: f64 = (0..D).map(|i| sum[(i, i)]).sum();
+        sum *= stiffness(system);
+        let trace = (0..D).map(|i| sum[(i, i)]).sum();
         lock(body, |i| {
             sum.row_mut(i).fill(0.0);
             sum.column_mut(i).fill(0.0);
         });
-        (sum * stiffness(system), trace * stiffness(system))
+        (sum, trace)
     }
 
     /// Returns K v_w of the springs that are wet at present, N/s and N m/s; `way` (m) leads from them to where the body is when the
