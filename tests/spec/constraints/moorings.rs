@@ -117,7 +117,8 @@ fn a_driven_solid_moves_its_line() -> Result<()> {
         "driven = { along = [1.0, 0.0], distance = { formula = \"0.025*(1-cos(2*pi*min(t,0.5)))\" } }",
     );
     let mut sim = scene_simulation::<2>(&MOORED.replace(free, &format!("at = {{ x = 0.8, y = 0.3 }}\n{law}")))?;
-    let moved = MOORED.replace(free, "at = { x = 0.85, y = 0.3 }\ndriven = { along = [1.0, 0.0], distance = { formula = \"0\" } }");
+    let moved = MOORED
+        .replace(free, "at = { x = 0.85, y = 0.3 }\ndriven = { along = [1.0, 0.0], distance = { formula = \"0\" } }");
     let moved =
         moved.replace("from = [0.65, 0.3]", "from = [0.7, 0.3]").replace("from = [0.95, 0.3]", "from = [1.0, 0.3]");
     let probe = MooringProbe::new(sim.system(), "west")?;
