@@ -151,13 +151,13 @@ fn an_elevation_of_uneven_samples_is_told() {
         });
         "t_s,eta_m\n".to_string() + &rows.collect::<String>()
     };
-    let told = |warp: f64| {
+    let notes = |warp: f64| {
         let folder = folder("uneven", "", record(warp));
         fs::write(folder.join("scene.toml"), scene).unwrap();
         findings(&folder).into_iter().map(|(_, topic, text)| format!("{topic}: {text}")).collect::<Vec<_>>().join("; ")
     };
-    assert_eq!(told(0.0), "");
-    let found = told(0.05);
+    assert_eq!(notes(0.0), "");
+    let found = notes(0.05);
     assert!(found.contains("record_uneven") && found.contains("every 0.05 s"), "{found}");
 }
 
