@@ -17,9 +17,6 @@
 //! When Z grows by ΔZ, the newly reached water moves with v_w before and with the body after. This inelastic collision gives the
 //! body M Δv = −M (M + Z)⁻¹ ΔZ (v − v_w) at once, and the water next to it the opposite impulse. Without it a light body that
 //! strikes water would meet it with all of Z, and would leave with energy from nowhere.
-//!
-//! The body takes the pending momentum along: each step changes its torque by −Δt (v − v_w) ∧ S, with the mean velocity v_w of the
-//! water beside the body. The angular momentum in a frame that goes with the water stays, so a current turns no body.
 
 use nalgebra::{SMatrix, SVector};
 use serde::{Deserialize, Serialize};
@@ -39,9 +36,6 @@ const STIFFEST: f64 = 1.3;
 
 /// τ over h/c₀, –.
 const TIME: f64 = 10.0;
-
-/// Largest number of springs before which the mean velocity of the water is taken.
-const SAMPLES: usize = 32;
 
 /// Translations along the axes, then turns about them; the last three stay 0 in 2-D.
 type Six = SVector<f64, 6>;
@@ -175,11 +169,9 @@ impl<const D: usize> AcousticAddedMass<D> {
             lock(body, |i| join[i] = 0.0);
         }
         self.state.pending += total * dt - impulse;
-        // The moment of the pending momentum about a point that goes with the water must not change while the body moves.
-        if let Some(water) = self.water_velocity(system) {
-            let carried = Bivector::torque(&(solid.kinematics.velocity - water), &linear(&pending)) * -dt;
-            self.state.pending += to_six(&Load { force: Vector::zeros(), torque: carried });
-        }
+        // The moment of the pending momentum about the origin must not change while the body moves.
+        let carried = Bivector::torque(&solid.kinematics.velocity, &linear(&pending)) * -dt;
+        self.state.pending += to_six(&Load { force: Vector::zeros(), torque: carried });
         lock(body, |i| self.state.pending[i] = 0.0);
         self.given = (impulse + join) / dt - self.state.contacts;
         let given = self.given - to_six(&added);
@@ -232,21 +224,6 @@ impl<const D: usize> AcousticAddedMass<D> {
         });
         lock(body, |i| sum[i] = 0.0);
         sum * stiffness(system)
-    }
-
-    /// Returns the mean velocity (m/s) of the water before at most [`SAMPLES`] wet springs, or `None` without such a spring.
-    fn water_velocity(&self, system: &System<D>) -> Option<Vector<D>> {
-        let (mut number, stride) = (0, self.outer.len().div_ceil(SAMPLES));
-        let (mut weight, mut flow) = (0.0, Vector::<D>::zeros());
-        self.for_each_wet(system, |_, x, _, _| {
-            if number % stride == 0 {
-                system.visit_fluid_near(x, &mut |i, r, w| {
-                    (weight, flow) = (weight + w, flow + system.velocity_seen_at(i, r) * w)
-                });
-            }
-            number += 1;
-        });
-        (weight > 0.0).then(|| flow / weight)
     }
 
     /// Calls `visit` for every wet outer boundary particle with its wet fraction (0 to 1), position (m), normal n, and J.
