@@ -27,7 +27,7 @@ use crate::{
     model::TimeScheme,
     solid::{FreeBody, Kinematics, Load, Role, Solid},
     sph::FluidProperties,
-    system::{FULLY_WET, System},
+    system::System,
 };
 
 /// Λ, the largest (ω_b h/c₀)² of a body without added mass, –. At this value ω_b is the highest frequency of sound that
@@ -36,6 +36,9 @@ const STIFFEST: f64 = 1.3;
 
 /// τ over h/c₀, –.
 const TIME: f64 = 10.0;
+
+/// Least Σ V_f W of a boundary particle that counts as fully wet, –. On a submerged face the sum is larger.
+const FULL: f64 = 0.25;
 
 /// Translations along the axes, then turns about them; the last three stay 0 in 2-D.
 type Six = SVector<f64, 6>;
@@ -245,7 +248,7 @@ impl<const D: usize> AcousticAddedMass<D> {
                 let images = system.computed_share(solid, x) * of_whole;
                 let arm = system.place_on_solid(self.solid, *i as usize) - solid.kinematics.centre;
                 let torque = Bivector::torque(&arm, &normal);
-                visit((wetness[k] / FULLY_WET).min(1.0) * images, x, &normal, to_six(&Load { force: normal, torque }));
+                visit((wetness[k] / FULL).min(1.0) * images, x, &normal, to_six(&Load { force: normal, torque }));
             }
         }
     }

@@ -41,7 +41,7 @@ fn thin_part<const D: usize>(solid: &Solid<D>, faces: &[SurfaceSample<D>], dp: f
     let (space, extent) = units::<D>();
     let what = format!(
         "\"{}\" is thinner than dp over {} {extent}, {} dp at {}: one layer of boundary particles stands for it, and \
-             the water makes way for {} {space} more than its volume, whose weight its loads count",
+             the water makes way for {} {space} more than its volume",
         solid.spec.name,
         three_digits(area),
         three_digits(thinnest.thickness / dp),

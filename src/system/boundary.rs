@@ -11,20 +11,15 @@ use super::{
     boundary_extension::ExtensionParticle,
     periodic::Images,
     symmetry::{AxisSet, Division, MirroredParticle, reflected},
-    thin_parts::ThinParts,
 };
 use crate::{
     error::{Error, Result},
-    interaction::PairSums,
     math::{Bounds, Pose, Vector},
     model::{Model, Walls},
     particles::{PARTICLES_PER_TASK, Particles, optional_bytes},
     solid::{Kinematics, Role, Solid, SolidDivision, SolidSpec, boundary_motion},
     sph::boundary::{DynamicBoundary, Slip, SupportCoverage, WallExtrapolation, WallTarget, no_slip_velocity},
 };
-
-/// Least Σ V_f W of a boundary particle that counts as fully wet, –. On a submerged face the sum is larger.
-pub(crate) const FULLY_WET: f64 = 0.25;
 
 /// The boundary particles of all solids, one solid after the other.
 pub(crate) struct Boundary<const D: usize> {
@@ -44,8 +39,6 @@ pub(crate) struct Boundary<const D: usize> {
     /// Beside which of them water is not shifted; `None` unless water is shifted.
     pub(super) shifting_suppressed: Option<Vec<bool>>,
     coverage: SupportCoverage,
-    /// Those in the middle of parts thinner than dp.
-    pub(super) thin_parts: ThinParts,
     /// The box around the boundary particles of each solid, in its frame, m.
     pub(super) local_bounds: Vec<Bounds<D>>,
     /// The mirror images of the boundary particles of each solid, in their order in the arrays; empty without a symmetry plane.
@@ -82,7 +75,6 @@ impl<const D: usize> Boundary<D> {
                 model.support_radius(),
                 D,
             ),
-            thin_parts: ThinParts::default(),
             local_bounds: Vec::new(),
             mirrored: Vec::new(),
             poses_at_rebuild: None,
@@ -132,12 +124,8 @@ impl<const D: usize> Boundary<D> {
             return Err(Error::scene(format!("solid {:?} is too small for a single boundary particle", spec.name))
                 .help("make it larger or dp smaller"));
         }
-        let own: Vec<f64> = faces.par_iter().map(|r| -spec.shape.signed_distance(r)).collect();
-        self.thin_parts.append(&spec.shape, (&faces, &own), model.dp, (first, copies));
-        if !self.thin_parts.is_empty() {
-            self.wetness.get_or_insert_default();
-        }
         if let Some(depths) = &mut self.depths {
+            let own: Vec<f64> = faces.par_iter().map(|r| -spec.shape.signed_distance(r)).collect();
             (0..copies).for_each(|_| depths.extend_from_slice(&own));
             depths.extend(mirrored.iter().map(|image| own[image.own as usize]));
         }
@@ -150,11 +138,6 @@ impl<const D: usize> Boundary<D> {
         self.local_bounds.push(Bounds::around(&local));
         self.local_positions.push(if matches!(spec.role, Role::Fixed) { Vec::new() } else { local });
         Ok((first..self.particles.len(), division))
-    }
-
-    /// Adds the accelerations by the weight of the water missing beside thin parts to `sums`, one for each boundary particle of `wet`.
-    pub(super) fn add_missing_weight(&self, sums: &mut [PairSums<D>], wet: &[u32], gravity: &Vector<D>) {
-        self.thin_parts.add_to(sums, (wet, self.wetness.as_deref().unwrap_or_default()), gravity);
     }
 
     /// Removes the boundary particles `gone`, which are those of solid number `solid`.
@@ -172,7 +155,6 @@ impl<const D: usize> Boundary<D> {
             let later = targets.partition_point(|target| (target.particle as usize) < gone.start);
             targets[later..].iter_mut().for_each(|target| target.particle -= gone.len() as u32);
         }
-        self.thin_parts.remove_range(gone.start, gone.end);
         id.truncate(self.particles.r.len());
         local_bounds[solid] = Bounds { min: Vector::zeros(), max: Vector::zeros() };
     }

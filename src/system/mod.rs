@@ -15,10 +15,9 @@ mod sponge_layer;
 mod step_check;
 mod symmetric_setup;
 pub(crate) mod symmetry;
-mod thin_parts;
 mod view;
 
-pub(crate) use boundary::{Boundary, FULLY_WET};
+pub(crate) use boundary::Boundary;
 pub(crate) use checkpoint::SystemState;
 pub(crate) use fluid::{Fluid, permute};
 use gap_pressure::GapPressure;
@@ -355,7 +354,6 @@ impl<const D: usize> System<D> {
         self.status.step_limits = pair_loop.rates(&input, &mut rates.boundary);
         rates.current = true;
         Self::add_gap_pressure(gap_pressure, &input, &mut rates.boundary);
-        boundary.add_missing_weight(&mut rates.boundary, neighbours.boundary_near_fluid(), &properties.gravity);
         self.limit_step_by_originals();
         self.update_stress();
         let loads = self.loads(&self.rates.boundary);
@@ -446,7 +444,6 @@ impl<const D: usize> System<D> {
         let mut boundary = vec![PairSums::zero(); self.rates.boundary.len()];
         pair_loop.rates(&input, &mut boundary);
         Self::add_gap_pressure(&self.gap_pressure, &input, &mut boundary);
-        self.boundary.add_missing_weight(&mut boundary, self.neighbours.boundary_near_fluid(), &medium.gravity);
         self.loads(&boundary)
     }
 
