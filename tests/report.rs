@@ -483,9 +483,12 @@ fn the_report_of_a_failed_or_unfinished_run_states_its_status() {
     let result = pontoon(&folder, &["report", "nowhere"]);
     assert!(!result.status.success() && String::from_utf8_lossy(&result.stderr).contains("holds no run"));
     manifest.record_failure(&fault());
+    manifest.notes = vec!["waves.csv is read so: separator tab".into()];
+    manifest.events = vec!["rope \"line\" breaks at 0.5 s".into()];
     manifest.write(&run).unwrap();
     let text = page_text(&run);
-    for word in ["This run could not go on", "the water has left", "shorten the step"] {
+    let words = ["This run could not go on", "the water has left", "shorten the step", "separator tab"];
+    for word in words.into_iter().chain(["rope &quot;line&quot; breaks at 0.5 s"]) {
         assert!(text.contains(word), "{word:?} is not on the page");
     }
 }

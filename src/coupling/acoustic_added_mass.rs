@@ -93,7 +93,7 @@ impl<const D: usize> AcousticAddedMass<D> {
         }
         let of = |k: usize| (k as u32, pose.local(&system.place_on_solid(i, k)));
         let near_face = |(_, r): &(u32, Vector<D>)| -shape.signed_distance(r) < 0.75 * medium.dp;
-        let own = if solid.copies > 1 { solid.boundary.clone() } else { solid.boundary_of_copy(0) };
+        let own = if solid.copied_axes != 0 { solid.boundary.clone() } else { solid.boundary_of_copy(0) };
         let all = own.map(of).filter(near_face);
         let outer = all.map(|(i, r)| (i, shape.outward_normal(&r, 0.05 * medium.dp))).collect();
         let state = AddedMassState { pending: Six::zeros(), contacts: Six::zeros(), stiffness_sum: 0.0 };

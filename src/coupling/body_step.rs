@@ -183,6 +183,10 @@ impl<const D: usize> Bodies<D> {
         if let Some(i) = (0..solids.len()).find(|&i| system.meets_its_image(i, &solids[i].pose)) {
             return Err(fault_error(system, at_plane(i, &solids[i]), self.steps, over.t));
         }
+        let side = |i: usize| Some((i, system.side_reached(i, &solids[i])?));
+        if let Some((i, axis)) = (0..solids.len()).find_map(side) {
+            return Err(fault_error(system, at_side(i, axis, &solids[i]), self.steps, over.t));
+        }
         self.steps += 1;
         place(system, Some(over.dt), |i, solid| match &solid.spec.role {
             Role::Fixed => None,
@@ -407,6 +411,19 @@ fn at_plane<const D: usize>(solid: usize, now: &Kinematics<D>) -> EngineFault<D>
         solid,
         reason: "contact with its mirror image at a symmetry plane".into(),
         cause: "Contacts do not act across symmetry planes. Start it further from the plane, hold it with a line or a lock, or                 compute both sides:  leave symmetry out.",
+        position: now.centre,
+        velocity: now.velocity,
+    }
+}
+
+/// Returns the fault of driven solid number `solid`, which ends at a periodic side along `axis`.
+fn at_side<const D: usize>(solid: usize, axis: &str, now: &Kinematics<D>) -> EngineFault<D> {
+    EngineFault {
+        code: ErrorCode::LeftDomain,
+        solid,
+        reason: format!("an end at a periodic side along {axis}"),
+        cause: "Too long a solid is not repeated. Let it reach 2.5 kernel supports or more beyond both sides during its whole \
+                motion, or start it between the sides, shorter than the period less 5 supports.",
         position: now.centre,
         velocity: now.velocity,
     }

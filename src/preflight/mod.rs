@@ -8,6 +8,7 @@ mod absorption_limits;
 mod lifetimes;
 mod misplaced_bodies;
 mod moorings;
+mod periodic_sides;
 mod floating_bodies;
 mod hollows;
 mod surface_samples;
@@ -212,6 +213,7 @@ pub fn preflight<const D: usize>(
     look.misplaced_bodies(&gaps.touching, &mut findings);
     look.check_thickness(&mut findings);
     thin_parts::check_parts(&look, &mut findings);
+    periodic_sides::check(&look, &mut findings);
     look.check_probes(&sound, &mut findings);
     lifetimes::check(&look, &mut findings);
     let (waves, absorbers) = (look.generated_waves(&mut findings), look.absorbers());

@@ -104,20 +104,21 @@ fn failure(m: &Manifest) -> String {
     format!("<div class=\"note bad\" role=\"alert\"><p>{said}</p>{fault}</div>\n")
 }
 
-/// Returns the warnings of the runs and the remarks of the page.
+/// Returns the warnings of the runs with the remarks of the page, the notes on their files, and their events.
 pub(crate) fn warnings(runs: &[RunData]) -> String {
-    let all: Vec<String> = runs
-        .iter()
-        .flat_map(|run| {
+    let shown = |title: &str, class: &str, of: fn(&RunData) -> Vec<&String>| {
+        let items = runs.iter().flat_map(|run| {
             let name = if runs.len() > 1 { format!("{}: ", run.name) } else { String::new() };
-            run.manifest.warnings.iter().chain(&run.remarks).map(move |text| format!("{name}{text}"))
-        })
-        .collect();
-    if all.is_empty() {
-        return String::new();
-    }
-    let items = all.iter().map(|text| format!("<li>{}</li>", escape(text))).collect::<String>();
-    format!("<div class=\"note odd\"><p><strong>Warnings</strong></p><ul>{items}</ul></div>\n")
+            of(run).into_iter().map(move |text| format!("<li>{}</li>", escape(&format!("{name}{text}"))))
+        });
+        match items.collect::<String>() {
+            items if items.is_empty() => items,
+            items => format!("<div class=\"{class}\"><p><strong>{title}</strong></p><ul>{items}</ul></div>\n"),
+        }
+    };
+    shown("Warnings", "note odd", |run| run.manifest.warnings.iter().chain(&run.remarks).collect())
+        + &shown("Notes", "note", |run| run.manifest.notes.iter().collect())
+        + &shown("Events", "note", |run| run.manifest.events.iter().collect())
 }
 
 /// Returns the numbers of a verdict as a caption.

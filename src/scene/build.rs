@@ -147,7 +147,10 @@ impl Scene {
             require_inside_domain(ctx, domain, &water, solids)?;
         }
         let periodic = scene.periodic.clone().unwrap_or_default().build();
-        periodic::check(&periodic, &model, solids, &constraints).map_err(|e| ctx.with_location(e, "periodic"))?;
+        let has_planes = scene.symmetry.as_ref().is_some_and(|planes| planes.build::<D>().iter().any(Option::is_some));
+        periodic::check(&periodic, has_planes, &model, solids, &constraints)
+            .and_then(|()| periodic::check_motions(&periodic, has_planes, &model, solids, scene.until))
+            .map_err(|e| ctx.with_location(e, "periodic"))?;
         require_affordable(ctx, &water, solids)?;
         let file_notes = ctx.file_notes.take();
         Ok(SceneParts { scene, water, still, gravity_law, model, placed, constraints, domain, periodic, file_notes })

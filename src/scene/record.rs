@@ -7,6 +7,7 @@ use super::{
 use crate::{
     error::Result,
     math::{
+        format::three_digits,
         table::{self, ColumnName, TableReader},
         time_series::{SampleScaling, TimeSeries},
     },
@@ -14,6 +15,9 @@ use crate::{
 
 /// A record of which so many times the duration of the run lies outside the run is probably not in seconds.
 const MUCH_LONGER: f64 = 20.0;
+
+/// Largest difference between the spacings of even samples, over their mean, –.
+const UNEVEN: f64 = 0.01;
 
 /// Units of time, which do not occur in columns of values. `v_ms` is a speed.
 const TIME_UNITS: [&str; 5] = ["ms", "msec", "us", "µs", "min"];
@@ -131,6 +135,30 @@ impl Record<'_> {
                 remedy: format!("write  {key} = {factor}  beside the column"),
             });
         }
+    }
+
+    /// Adds a note if the samples of `series` are not evenly spaced, of a record that is read at even times.
+    pub(super) fn note_uneven(&self, series: &TimeSeries) {
+        let gaps: Vec<f64> = series.times().windows(2).map(|ab| (ab[1] - ab[0]) * self.scaling.time_factor).collect();
+        let (least, most) = gaps.iter().fold((f64::INFINITY, 0.0), |(a, b): (f64, f64), x| (a.min(*x), b.max(*x)));
+        let mean = gaps.iter().sum::<f64>() / gaps.len() as f64;
+        if gaps.is_empty() || most - least <= UNEVEN * mean {
+            return;
+        }
+        self.ctx.add_note(FileNote::note(
+            "record_uneven",
+            format!(
+                "record {}, column \"{}\" ({}), has samples {} to {} s apart: its waves are those of the curve through \
+                 them, read every {} s",
+                self.file,
+                self.column,
+                self.ctx.shown_key(self.key),
+                three_digits(least),
+                three_digits(most),
+                three_digits(mean),
+            ),
+            "give evenly spaced samples, or check the sea with a gauge".into(),
+        ));
     }
 
     /// Adds a note if the record, with the samples `series` on its own clock, does not cover the run.

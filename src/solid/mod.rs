@@ -168,11 +168,11 @@ pub struct Solid<const D: usize> {
     pub body: Option<FreeBody<D>>,
     /// Its present kinematics.
     pub kinematics: Kinematics<D>,
-    /// Indices of its boundary particles. A free solid in a periodic sea has several copies, one after the other; beside a symmetry
-    /// plane their mirror images come last.
+    /// Indices of its boundary particles. A free or driven solid that may cross periodic sides has several copies, one after the
+    /// other; beside a symmetry plane their mirror images come last.
     pub boundary: Range<usize>,
-    /// Number of copies of its boundary particles.
-    pub(crate) copies: usize,
+    /// The periodic axes along which its boundary particles have copies, bit by bit.
+    pub(crate) copied_axes: u8,
     /// How symmetry planes divide it and its boundary particles.
     pub(crate) division: SolidDivision,
     /// Acceleration of `kinematics.centre`, a mean over the last few steps, m/s².
@@ -190,6 +190,11 @@ pub struct Solid<const D: usize> {
 const ACCELERATION_FILTER: f64 = 0.2;
 
 impl<const D: usize> Solid<D> {
+    /// Number of copies of its boundary particles.
+    pub(crate) fn copies(&self) -> usize {
+        1 << self.copied_axes.count_ones()
+    }
+
     /// Indices of the boundary particles of its copy number `copy`.
     pub(crate) fn boundary_of_copy(&self, copy: usize) -> Range<usize> {
         let (start, count) = (self.boundary.start, self.division.own);
@@ -199,7 +204,7 @@ impl<const D: usize> Solid<D> {
     /// Indices of the boundary particles of the whole solid, without those of its images.
     pub(crate) fn boundary_of_whole(&self) -> Range<usize> {
         self.boundary.start
-            ..self.boundary.start + if self.copies > 1 { self.boundary.len() } else { self.division.whole }
+            ..self.boundary.start + if self.copied_axes != 0 { self.boundary.len() } else { self.division.whole }
     }
 
     /// Moves it to `next` over `dt` (s).

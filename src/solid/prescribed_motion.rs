@@ -168,6 +168,18 @@ impl<const D: usize> PrescribedMotion<D> {
         self.hinged().map(|centre| centre[D - 1])
     }
 
+    /// Whether it may move a point along axis number `axis`. A steady stage counts: it may turn those above it.
+    pub(crate) fn moves_along(&self, axis: usize) -> bool {
+        self.stages.iter().any(|stage| stage.law.steady_value().is_none())
+            && self.stages.iter().any(|stage| stage.path.leads_along(axis))
+    }
+
+    /// Whether it turns a solid at any time.
+    pub(crate) fn turns(&self) -> bool {
+        let turns = |stage: &Stage<D>| matches!(stage.path, Path::Hinge { .. }) && stage.law.steady_value().is_none();
+        self.stages.iter().any(turns)
+    }
+
     /// Which way its point that is at `x` (m) at the start goes as the value of each of its laws grows: unit vectors, from the ground
     /// up; zero on the axis of a hinge.
     pub(crate) fn directions_at(&self, x: &Vector<D>) -> Vec<Vector<D>> {
@@ -234,6 +246,14 @@ impl<const D: usize> PrescribedMotion<D> {
 }
 
 impl<const D: usize> Path<D> {
+    /// Whether it leads along axis number `axis`; of a hinge, unless its own axis is that one.
+    fn leads_along(&self, axis: usize) -> bool {
+        match self {
+            Self::Slide(direction) => direction[axis] != 0.0,
+            Self::Hinge { axis: own, .. } => own.0.row(axis).iter().any(|x| *x != 0.0),
+        }
+    }
+
     /// What moves as `inner` says, centre and all, carried along this path by a value (m or rad) that grows at a rate.
     fn carry(&self, inner: &Kinematics<D>, (value, rate): (f64, f64)) -> Kinematics<D> {
         match self {

@@ -1,12 +1,23 @@
 //! Loads that free bodies carry at rest through their ties, for placing them at their equilibrium: bodies that are joined
 //! to them or hang on them, springs as they are at the start, and steady forces.
+//!
+//! A body that hangs on several lines divides its load among them by the balance of forces and moments, with the lines as they
+//! are at the start; of several such tensions the least count. Where no tensions balance it, each line gets the same part.
+
+use nalgebra::{DMatrix, DVector};
 
 use super::{
     Constraints, Role, SolidSpec,
     constraint::lines::{LineEnd, start_length},
     joint_groups::JointGroups,
 };
-use crate::error::Error;
+use crate::{
+    error::Error,
+    math::{Bivector, Vector},
+};
+
+/// Largest part of the load that tensions may leave unbalanced, –.
+const UNBALANCED: f64 = 1e-6;
 
 /// The loads on bodies that start at their equilibrium, kg; positive downward.
 pub(crate) struct TieLoads {
@@ -34,9 +45,11 @@ pub(crate) struct StartState<'a, const D: usize> {
 }
 
 /// A rope or a spring on which a body can hang.
-struct Hanger {
+struct Hanger<const D: usize> {
     upper: Option<usize>,
     lower: usize,
+    /// Its ends at the start, the upper one first, m.
+    ends: [Vector<D>; 2],
     /// Way (m) of the lower end until the line bears the weight (kg) of the body.
     way: Box<dyn Fn(f64) -> f64>,
 }
@@ -81,17 +94,26 @@ impl TieLoads {
                 end.solid.into_iter().for_each(|i| made.add(state, i, sign * load));
             }
         }
+        // The loads (kg) that hanging bodies carry in their turn, with their places (m).
+        let mut borne: Vec<(usize, f64, Vector<D>)> = Vec::new();
         // From below: each hanging body after those that hang on it.
         while let Some(next) = hangers.iter().position(|own| !made.carries(&hangers, own.lower)) {
             let group = made.groups.rising[hangers[next].lower];
-            let (own, rest): (Vec<Hanger>, Vec<Hanger>) =
+            let (own, rest): (Vec<Hanger<D>>, Vec<Hanger<D>>) =
                 hangers.into_iter().partition(|hanger| made.groups.rising[hanger.lower] == group);
             hangers = rest;
             let load = made.of_group[group];
-            let share = load / own.len() as f64;
-            let hangs = |hanger: &Hanger| (state.above_bottom)(hanger.lower) > (hanger.way)(share);
-            if load > 0.0 && own.iter().all(hangs) {
-                own.iter().filter_map(|hanger| hanger.upper).for_each(|upper| made.add(state, upper, share));
+            let members = made.groups.rising.iter().filter(|other| **other == group).count();
+            let centre = (members == 1).then(|| made.load_centre(state, own[0].lower, &borne)).flatten();
+            let shares = shares(&own, load, centre);
+            let hangs = |(hanger, share): (&Hanger<D>, &f64)| (state.above_bottom)(hanger.lower) > (hanger.way)(*share);
+            if load > 0.0 && own.iter().zip(&shares).all(hangs) {
+                for (hanger, share) in own.iter().zip(shares) {
+                    if let Some(upper) = hanger.upper {
+                        made.add(state, upper, share);
+                        borne.push((upper, share, hanger.ends[0]));
+                    }
+                }
             }
         }
         made
@@ -113,31 +135,51 @@ impl TieLoads {
         self.free[solid] && !self.groups.held[solid] && !(0..self.free.len()).any(floats)
     }
 
+    /// Returns the place (m) at which the weight of free solid `i`, less its buoyancy, acts together with what it bears; `None` if
+    /// it has other loads.
+    fn load_centre<const D: usize>(
+        &self,
+        state: &StartState<D>,
+        i: usize,
+        borne: &[(usize, f64, Vector<D>)],
+    ) -> Option<Vector<D>> {
+        let spec = state.specs[i];
+        let (body, displaced, pose) = (spec.initial_body()?, (state.displaced)(i), spec.initial_kinematics().pose);
+        let (mass_at, centroid) = (pose.point(&body.centre), pose.point(&spec.shape.volume_properties().centroid));
+        let (mut load, mut moment) = (body.mass - displaced, mass_at * body.mass - centroid * displaced);
+        for (_, more, at) in borne.iter().filter(|(upper, ..)| *upper == i) {
+            (load, moment) = (load + more, moment + at * *more);
+        }
+        let is_all = (load - self.of_group[self.groups.rising[i]]).abs() <= UNBALANCED * load.abs();
+        (is_all && load > 0.0).then(|| moment / load)
+    }
+
     /// Returns whether a body, or one that rises with it, is the upper end of a line.
-    fn carries(&self, hangers: &[Hanger], solid: usize) -> bool {
+    fn carries<const D: usize>(&self, hangers: &[Hanger<D>], solid: usize) -> bool {
         let group = self.groups.rising[solid];
         hangers.iter().any(|own| own.upper.is_some_and(|upper| self.groups.rising[upper] == group))
     }
 
     /// Returns the lines on which bodies can hang.
-    fn hangers<const D: usize>(&self, state: &StartState<D>, constraints: &Constraints<D>) -> Vec<Hanger> {
+    fn hangers<const D: usize>(&self, state: &StartState<D>, constraints: &Constraints<D>) -> Vec<Hanger<D>> {
         let mut all = Vec::new();
         for rope in &constraints.ropes {
             let length = start_length(&rope.ends);
             let way = rope.max_length.map_or(0.0, |longest| longest - length);
             if let Some((upper, lower)) = hanging_ends(&rope.ends) {
-                all.push(Hanger { upper, lower, way: Box::new(move |_| way) });
+                all.push(Hanger { upper, lower, ends: upper_first(&rope.ends), way: Box::new(move |_| way) });
             }
         }
         for spring in constraints.springs.iter().filter(|spring| spring.stiffness > 0.0) {
             let length = start_length(&spring.ends);
             let (slack, give) = (spring.rest_length.unwrap_or(length) - length, state.g / spring.stiffness);
             if let Some((upper, lower)) = hanging_ends(&spring.ends) {
-                all.push(Hanger { upper, lower, way: Box::new(move |mass| slack + mass * give) });
+                let ends = upper_first(&spring.ends);
+                all.push(Hanger { upper, lower, ends, way: Box::new(move |mass| slack + mass * give) });
             }
         }
         let same =
-            |own: &Hanger| own.upper.is_some_and(|upper| self.groups.rising[upper] == self.groups.rising[own.lower]);
+            |own: &Hanger<D>| own.upper.is_some_and(|upper| self.groups.rising[upper] == self.groups.rising[own.lower]);
         all.retain(|own| self.can_hang(state, own.lower) && !same(own));
         all
     }
@@ -168,6 +210,35 @@ impl TieLoads {
         let more = format!("; of that, {load:.4} are the load of its joints, ropes, springs and forces");
         Error { message: error.message + &more, ..error }
     }
+}
+
+/// Returns the parts (kg) of `load` (kg) at `centre` (m) that the lines of a hanging body bear.
+fn shares<const D: usize>(lines: &[Hanger<D>], load: f64, centre: Option<Vector<D>>) -> Vec<f64> {
+    let even = vec![load / lines.len() as f64; lines.len()];
+    let is_long = |line: &Hanger<D>| line.ends[0] != line.ends[1];
+    let Some(centre) = centre.filter(|_| lines.len() > 1 && lines.iter().all(is_long)) else { return even };
+    let longest = lines.iter().map(|line| (line.ends[1] - centre).norm()).fold(0.0, f64::max);
+    let column = |line: &Hanger<D>| {
+        let along = (line.ends[0] - line.ends[1]).normalize();
+        let moment = Bivector::torque(&(line.ends[1] - centre), &along).axial();
+        let moment = moment.into_iter().map(move |x| if longest > 0.0 { x / longest } else { 0.0 });
+        along.iter().copied().chain(moment).collect::<Vec<f64>>()
+    };
+    let columns: Vec<Vec<f64>> = lines.iter().map(column).collect();
+    let rows = columns[0].len();
+    let balance = DMatrix::from_fn(rows, lines.len(), |i, j| columns[j][i]);
+    let wanted = DVector::from_fn(rows, |i, _| if i == D - 1 { load } else { 0.0 });
+    let Ok(tensions) = balance.clone().svd(true, true).solve(&wanted, 1e-9) else { return even };
+    let is_balanced = (&balance * &tensions - &wanted).norm() <= UNBALANCED * load;
+    if !is_balanced || tensions.iter().any(|tension| *tension < -UNBALANCED * load) {
+        return even;
+    }
+    tensions.iter().zip(&columns).map(|(tension, column)| tension * column[D - 1]).collect()
+}
+
+/// Returns the places (m) of the ends of a line, the upper one first.
+fn upper_first<const D: usize>([a, b]: &[LineEnd<D>; 2]) -> [Vector<D>; 2] {
+    if a.at[D - 1] > b.at[D - 1] { [a.at, b.at] } else { [b.at, a.at] }
 }
 
 /// Returns the solids at the upper and the lower end of a line, if there is one at the lower end.

@@ -182,9 +182,10 @@ impl<const D: usize> Boundary<D> {
         (number, solid): (usize, &'a Solid<D>),
         pose: &'a Pose<D>,
     ) -> impl Iterator<Item = (Range<usize>, Vector<D>)> + 'a {
-        (0..solid.copies).map(move |copy| {
-            let none = solid.copies == 1;
-            let way = if none { Vector::zeros() } else { images.way_to_copy(&self.middle(number, pose), copy) };
+        (0..solid.copies()).map(move |copy| {
+            let none = solid.copied_axes == 0;
+            let axes = solid.copied_axes;
+            let way = if none { Vector::zeros() } else { images.way_to_copy(&self.middle(number, pose), axes, copy) };
             (solid.boundary_of_copy(copy), way)
         })
     }
@@ -244,10 +245,10 @@ impl<const D: usize> Boundary<D> {
     /// sides.
     pub(super) fn update_copies(&mut self, solids: &[Solid<D>], images: &Images<D>) {
         let Self { particles: Particles { r, rho, .. }, extrapolated_velocity, .. } = self;
-        for solid in solids.iter().filter(|solid| solid.copies > 1) {
+        for solid in solids.iter().filter(|solid| solid.copied_axes != 0) {
             for own in solid.boundary_of_copy(0) {
-                let count = solid.boundary.len() / solid.copies;
-                let copies = || (0..solid.copies).map(|copy| own + copy * count);
+                let count = solid.boundary.len() / solid.copies();
+                let copies = || (0..solid.copies()).map(|copy| own + copy * count);
                 let Some(inside) = copies().find(|i| images.is_inside(&r[*i])) else { continue };
                 let density = rho[inside];
                 copies().for_each(|i| rho[i] = density);
@@ -401,21 +402,22 @@ impl<const D: usize> System<D> {
     /// Position (m) of boundary particle `i` on its solid, number `number`, without the way to its copy.
     pub(crate) fn place_on_solid(&self, number: usize, i: usize) -> Vector<D> {
         let (solid, r) = (&self.solids[number], &self.boundary.particles.r[i]);
-        if solid.copies == 1 {
+        if solid.copied_axes == 0 {
             return *r;
         }
-        let copy = (i - solid.boundary.start) * solid.copies / solid.boundary.len();
-        r - self.fluid.images.way_to_copy(&self.boundary.middle(number, &solid.kinematics.pose), copy)
+        let copy = (i - solid.boundary.start) * solid.copies() / solid.boundary.len();
+        let middle = self.boundary.middle(number, &solid.kinematics.pose);
+        r - self.fluid.images.way_to_copy(&middle, solid.copied_axes, copy)
     }
 
     /// Pose of solid number `solid`; that of its copy with its middle between the periodic sides, if it has several.
     pub(crate) fn home_pose(&self, solid: usize) -> Pose<D> {
         let own = &self.solids[solid];
         let mut pose = own.kinematics.pose;
-        if own.copies > 1 {
-            let middle = self.boundary.middle(solid, &pose);
+        if own.copied_axes != 0 {
+            let (middle, axes) = (self.boundary.middle(solid, &pose), own.copied_axes);
             let images = &self.fluid.images;
-            pose.position += images.way_to_copy(&middle, images.home_copy(&middle, own.copies));
+            pose.position += images.way_to_copy(&middle, axes, images.home_copy(&middle, axes));
         }
         pose
     }
@@ -425,7 +427,7 @@ impl<const D: usize> System<D> {
     pub(crate) fn home_boundary(&self, solid: usize) -> Range<usize> {
         let own = &self.solids[solid];
         let middle = self.boundary.middle(solid, &own.kinematics.pose);
-        own.boundary_of_copy(self.fluid.images.home_copy(&middle, own.copies))
+        own.boundary_of_copy(self.fluid.images.home_copy(&middle, own.copied_axes))
     }
 }
 

@@ -17,9 +17,14 @@ impl<const D: usize> System<D> {
         kinematics: Kinematics<D>,
         extension: &[ExtensionParticle<D>],
     ) -> Result<()> {
-        let copies = self.fluid.images.copies(&spec);
-        let (skin, division) =
-            self.boundary.append(&self.model, &spec, (&kinematics, copies), extension, &self.fluid.images)?;
+        let copied_axes = self.fluid.images.copied_axes(&spec);
+        let (skin, division) = self.boundary.append(
+            &self.model,
+            &spec,
+            (&kinematics, 1 << copied_axes.count_ones()),
+            extension,
+            &self.fluid.images,
+        )?;
         let (acceleration, whirl, load) = (Vector::zeros(), Bivector::zero(), Load::zero());
         let yielding = Default::default();
         self.solids.push(Solid {
@@ -29,7 +34,7 @@ impl<const D: usize> System<D> {
             acceleration,
             angular_acceleration: whirl,
             boundary: skin,
-            copies,
+            copied_axes,
             division,
             load,
             absorption: yielding,

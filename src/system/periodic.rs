@@ -4,10 +4,11 @@
 //! image takes its rates from the particle that it mirrors, so that whoever moves the water moves both alike; only what
 //! counts the water leaves images out. The images across symmetry planes are made here too ([`super::symmetry`]).
 //!
-//! Fixed and driven solids have no images: they reach beyond the sides as far as those of the water do. A free solid is
+//! Fixed solids have no images: they reach beyond the sides as far as those of the water do. A free solid is
 //! not wrapped: its kinematics go on beyond the sides. Its boundary particles stand in the arrays twice for each periodic
 //! axis, an even and an odd number of periods from its place: one copy with its middle between the sides, and one beyond
-//! the nearer side. Of the copies of a particle exactly one lies between the sides. It gives the load, and the others
+//! the nearer side. So do those of a driven solid for each periodic axis along which it moves, if it starts between the
+//! sides and is short; a longer one reaches beyond both sides all the time. Of the copies of a particle exactly one lies between the sides. It gives the load, and the others
 //! take its density. A copy moves by two periods when the middle of the solid passes the middle between the sides; then
 //! no water is near it.
 
@@ -18,10 +19,10 @@ use super::{
 use crate::{
     error::{Error, Result},
     interaction::StepLimits,
-    math::{Bounds, Vector},
+    math::{Bounds, Pose, Vector},
     model::Model,
     particles::Particles,
-    solid::{Constraints, Role, SolidSpec},
+    solid::{Constraints, Kinematics, PrescribedMotion, Role, SolidSpec},
 };
 
 /// How far images reach beyond a side, over the kernel's support: the skin beyond a side sees water as that inside does, also
@@ -106,17 +107,17 @@ impl<const D: usize> Images<D> {
         images
     }
 
-    /// Number of copies of the boundary particles of a solid.
-    pub(super) fn copies(&self, spec: &SolidSpec<D>) -> usize {
-        let axes = self.periodic.iter().flatten().count();
-        if matches!(spec.role, Role::Free(_)) { 1 << axes } else { 1 }
+    /// The axes along which the boundary particles of a solid have copies.
+    pub(super) fn copied_axes(&self, spec: &SolidSpec<D>) -> AxisSet {
+        let is_copied = |axis: &usize| is_copied(&self.periodic, self.planes.any(), spec, (*axis, self.width));
+        (0..D).filter(is_copied).fold(0, |axes, axis| axes | 1 << axis)
     }
 
-    /// The way (m) to copy number `copy` from a free solid whose middle is at `middle` (m).
-    pub(super) fn way_to_copy(&self, middle: &Vector<D>, copy: usize) -> Vector<D> {
+    /// The way (m) to copy number `copy` from a solid with copies along `axes` whose middle is at `middle` (m).
+    pub(super) fn way_to_copy(&self, middle: &Vector<D>, axes: AxisSet, copy: usize) -> Vector<D> {
         let mut way = Vector::zeros();
         let sides = self.periodic.iter().enumerate().filter_map(|(axis, side)| Some((axis, (*side)?)));
-        for (bit, (axis, [from, to])) in sides.enumerate() {
+        for (bit, (axis, [from, to])) in sides.filter(|(axis, _)| axes >> axis & 1 == 1).enumerate() {
             let periods = (middle[axis] - from) / (to - from);
             let home = -periods.floor();
             let beside = if periods + home < 0.5 { home + 1.0 } else { home - 1.0 };
@@ -127,10 +128,16 @@ impl<const D: usize> Images<D> {
         way
     }
 
-    /// Number of the copy of a free solid whose middle is between the sides, if its middle is at `middle` (m).
-    pub(super) fn home_copy(&self, middle: &Vector<D>, copies: usize) -> usize {
-        let is_home = |copy: &usize| self.is_inside(&(middle + self.way_to_copy(middle, *copy)));
-        (0..copies).find(is_home).unwrap_or(0)
+    /// Number of the copy whose middle is between the sides, of a solid with copies along `axes` whose middle is at `middle` (m).
+    pub(super) fn home_copy(&self, middle: &Vector<D>, axes: AxisSet) -> usize {
+        let between = |x: &Vector<D>| {
+            let is_inside = |(axis, side): (usize, &Option<[f64; 2]>)| {
+                axes >> axis & 1 == 0 || side.is_none_or(|[from, to]| (from..to).contains(&x[axis]))
+            };
+            self.periodic.iter().enumerate().all(is_inside)
+        };
+        let is_home = |copy: &usize| between(&(middle + self.way_to_copy(middle, axes, *copy)));
+        (0..1 << axes.count_ones()).find(is_home).unwrap_or(0)
     }
 
     /// The place between the sides that is whole periods from `x` (m), or its image on the computed side of the symmetry planes.
@@ -246,13 +253,120 @@ impl<const D: usize> System<D> {
     }
 }
 
-/// Refuses periodic sides that cannot be.
+/// Times at which the motion of a driven solid is looked at.
+const TIMES_SEEN: u32 = 2000;
+
+/// The motion of a driven solid that moves along axis number `axis`.
+fn motion_along<const D: usize>(spec: &SolidSpec<D>, axis: usize) -> Option<&PrescribedMotion<D>> {
+    match &spec.role {
+        Role::Driven(motion) => Some(motion).filter(|motion| motion.moves_along(axis)),
+        Role::Fixed | Role::Free(_) => None,
+    }
+}
+
+/// The longest (m) that a driven solid, which starts with `bounds`, is along axis number `axis`.
+fn longest<const D: usize>(spec: &SolidSpec<D>, motion: &PrescribedMotion<D>, bounds: &Bounds<D>, axis: usize) -> f64 {
+    if motion.turns() { spec.shape.bounds().size().norm() } else { bounds.size()[axis] }
+}
+
+/// Whether the boundary particles of a solid have copies along axis number `axis`, across which water sees as far as `width` (m):
+/// those of free solids, and of driven ones that move along the axis, start between the sides and are short enough. Copies
+/// are not combined with the images of symmetry planes.
+fn is_copied<const D: usize>(
+    periodic: &Periodic<D>,
+    has_planes: bool,
+    spec: &SolidSpec<D>,
+    (axis, width): (usize, f64),
+) -> bool {
+    let Some([from, to]) = periodic[axis] else { return false };
+    let Some(motion) = motion_along(spec, axis).filter(|_| !has_planes) else {
+        return matches!(spec.role, Role::Free(_));
+    };
+    let bounds = spec.shape.bounds_at(&spec.initial_kinematics().pose);
+    let starts_inside = from <= bounds.min[axis] && bounds.max[axis] <= to;
+    starts_inside && longest(spec, motion, &bounds, axis) <= to - from - 2.0 * width
+}
+
+/// Whether a solid with these `bounds` ends so near to a side that water sees, as far as `width` (m), past its end.
+fn ends_near<const D: usize>(bounds: &Bounds<D>, axis: usize, sides: [f64; 2], width: f64) -> bool {
+    let near = |x: f64, side: f64| (x - side).abs() < width * (1.0 - 1e-9);
+    sides.iter().any(|&side| near(bounds.min[axis], side) || near(bounds.max[axis], side))
+}
+
+/// The periodic axis at a side of which a driven solid without copies ends at `pose`.
+fn side_reached<const D: usize>(
+    periodic: &Periodic<D>,
+    has_planes: bool,
+    spec: &SolidSpec<D>,
+    (pose, width): (&Pose<D>, f64),
+) -> Option<usize> {
+    let reaches = |axis: &usize| {
+        let Some(sides) = periodic[*axis].filter(|_| motion_along(spec, *axis).is_some()) else { return false };
+        ends_near(&spec.shape.bounds_at(pose), *axis, sides, width)
+            && !is_copied(periodic, has_planes, spec, (*axis, width))
+    };
+    (0..D).find(reaches)
+}
+
+impl<const D: usize> System<D> {
+    /// Name of the periodic axis at a side of which driven solid number `i`, without copies, ends if it moves as `now`.
+    pub(crate) fn side_reached(&self, i: usize, now: &Kinematics<D>) -> Option<&'static str> {
+        let Images { periodic, planes, width, .. } = &self.fluid.images;
+        let axis = side_reached(periodic, planes.any(), &self.solids[i].spec, (&now.pose, *width))?;
+        Some(["x", "y", "z"][axis])
+    }
+}
+
+/// How a driven solid may go along a periodic axis, for messages.
+fn driven_help(length: f64, width: f64) -> String {
+    let longest = length - 2.0 * width;
+    format!(
+        "a driven solid that starts between the sides and is {longest:.4} m long at most passes through them; a longer one \
+         reaches {width:.4} m or more beyond both sides during its whole motion, or ends as far before them"
+    )
+}
+
+/// Refuses driven solids without copies that end at a periodic side at a time up to `until` (s).
+///
+/// # Errors
+/// `Scene` with the solid, the time and the remedy.
+pub(crate) fn check_motions<const D: usize>(
+    periodic: &Periodic<D>,
+    has_planes: bool,
+    model: &Model,
+    solids: &[SolidSpec<D>],
+    until: f64,
+) -> Result<()> {
+    let width = WIDTH * model.support_radius();
+    let any = periodic.iter().any(Option::is_some);
+    for spec in solids.iter().filter(|_| any) {
+        let Role::Driven(motion) = &spec.role else { continue };
+        for t in (0..=TIMES_SEEN).map(|k| until * f64::from(k) / f64::from(TIMES_SEEN)) {
+            let pose = motion.kinematics(&spec.pose, t).pose;
+            let Some(axis) = side_reached(periodic, has_planes, spec, (&pose, width)) else { continue };
+            let name = ["x", "y", "z"][axis];
+            let what = format!("driven solid {:?} ends at a periodic side along {name} at t = {t:.4} s", spec.name);
+            let [from, to] = periodic[axis].unwrap_or_default();
+            let help = match has_planes {
+                true => {
+                    "leave  symmetry  out: beside symmetry planes no solid passes through periodic sides".to_string()
+                }
+                false => driven_help(to - from, width),
+            };
+            return Err(Error::scene(what).help(help));
+        }
+    }
+    Ok(())
+}
+
+/// Refuses periodic sides that cannot be; `has_planes` tells of symmetry planes.
 ///
 /// # Errors
 /// `Scene` if a period is too short or no whole number of dp, a fixed or driven solid ends at a side, or a free solid
 /// starts across a side, is too long or may touch another solid.
 pub(crate) fn check<const D: usize>(
     periodic: &Periodic<D>,
+    has_planes: bool,
     model: &Model,
     solids: &[SolidSpec<D>],
     constraints: &Constraints<D>,
@@ -273,17 +387,16 @@ pub(crate) fn check<const D: usize>(
         for solid in solids.iter().filter(|solid| matches!(solid.role, Role::Free(_))) {
             check_free(solid, (name, axis), [from, to], width)?;
         }
-        let near = |x: f64, side: f64| (x - side).abs() < width * (1.0 - 1e-9);
         let ends = |solid: &&SolidSpec<D>| {
-            if let Role::Free(_) = solid.role {
-                return false;
-            }
-            let Bounds { min, max } = solid.shape.bounds_at(&solid.pose);
-            near(min[axis], from) || near(min[axis], to) || near(max[axis], from) || near(max[axis], to)
+            let bounds = solid.shape.bounds_at(&solid.initial_kinematics().pose);
+            ends_near(&bounds, axis, [from, to], width) && !is_copied(periodic, has_planes, solid, (axis, width))
         };
         if let Some(solid) = solids.iter().find(ends) {
             let what = format!("solid {:?} ends at a periodic side along {name}: solids are not repeated", solid.name);
-            let help = format!("let it reach {width} m or more beyond the side, or end as far before it");
+            let help = match motion_along(solid, axis) {
+                Some(_) if !has_planes => driven_help(length, width),
+                _ => format!("let it reach {width} m or more beyond the side, or end as far before it"),
+            };
             return Err(Error::scene(what).help(help));
         }
     }

@@ -268,7 +268,8 @@ impl<const D: usize> Setup<D> {
         }
         self.sponge_layers.iter().try_for_each(SpongeLayer::check)?;
         self.constraints.check(&self.solids)?;
-        periodic::check(&self.periodic, m, &self.solids, &self.constraints)
+        let has_planes = self.symmetry.iter().any(Option::is_some);
+        periodic::check(&self.periodic, has_planes, m, &self.solids, &self.constraints)
     }
 }
 

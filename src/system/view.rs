@@ -263,7 +263,7 @@ impl<const D: usize> System<D> {
     /// of the water on it at the last force pass. They sum up to the solid's load.
     pub(crate) fn visit_boundary_forces(&self, solid: usize, visit: &mut dyn FnMut(usize, Vector<D>)) {
         let (mass, own) = (self.particle_mass(), &self.solids[solid]);
-        let skin = if own.copies > 1 { own.boundary.clone() } else { own.boundary_of_copy(0) };
+        let skin = if own.copied_axes != 0 { own.boundary.clone() } else { own.boundary_of_copy(0) };
         let mut forces = BTreeMap::new();
         for (&i, sums) in self.neighbours.boundary_near_fluid().iter().zip(&self.rates.boundary) {
             let r = &self.boundary.particles.r[i as usize];

@@ -276,6 +276,7 @@ fn read_elevation(ctx: &Context, key: &str, config: &MeasuredElevationConfig) ->
     let mut record = Record { ctx, key, file: &config.file, table, time, column, scaling };
     let series = record.read().map_err(files::with_line_in_message)?;
     record.note_span(&series, Outside::Waves);
+    record.note_uneven(&series);
     series.scaled(&SampleScaling { offset: 0.0, ..scaling })
 }
 

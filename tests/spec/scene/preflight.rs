@@ -294,6 +294,28 @@ fn each_finding_appears_with_its_fault_and_disappears_after_its_correction() {
 }
 
 #[test]
+fn walls_that_differ_at_periodic_sides_are_a_warning() {
+    let found = |points: &str| {
+        let text = format!(
+            "dimension = 2\ndp = 0.02\nuntil = 1.0\nperiodic = {{ x = [0.0, 1.0] }}\n\
+             [[water]]\nfill = {{ box = {{ min = [0.0, 0.0], max = [1.0, 0.3] }} }}\n\
+             [[solid]]\nname = \"bed\"\nfixed = true\nshape = {{ polygon = {{ points = [{points}] }} }}\n"
+        );
+        preflight_report::<2>(&Scene::parse(&text, Path::new(""), &[]).unwrap())
+    };
+    let slope = found("[-0.3, -0.2], [1.3, -0.2], [1.3, 0.13], [-0.3, -0.03]");
+    let finding = slope.findings.iter().find(|f| f.topic == "unequal_sides").expect("a bed 0.1 m higher at 1 m");
+    assert!(finding.severity == Severity::Warning && finding.what.contains("x = 0 and 1 m"), "{finding:?}");
+    for points in [
+        "[-0.3, -0.2], [1.3, -0.2], [1.3, 0.0], [-0.3, 0.0]",
+        "[-0.5, -0.2], [1.5, -0.2], [1.5, 0.1], [1.0, 0.0], [0.5, 0.1], [0.0, 0.0], [-0.5, 0.1]",
+    ] {
+        let even = found(points);
+        assert!(!topics(&even).contains(&"unequal_sides"), "{points}: {:?}", even.findings);
+    }
+}
+
+#[test]
 fn water_removed_by_solids_is_a_warning() {
     let wide = [("solid.sill.shape.box.size", "[1.1, 0.5]"), ("solid.sill.at.x", "1.45"), ("solid.box.at.x", "0.5")];
     let found = report(&wide);

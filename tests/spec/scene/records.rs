@@ -40,7 +40,8 @@ fn inspected(folder: &Path) -> pontoon::Result<Preflight> {
 /// Findings of the kinds that concern records: severity, topic, text with its remedy.
 fn findings(folder: &Path) -> Vec<(Severity, &'static str, String)> {
     let found = inspected(folder).unwrap_or_else(|e| panic!("{e}")).findings.into_iter();
-    let of_record = found.filter(|f| matches!(f.topic, "table_layout" | "record_span" | "record_unit"));
+    let of_record =
+        found.filter(|f| matches!(f.topic, "table_layout" | "record_span" | "record_unit" | "record_uneven"));
     of_record.map(|f| (f.severity, f.topic, format!("{}\n{}", f.what, f.mend))).collect()
 }
 
@@ -134,6 +135,30 @@ fn a_note_gives_the_spans_of_record_and_run_and_the_remedy_removes_it() {
     let found = findings(&folder("ms", &law(""), &milliseconds));
     assert!(found.len() == 1 && found[0].2.contains("time_factor = 0.001"), "{found:?}");
     assert_eq!(findings(&folder("ms", &law(", time_factor = 0.001"), &milliseconds)), []);
+}
+
+#[test]
+fn an_elevation_of_uneven_samples_is_told() {
+    let scene = "dimension = 2\ndp = 0.02\nuntil = 2.0\n\
+        [[water]]\nfill = { box = { min = [0.0, 0.0], max = [2.0, 0.3] } }\n\
+        [[solid]]\nname = \"tank\"\nfixed = true\nshape = { tank = { size = [2.2, 0.6] } }\nat = { x = -0.2 }\n\
+        [[solid]]\nname = \"paddle\"\nshape = { box = { size = [0.1, 0.6] } }\nat = { x = -0.05, bottom = 0.0 }\n\
+        driven = { along = [1.0, 0.0], wave = { elevation = { file = \"record.csv\", column = \"eta_m\" } } }\n";
+    let record = |warp: f64| {
+        let rows = (0..41).map(|i| 0.05 * f64::from(i)).map(|t| {
+            let t = t + warp * (3.0 * t).sin();
+            format!("{t:.6},{:.6}\n", 0.02 * (5.0 * t).sin())
+        });
+        "t_s,eta_m\n".to_string() + &rows.collect::<String>()
+    };
+    let notes = |warp: f64| {
+        let folder = folder("uneven", "", record(warp));
+        fs::write(folder.join("scene.toml"), scene).unwrap();
+        findings(&folder).into_iter().map(|(_, topic, text)| format!("{topic}: {text}")).collect::<Vec<_>>().join("; ")
+    };
+    assert_eq!(notes(0.0), "");
+    let found = notes(0.05);
+    assert!(found.contains("record_uneven") && found.contains("every 0.05 s"), "{found}");
 }
 
 #[test]

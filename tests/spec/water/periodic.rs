@@ -3,11 +3,12 @@
 use std::f64::consts::TAU;
 
 use pontoon::{
+    error::Result,
     geometry::Shape,
-    math::{Pose, Vector},
+    math::{Pose, Vector, expression::Formula},
     model::{Diffusion, Model, PairLoopKind, Shifting, Slip, Viscosity},
     simulation::{Setup, Simulation},
-    solid::{FreeBody, Role, SolidSpec},
+    solid::{FreeBody, PrescribedMotion, Role, SolidSpec, TimeFunction},
     sph::{particle_shifting::Shift, viscosity::Laminar},
 };
 
@@ -272,4 +273,85 @@ fn free_bodies_that_periodic_sides_do_not_allow_are_refused_with_the_remedy() {
     assert!(message.contains("the period less twice"), "{message}");
     let message = refused("touch = false", "friction = 0.1");
     assert!(message.contains("may touch \"bed\"") && message.contains("[[contact]]"), "{message}");
+}
+
+/// Water of two metres square, periodic along both axes, without gravity, that swirls and goes with `drift` (m/s); and in it a driven
+/// box of `size` (m) that goes with it, heaves and turns.
+fn swirl_with_driven(drift: [f64; 2], size: [f64; 2]) -> Result<Simulation<2>> {
+    let formula = |text: String| TimeFunction::from(Formula::parse(&text).expect("a formula"));
+    let slide = |along: [f64; 2], law: String| PrescribedMotion::slide(along.into(), formula(law));
+    let motion = PrescribedMotion::chain([
+        slide([1.0, 0.0], format!("{}*t", drift[0])),
+        slide([0.0, 1.0], format!("{}*t + 0.1*(1 - cos(6*t))", drift[1])),
+    ]);
+    let shape = Shape::Box { size: size.into() };
+    let solid = SolidSpec::driven("body", shape, motion).at([0.7, 1.1]);
+    let swirl = |r: &Vector<2>| Vector::from([-(0.5 * TAU * r[1]).sin(), (0.5 * TAU * r[0]).sin()]) * 0.3;
+    let model = model().pair_loop(PairLoopKind::Reference).shifting(Shifting::None);
+    let setup = Setup::new(model).solid(solid).fill_box([0.0, 0.0], [2.0, 2.0])?;
+    let setup = setup.velocity(|r| swirl(r) + Vector::from(drift)).pressure(|_| 3000.0);
+    Simulation::new(setup.periodic(0, 0.0, 2.0).periodic(1, 0.0, 2.0))
+}
+
+#[test]
+fn a_driven_body_that_drifts_across_both_sides_gets_the_loads_of_one_that_stays() {
+    let run = |drift: [f64; 2]| {
+        let mut sim = swirl_with_driven(drift, [0.4, 0.2]).expect("a sound setup");
+        let (start, mut impulse, mut loads) = (common::water_momentum(&sim), Vector::<2>::zeros(), Vec::new());
+        for i in 1..=30 {
+            let until = 0.05 * f64::from(i);
+            while sim.time() < until {
+                let before = sim.time();
+                sim.step().expect("a sound run");
+                impulse += sim.system().solids()[0].load.force * (sim.time() - before);
+            }
+            loads.push(sim.system().solids()[0].load.force);
+        }
+        (loads, common::water_momentum(&sim) - start, impulse)
+    };
+    let ((still, gained, given), (moving, gained_moving, _)) = (run([0.0, 0.0]), run([2.0, 3.0]));
+    let largest = still.iter().map(|f| f.norm()).fold(0.0, f64::max);
+    // The water gets what the body gives, but for the first order of the sum over steps.
+    assert!((gained + given).norm() < 0.02 * given.norm().max(1.0), "{gained} and {given} kg m/s");
+    assert!(largest > 100.0, "it pushes the water: {largest} N/m");
+    // Water that a body displaces sidewise meets other steps and lists: a hundredth of the largest load.
+    let off = still.iter().zip(&moving).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+    assert!(off < 0.01 * largest, "{off} of {largest} N/m");
+    assert!((gained - gained_moving).norm() < 0.01 * gained.norm().max(1.0), "{gained} and {gained_moving} kg m/s");
+}
+
+#[test]
+fn driven_bodies_that_would_end_at_a_side_are_refused_with_the_remedy() {
+    let long = swirl_with_driven([0.0, 0.0], [1.2, 0.2]).err().map(|e| e.to_string()).unwrap_or_default();
+    assert!(long.contains("ends at a periodic side along x") && long.contains("passes through them"), "{long}");
+    let scene = |length: f64, speed: f64| {
+        let text = channel(0.0, 500.0);
+        let text = text.split("[[solid]]\nname = \"box\"").next().expect("water and bed");
+        let lid = format!(
+            "[[solid]]\nname = \"lid\"\nshape = {{ box = {{ size = [{length}, 0.12] }} }}\nat = {{ x = 0.6, y = 0.38 }}\n\
+             driven = {{ along = [1.0, 0.0], distance = {{ formula = \"{speed}*t\" }} }}\n"
+        );
+        common::scene_simulation::<2>(&format!("{text}{lid}")).err().map(|e| e.to_string()).unwrap_or_default()
+    };
+    assert_eq!(scene(5.0, 0.5), "");
+    // Its end comes to the first side at 1.9 − 0.15 m.
+    let message = scene(5.0, 1.0);
+    assert!(
+        message.contains("ends at a periodic side along x at t = 1.7") && message.contains("beyond both sides"),
+        "{message}"
+    );
+    assert_eq!(scene(0.5, 1.0), "", "a short one passes through the sides");
+}
+
+#[test]
+fn a_long_driven_solid_stops_the_run_where_its_end_comes_to_a_side() {
+    let law = TimeFunction::from(Formula::parse("20*t").expect("a formula"));
+    let shape = Shape::Box { size: [4.0, 0.2].into() };
+    let lid = SolidSpec::driven("lid", shape, PrescribedMotion::slide([1.0, 0.0].into(), law)).at([0.5, 1.1]);
+    let water = common::lattice([0.0, 0.0], [1.0, 1.0], DP);
+    let setup = Setup::new(model()).water(water, 0.0).solid(lid).periodic(0, 0.0, 1.0).periodic(1, 0.0, 2.0);
+    let mut sim = Simulation::new(setup).expect("a sound setup");
+    let stopped = common::run_to(&mut sim, 0.1).expect_err("its end passes the side");
+    assert!(stopped.to_string().contains("an end at a periodic side along x"), "{stopped}");
+    assert!(sim.time() > 0.04, "the end reaches 1.5 m less what water sees, {} s", sim.time());
 }

@@ -53,8 +53,60 @@ fn a_weight_between_two_floats_loads_each_with_half() {
     let mut ties = Constraints::default();
     ties.ropes.push(rope(LineEnd::on(0, [-1.0, 4.0]), LineEnd::on(2, [0.0, 3.0])));
     ties.ropes.push(rope(LineEnd::on(1, [1.0, 4.0]), LineEnd::on(2, [0.0, 3.0])));
-    let found = loads(&[5.0, 5.0, 3.0], 2, &ties);
-    assert_eq!((found.on(0), found.on(1)), (1.0, 1.0));
+    assert_on(&loads(&[5.0, 5.0, 3.0], 2, &ties), &[1.0, 1.0]);
+}
+
+/// Asserts the loads (kg) on the first solids, to round-off.
+fn assert_on(found: &TieLoads, exact: &[f64]) {
+    for (i, exact) in exact.iter().enumerate() {
+        assert!((found.on(i) - exact).abs() < 1e-9, "{i}: {} kg of {exact} kg", found.on(i));
+    }
+}
+
+#[test]
+fn a_beam_on_two_floats_loads_them_by_its_lever() {
+    let mut ties = Constraints::default();
+    // The centre of the beam is a quarter of the way from the first rope to the second.
+    ties.ropes.push(rope(LineEnd::on(0, [-1.0, 4.0]), LineEnd::on(2, [-1.0, 0.5])));
+    ties.ropes.push(rope(LineEnd::on(1, [3.0, 4.0]), LineEnd::on(2, [3.0, 0.5])));
+    assert_on(&loads(&[5.0, 5.0, 5.0], 2, &ties), &[3.0, 1.0]);
+    // A weight on its middle and one below the second rope: 4·3/4 + 2·3/4 + 0 and 4/4 + 2/4 + 6.
+    ties.ropes.push(rope(LineEnd::on(2, [0.0, 0.0]), LineEnd::on(3, [0.0, -1.0])));
+    ties.ropes.push(rope(LineEnd::on(2, [3.0, 0.0]), LineEnd::on(4, [3.0, -1.0])));
+    assert_on(&loads(&[5.0, 5.0, 5.0, 3.0, 7.0], 2, &ties), &[4.5, 7.5]);
+}
+
+#[test]
+fn a_weight_on_slanted_ropes_loads_its_floats_by_their_slopes() {
+    let mut ties = Constraints::default();
+    // The horizontal parts of the tensions are equal: the vertical ones go as the slopes, 2 and 1.
+    ties.ropes.push(rope(LineEnd::on(0, [-1.0, 2.0]), LineEnd::on(2, [0.0, 0.0])));
+    ties.ropes.push(rope(LineEnd::on(1, [2.0, 2.0]), LineEnd::on(2, [0.0, 0.0])));
+    assert_on(&loads(&[5.0, 5.0, 4.0], 2, &ties), &[2.0, 1.0]);
+}
+
+#[test]
+fn three_equal_ropes_of_a_beam_bear_what_equal_stiffness_gives() {
+    let mut ties = Constraints::default();
+    // Ropes at −2, 0 and 2 m of a beam whose centre is at 1 m: T = W (1/3 + x x_c/Σx²), with x_c = 1 and Σx² = 8.
+    for (float, x) in [(0, -2.0), (1, 0.0), (2, 2.0)] {
+        ties.ropes.push(rope(LineEnd::on(float, [x - 1.0, 4.0]), LineEnd::on(3, [x - 1.0, 0.5])));
+    }
+    assert_on(&loads(&[5.0, 5.0, 5.0, 25.0], 3, &ties), &[2.0, 8.0, 14.0]);
+}
+
+#[test]
+fn what_hangs_below_a_bolted_pair_on_a_spring_loads_the_float() {
+    let bolt = |between| JointSpec::new("bolt", JointKind::Fixed, between, Vector::zeros(), Vector::zeros());
+    let mut ties = Constraints::default();
+    // Float, spring, two bolted weights, rope, weight: all wet weights add up.
+    ties.springs.push(SpringSpec::new("line", [LineEnd::on(0, [0.0, 4.0]), LineEnd::on(1, [0.0, 3.0])], 1e4));
+    ties.joints.push(bolt([Some(1), Some(2)]));
+    ties.ropes.push(rope(LineEnd::on(2, [0.0, 2.0]), LineEnd::on(3, [0.0, 1.0])));
+    assert_on(&loads(&[9.0, 3.0, 4.0, 2.5], 1, &ties), &[2.0 + 3.0 + 1.5]);
+    // One of them on the ground carries everything.
+    ties.joints.push(bolt([None, Some(2)]));
+    assert_on(&loads(&[9.0, 3.0, 4.0, 2.5], 1, &ties), &[0.0]);
 }
 
 #[test]
