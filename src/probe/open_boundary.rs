@@ -60,7 +60,7 @@ impl OpenBoundaryProbe {
 
 impl<const D: usize> Probe<D> for OpenBoundaryProbe {
     fn columns(&self) -> Vec<String> {
-        let (mass, momentum, energy) = if D == 2 { ("kgpm", "Nspm", "J_per_m") } else { ("kg", "Ns", "J") };
+        let (mass, momentum, energy) = if D == 2 { ("kg_per_m", "Ns_per_m", "J_per_m") } else { ("kg", "Ns", "J") };
         let momentum = ["x", "y", "z"][..D].iter().map(|axis| format!("momentum_{axis}_{momentum}"));
         let masses = ["entered", "left", "water"].iter().map(|name| format!("{name}_{mass}"));
         masses.chain(momentum).chain([format!("energy_{energy}")]).collect()

@@ -276,13 +276,11 @@ impl Scene {
         &self,
         ctx: &Context,
         water: &[WaterBody<D>],
-        still: &StillWaterLevel,
         model: &Model,
     ) -> Result<(Vec<OpenBoundary<D>>, Vec<WaterBody<D>>)> {
         let length = buffer_length(model);
-        let build = |(key, face, flow): (String, &OpenBoundaryConfig, FaceFlow)| {
-            face.build(ctx, (&key, flow), (water, still), length)
-        };
+        let build =
+            |(key, face, flow): (String, &OpenBoundaryConfig, FaceFlow)| face.build(ctx, (&key, flow), water, length);
         Ok(self.faces().map(build).collect::<Result<Vec<_>>>()?.into_iter().unzip())
     }
 
@@ -383,7 +381,7 @@ impl<const D: usize> SceneParts<D> {
         driving.current = scene.current.as_ref().map(CurrentConfig::build);
         driving.towed = scene.towed.as_ref().map(|towed| towed.build(ctx)).transpose()?;
         let first_buffer = water.len();
-        let (open_boundaries, buffers) = scene.open_boundaries(ctx, &water, &still, &model)?;
+        let (open_boundaries, buffers) = scene.open_boundaries(ctx, &water, &model)?;
         water.extend(buffers);
         let regions: Vec<WaterRegion<D>> =
             water.iter().map(|b| WaterRegion { shape: b.region.shape.clone(), pose: b.region.pose }).collect();
