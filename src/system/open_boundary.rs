@@ -380,11 +380,12 @@ impl<const D: usize> System<D> {
         let outward = match face.absorbed_speed {
             None => prescribed,
             Some(speed) => {
-                let leaving = self.properties.c0.powi(2) * compression - wave.pressure;
-                let target = prescribed + leaving / speed;
-                let now = before.dot(&along);
-                let part = (dt * speed / (RESPONSE * self.model.h)).min(1.0);
-                now + (target - now) * part
+                // What it yields to waves that leave, at first and now.
+                let then = face.outward_velocity(r, t - dt).unwrap_or(0.0) - face.wave_motion(r, t - dt).along;
+                let yielded = before.dot(&along) - then;
+                let target = (self.properties.c0.powi(2) * compression - wave.pressure) / speed;
+                let part = if dt > 0.0 { (dt * speed / (RESPONSE * self.model.h)).min(1.0) } else { 1.0 };
+                prescribed + yielded + (target - yielded) * part
             }
         };
         let mut velocity = along * outward;
@@ -440,22 +441,17 @@ pub(crate) fn check<const D: usize>(setup: &Setup<D>, i: usize) -> Result<()> {
     }
     for solid in &setup.solids {
         let Bounds { min, max } = solid.shape.bounds_at(&solid.initial_kinematics().pose);
-        let near = |x: f64| {
-            let beyond = (x - at) * face.outward();
-            beyond > 1e-9 && beyond < length * (1.0 - 1e-9)
+        let ends = [min[axis], max[axis]].map(|x| (x - at) * face.outward());
+        if !ends.iter().any(|beyond| *beyond > 1e-6 * setup.model.dp && *beyond < length * (1.0 - 1e-9)) {
+            continue;
+        }
+        let end = at + face.outward() * length;
+        let what = format!("solid {:?} ends in the buffer of open boundary {name:?}", solid.name);
+        let help = match solid.role {
+            Role::Free(_) => format!("keep it on the water's side of {along} = {at}"),
+            _ => format!("let it reach to {along} = {end:.6} or further, or end at {along} = {at}"),
         };
-        let crosses = min[axis] < at + length.max(0.0) && max[axis] > at - length.max(0.0);
-        let beside = setup.water.iter().any(|r| face.beyond(r) > 0.0 && r[D - 1] > min[D - 1] && r[D - 1] < max[D - 1]);
-        if matches!(solid.role, Role::Free(_)) && (near(min[axis]) || near(max[axis])) {
-            let what = format!("free solid {:?} lies in the buffer of open boundary {name:?}", solid.name);
-            return Err(Error::scene(what).help(format!("keep it on the water's side of {along} = {at}")));
-        }
-        if crosses && !beside && (near(min[axis]) || near(max[axis])) {
-            let end = at + face.outward() * length;
-            let what = format!("solid {:?} ends beside the buffer of open boundary {name:?}", solid.name);
-            let help = format!("let it reach to {along} = {end:.6} or further, or end at {along} = {at}");
-            return Err(Error::scene(what).help(help));
-        }
+        return Err(Error::scene(what).help(help));
     }
     let fastest = setup.water.iter().zip(&beyond).filter(|(_, beyond)| **beyond > 0.0);
     let fastest = fastest.filter_map(|(r, _)| face.outward_velocity(r, 0.0)).map(f64::abs).fold(0.0, nan_max);
