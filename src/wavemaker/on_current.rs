@@ -62,11 +62,6 @@ impl WaveOnCurrent {
         }
     }
 
-    /// The wave length, m.
-    pub(crate) fn wavelength(&self) -> f64 {
-        std::f64::consts::TAU / self.k
-    }
-
     /// Phase speed relative to the current, σ/k, m/s.
     pub(crate) fn relative_speed(&self) -> f64 {
         self.sigma / self.k
