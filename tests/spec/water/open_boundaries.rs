@@ -80,8 +80,8 @@ fn a_uniform_flow_keeps_its_level_and_speed_and_its_books_close_exactly() {
 #[test]
 fn hydrostatic_water_behind_an_inflow_at_rest_stays_at_rest() {
     let mut setup = channel(Model::water(2, DP, DEPTH), 0.0);
-    for (i, held) in [(1, false), (0, false)] {
-        setup.open_boundaries[i].absorbed_speed = held.then_some(1.0);
+    for face in &mut setup.open_boundaries {
+        face.absorbed_speed = None;
     }
     let mut sim = Simulation::new(setup).expect("a sound setup");
     run_to(&mut sim, 2.0);
@@ -181,4 +181,64 @@ fn in_a_towed_frame_water_at_rest_flows_back_with_the_velocity_of_the_carriage()
     let mean = fluid.v.iter().map(|v| v[0]).sum::<f64>() / fluid.len() as f64;
     // The frame moves with 1 m/s then; the force is taken in the middle of each step.
     assert!((mean + 1.0).abs() < 1e-3, "{mean} m/s");
+}
+
+/// A scene of a channel with these faces.
+fn scene(faces: &str) -> String {
+    format!(
+        r#"
+        dimension = 2
+        dp = 0.05
+        until = 1.0
+        {faces}
+        [[water]]
+        fill = {{ box = {{ min = [0.0, 0.0], max = [2.0, 0.5] }} }}
+        velocity = [1.0, 0.0]
+        [[solid]]
+        name = "bed"
+        fixed = true
+        shape = {{ box = {{ size = [6.0, 0.3] }} }}
+        at = {{ x = 1.0, y = -0.15 }}
+        "#
+    )
+}
+
+#[test]
+fn a_scene_fills_the_buffers_beyond_its_faces() {
+    let faces = "inflow = [{ x = 0.0, velocity = 1.0 }]\noutflow = [{ x = 2.0, velocity = \"1.0\" }]";
+    let sim = common::scene_simulation::<2>(&scene(faces)).expect("a sound scene");
+    let names: Vec<&str> = sim.system().open_boundaries().iter().map(|face| face.name.as_str()).collect();
+    assert_eq!(names, ["inflow", "outflow"]);
+    assert_eq!(sim.system().fluid().len(), 400, "buffers are not counted as water");
+    let [inflow, outflow] = sim.system().open_boundaries() else { panic!("two faces") };
+    assert!(inflow.absorbed_speed.is_none(), "an inflow keeps its velocity");
+    let speed = outflow.absorbed_speed.expect("an outflow lets waves leave");
+    assert!((speed - (9.81f64 * 0.5).sqrt()).abs() < 1e-12, "{speed} m/s, that of long waves");
+}
+
+#[test]
+fn faces_of_a_scene_that_cannot_be_are_refused_with_their_key_and_a_remedy() {
+    for (faces, key, remedy) in [
+        ("inflow = [{ x = 0.0 }]", "inflow.0", "velocity = 0.5"),
+        ("inflow = [{ velocity = 1.0 }]", "inflow.0", "x = 0.0"),
+        ("inflow = [{ x = 0.3, velocity = 1.0 }]", "inflow.0.x", "x = 0"),
+        ("inflow = [{ x = 0.0, velocity = 1.0, level = 0.7 }]", "inflow.0.level", "level = 0.5"),
+        ("inflow = [{ y = 0.0, velocity = 1.0 }]", "inflow.0.y", "x = 0.0"),
+        ("inflow = [{ x = 0.0, velocity = \"1.0*q\" }]", "inflow.0.velocity", "t"),
+        ("inflow = [{ x = 0.0, velocity = 9.0 }]", "inflow.0", "model.c0 = 90"),
+        ("outflow = [{ x = 2.0, absorb = true }]", "outflow.0", "velocity = 0.5"),
+        ("outflow = [{ x = 2.0, wave = { height = 0.1, period = 1.0 } }]", "outflow.0.wave", "[[inflow]]"),
+        (
+            "inflow = [{ x = 0.0, velocity = -1.0, wave = { height = 0.1, period = 1.0 } }]",
+            "inflow.0.wave.period",
+            "period = ",
+        ),
+        ("current = { along = \"x\", discharge = 0.5 }", "current.along", "periodic = { x"),
+        ("towed = { along = \"y\", velocity = 1.0 }", "towed.along", "along = \"x\""),
+    ] {
+        let error = common::scene_simulation::<2>(&scene(faces)).err().expect(faces);
+        let place = error.location.as_ref().map(|place| place.key.clone()).unwrap_or_default();
+        assert!(place.starts_with(key), "{faces}: {place}: {}", error.message);
+        assert!(error.help.as_deref().unwrap_or_default().contains(remedy), "{faces}: {:?}", error.help);
+    }
 }
