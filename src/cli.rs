@@ -3,6 +3,8 @@
 //! Exit codes: 0 success; 1 the computation could not continue; 2 an error in the command, the scene or a file; 3 a
 //! check exceeds its bound; 130 interrupted.
 
+#![allow(rustdoc::invalid_html_tags, reason = "comments of arguments are the help of the command line")]
+
 mod bench;
 mod export;
 mod inspect;

@@ -47,7 +47,7 @@ def main() -> None:
 
     heave, wave = run.series["heave"], run.series["elevation.eta"]
     ratio = amplitude(heave.t, heave.values, PERIOD) / amplitude(wave.t, wave.values, PERIOD)
-    period = run.stats(start=4.0).value("heave", "T_mean")
+    period = run.stats(start=4.0).value("heave", "T_z")
     print(f"heave over wave {ratio:.2f}, period {period:.3f} s of {PERIOD} s")
 
     if given.plot:

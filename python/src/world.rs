@@ -14,7 +14,7 @@ use pontoon::{
     math::{Bivector, Matrix, Pose, Vector},
     model::Dimension,
     plan::Plan,
-    probe::{Probe, ProbeKind},
+    probe::{MotionProbe, Probe, ProbeKind},
     scene::Scene,
     simulation::{AddedSolid, BodyStep, Simulation},
     solid::{Dim, Kinematics, Load, MotorCommand, Role, Solid, SolidSpec, SpringParameters},
@@ -178,6 +178,8 @@ pub trait World: Send {
 struct Running<const D: usize> {
     sim: Simulation<D>,
     probes: Vec<(String, Box<dyn Probe<D>>)>,
+    /// Probes of the motion of each solid of the scene, whose displacements count from the start.
+    motions: Vec<(String, MotionProbe<D>)>,
     /// Names of the joints and of the springs.
     constraints: [Vec<String>; 2],
     /// Whether the scene has a probe of load balances, of the energy budget.
@@ -279,7 +281,11 @@ where
         ];
         let probes = built.plan.probes.iter().map(|probe| Ok((probe.name.clone(), probe.kind.build(sim.system())?)));
         let probes = probes.collect::<Result<_>>()?;
-        Ok(Self { sim, probes, constraints, accounted, pushes: Vec::new(), called: None, calls: Duration::ZERO })
+        let names = sim.system().solids().iter().map(|solid| solid.spec.name.clone());
+        let motions = names.map(|name| Ok((name.clone(), MotionProbe::new(sim.system(), &name)?)));
+        let motions = motions.collect::<Result<_>>()?;
+        let (pushes, calls) = (Vec::new(), Duration::ZERO);
+        Ok(Self { sim, probes, motions, constraints, accounted, pushes, called: None, calls })
     }
 }
 
@@ -421,8 +427,18 @@ where
                 let help = "put the probe into the scene before it is built: its records begin with the simulation";
                 return Err(Error::new(ErrorKind::Usage, what).help(help));
             }
-            let built = probe.kind.build(self.sim.system())?;
-            Ok((probe.name.clone(), built.columns(), built.sample(&self.sim)))
+            let from_start = match &probe.kind {
+                ProbeKind::Motion(plan) => self.motions.iter().find(|(solid, _)| *solid == plan.solid),
+                _ => None,
+            };
+            let (columns, values) = match from_start {
+                Some((_, motion)) => (motion.columns(), motion.sample(&self.sim)),
+                None => {
+                    let built = probe.kind.build(self.sim.system())?;
+                    (built.columns(), built.sample(&self.sim))
+                }
+            };
+            Ok((probe.name.clone(), columns, values))
         };
         plan.probes.iter().map(read).collect()
     }

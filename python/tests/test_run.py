@@ -83,7 +83,8 @@ def test_results_are_arrays_with_units(tank: pt.Scene, tmp_path: Path) -> None:
     assert run.series["level"].values[0] == pytest.approx(0.5, abs=0.03)
     assert [frame.number for frame in run.frames] == [0, 1, 2, 3]
     frame = run.frames.at(0.21)
-    assert frame.time == pytest.approx(0.2) and frame.water.position.shape == (run.manifest["particles"]["fluid"], 2)
+    # A frame is written after the step that reaches its time.
+    assert 0.2 <= frame.time < 0.205 and frame.water.position.shape == (run.manifest["particles"]["fluid"], 2)
     assert frame.water.density.mean() == pytest.approx(1000.0, rel=0.02)
     assert run.frames[-1].solids.position.shape[1] == 2
     with pytest.raises(IndexError):
@@ -115,8 +116,8 @@ def test_faults_and_wrong_folders_are_told(tank: pt.Scene, tmp_path: Path) -> No
     (tmp_path / "full" / "file").touch()
     with pytest.raises(pt.UsageError):
         pt.run(tank, out=tmp_path / "full")
-    # Water that falls two metres is faster than this guard allows, again after the rollback.
-    tank["guard.speed"] = 0.001
+    # Water that settles around the crate is faster than this guard allows, again after the rollback.
+    tank["guard.speed"] = 1e-5
     with pytest.raises(pt.Fault) as fault:
         pt.run(tank, out=tmp_path / "fault")
     assert fault.value.code == "speed-limit" and fault.value.who.startswith("water particle")

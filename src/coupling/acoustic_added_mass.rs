@@ -148,8 +148,7 @@ impl<const D: usize> AcousticAddedMass<D> {
         let added = Load { force: push.force + system.gravity() * body.mass, torque: push.torque };
         let mut whole = to_six(load) + to_six(&added);
         lock(body, |i| whole[i] = 0.0);
-        let springs = self.springs(system, body);
-        let stiffness_sum = (0..D).map(|i| springs[(i, i)]).sum();
+        let (springs, stiffness_sum) = self.springs(system, body);
         let fresh =
             if stiffness_sum > self.state.stiffness_sum { 1.0 - self.state.stiffness_sum / stiffness_sum } else { 0.0 };
         let left = self.release(stiffness_sum);
@@ -201,15 +200,18 @@ impl<const D: usize> AcousticAddedMass<D> {
         self.state.contacts += (contacts - self.state.contacts) * applied_share(system, dt);
     }
 
-    /// Returns the stiffness K of the springs that are wet at present, N/m, N and N m.
-    fn springs(&self, system: &System<D>, body: &FreeBody<D>) -> Square {
+    /// Returns the stiffness K of the springs that are wet at present (N/m, N and N m) without locked motions, and the trace (N/m) of
+    /// its translational part with them.
+    fn springs(&self, system: &System<D>, body: &FreeBody<D>) -> (Square, f64) {
         let mut sum = Square::zeros();
         self.for_each_wet(system, |part, _, _, along| sum += along * along.transpose() * part);
+        sum *= stiffness(system);
+        let trace = (0..D).map(|i| sum[(i, i)]).sum();
         lock(body, |i| {
             sum.row_mut(i).fill(0.0);
             sum.column_mut(i).fill(0.0);
         });
-        sum * stiffness(system)
+        (sum, trace)
     }
 
     /// Returns K v_w of the springs that are wet at present, N/s and N m/s; `way` (m) leads from them to where the body is when the

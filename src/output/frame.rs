@@ -1,6 +1,6 @@
 //! Frames for ParaView: `frames.pvd` lists the frames. Each frame has two files, such as `frames/water_00000.vtu` and
-//! `frames/solids_00000.vtu`; with mooring lines also `frames/moorings_00000.vtu`. Points have three coordinates; in 2-D the third coordinate is zero. The data have single
-//! precision and are compressed (zlib).
+//! `frames/solids_00000.vtu`; with mooring lines also `frames/moorings_00000.vtu`. Points have three coordinates; in 2-D
+//! the third coordinate is zero. The data have single precision and are compressed (zlib).
 
 use std::{
     fs::File,

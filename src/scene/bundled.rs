@@ -30,6 +30,7 @@ pub fn bundled_scenes() -> &'static [BundledScene] {
         scene!("flume-box-by-name"),
         scene!("flap-converter"),
         scene!("harbour"),
+        scene!("moored-box"),
         scene!("focused-box"),
         scene!("solitary-runup"),
         scene!("still-tank"),

@@ -273,6 +273,7 @@ class _Stepped:
         """Reads a probe now, as `sim.read(pt.elevation(at=1.2))["eta_m"]`.
 
         A probe is a dictionary with the keys of a `[[probe]]` section. Returns the values by column; a value is NaN where there is nothing to measure.
+        Displacements of a solid of the scene count from the start, those of a solid added later from this reading.
         """
         text = _toml.value(probe)
         scene = self._probes.get(text)

@@ -183,7 +183,10 @@ impl<const D: usize> MooringLine<D> {
     fn kick(&mut self, h: f64, around: &[NodeSurroundings<D>], gravity: &Vector<D>, impulses: &mut [Vector<D>; 2]) {
         let n = self.segments();
         let Workspace { mut matrix, mut impulse, mut coupling, mut change } = std::mem::take(&mut self.work);
-        (matrix.clear(), impulse.clear(), coupling.clear(), change.clear());
+        matrix.clear();
+        impulse.clear();
+        coupling.clear();
+        change.clear();
         for i in 0..=n {
             let load = self.load(i, around, gravity);
             matrix.push(load.mass + load.drag * (0.5 * h) + load.bed * h);
