@@ -160,7 +160,7 @@ fn the_force_that_holds_a_discharge_is_the_drag_of_poiseuille_flow() {
         .periodic(0, 0.0, length)
         .current(Current::new(0, discharge, 0.2));
     let mut sim = Simulation::new(setup).expect("a sound setup");
-    run_to(&mut sim, 3.0);
+    run_to(&mut sim, 5.0);
     let held = sim.system().discharge(0).expect("a period");
     assert!((held / discharge - 1.0).abs() < 1e-3, "{held} m²/s");
     let theory = 12.0 * nu * discharge / height.powi(3);
@@ -227,6 +227,12 @@ fn faces_of_a_scene_that_cannot_be_are_refused_with_their_key_and_a_remedy() {
         ("inflow = [{ x = 0.0, velocity = \"1.0*q\" }]", "inflow.0.velocity", "t"),
         ("inflow = [{ x = 0.0, velocity = 9.0 }]", "inflow.0", "model.c0 = 90"),
         ("outflow = [{ x = 2.0, absorb = true }]", "outflow.0", "velocity = 0.5"),
+        ("outflow = [{ x = 2.0, wave = { height = 0.1, period = 1.0 } }]", "outflow.0.wave", "[[inflow]]"),
+        (
+            "inflow = [{ x = 0.0, velocity = -1.0, wave = { height = 0.1, period = 1.0 } }]",
+            "inflow.0.wave.period",
+            "period = ",
+        ),
         ("current = { along = \"x\", discharge = 0.5 }", "current.along", "periodic = { x"),
         ("towed = { along = \"y\", velocity = 1.0 }", "towed.along", "along = \"x\""),
     ] {
