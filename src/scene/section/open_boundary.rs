@@ -168,7 +168,9 @@ impl OpenBoundaryConfig {
         if let Some(wave) = &mut self.wave {
             defaults.fill(format!("{key}.wave.ramp"), &mut wave.ramp, 2.0 * wave.period, "two periods, s");
         }
-        let leaves = flow == FaceFlow::Out && self.velocity.is_some() && ctx.has_gravity();
+        // A scene that gives no gravity has that of the earth.
+        let weight = ctx.gravity.is_none() || ctx.has_gravity();
+        let leaves = flow == FaceFlow::Out && self.velocity.is_some() && weight;
         let absorbs = leaves || self.wave.is_some();
         let why = match (flow, absorbs) {
             (_, true) => "waves leave",

@@ -160,7 +160,7 @@ fn the_force_that_holds_a_discharge_is_the_drag_of_poiseuille_flow() {
         .periodic(0, 0.0, length)
         .current(Current::new(0, discharge, 0.2));
     let mut sim = Simulation::new(setup).expect("a sound setup");
-    run_to(&mut sim, 5.0);
+    run_to(&mut sim, 3.0);
     let held = sim.system().discharge(0).expect("a period");
     assert!((held / discharge - 1.0).abs() < 1e-3, "{held} m²/s");
     let theory = 12.0 * nu * discharge / height.powi(3);
