@@ -14,7 +14,9 @@ use std::{
 };
 
 pub use crate::coupling::{BodyStep, EnergyBudget, LoadBreakdown};
-pub use crate::system::{Escape, ParticleLimits, RemovedParticle, Setup};
+pub use crate::system::{
+    Current, Driving, Escape, FaceExchange, OpenBoundary, ParticleLimits, RemovedParticle, Setup, TowedFrame,
+};
 pub(crate) use constraints::find_by_name;
 pub use rollback::Rollback;
 
@@ -232,9 +234,11 @@ impl<const D: usize> Simulation<D> {
             self.stepper.reorder(&reordering, self.system.properties().rho0);
             if let Some(accounting) = &mut self.bodies.accounting {
                 accounting.add_removed(&self.system, &reordering.removed);
+                accounting.add_displaced(-reordering.exchanged_energy);
             }
             self.removed.extend(reordering.removed.into_iter().map(|lost| (self.clock.time, lost)));
         }
+        self.system.update_buffer(self.clock.time, self.clock.dt);
         self.system.update_rates();
         let allowed = self.step_limit();
         let left = end - self.clock.time;
@@ -252,6 +256,7 @@ impl<const D: usize> Simulation<D> {
         self.clock.dt = dt;
         self.clock.steps += 1;
         self.clock.time = if left <= allowed { end } else { self.clock.time + dt };
+        self.system.update_current(dt);
         self.change_gravity(self.clock.time);
         self.bodies.update_masses(&mut self.system, self.clock.time, dt)?;
         self.guard()?;

@@ -121,6 +121,42 @@ impl<const D: usize> ScalarField<D> {
     }
 }
 
+/// A formula in the place and the time: x and y (m), in 3-D also z, and t (s).
+///
+/// ```
+/// # use pontoon::math::expression::UnsteadyField;
+/// let gust = UnsteadyField::<2>::parse("0.2*y*sin(pi*t)")?;
+/// assert_eq!(gust.value_at(&[0.5, 1.0].into(), 0.5), 0.2);
+/// # Ok::<(), pontoon::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct UnsteadyField<const D: usize> {
+    root: Node,
+}
+
+impl<const D: usize> UnsteadyField<D> {
+    /// Reads a formula.
+    ///
+    /// # Errors
+    /// As [`Formula::parse`].
+    pub fn parse(text: &str) -> Result<Self> {
+        let names: &[&str] = if D == 2 { &["x", "y", "t"] } else { &["x", "y", "z", "t"] };
+        read(text, names).map(|root| Self { root })
+    }
+
+    /// The field that is `value` everywhere, at all times.
+    pub fn constant(value: f64) -> Self {
+        Self { root: Node::Number(value) }
+    }
+
+    /// Value at the place `r` (m) and the time `t` (s).
+    pub fn value_at(&self, r: &Vector<D>, t: f64) -> f64 {
+        let mut variables = [t; 4];
+        variables[..D].copy_from_slice(r.as_slice());
+        self.root.evaluate(&variables[..=D]).0
+    }
+}
+
 impl Node {
     fn is_constant(&self) -> bool {
         match self {

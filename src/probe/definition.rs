@@ -81,6 +81,9 @@ pub(crate) trait ProbeScope {
     /// Returns whether the solid called `name` is free.
     fn is_free(&self, name: &str) -> bool;
 
+    /// Returns whether the scene holds a current.
+    fn has_current(&self) -> bool;
+
     /// Returns an error about `key`, with an example of the key.
     fn error_at(&self, key: &str, what: &str) -> Error;
 
@@ -93,7 +96,7 @@ pub(crate) trait ProbeScope {
     /// `Scene` if the scene has no object with this name.
     fn require_solid(&self, key: &str, name: &str) -> Result<()>;
 
-    /// Requires a joint, spring, rope or mooring (`kind`) called `name`.
+    /// Requires a joint, spring, rope, mooring or open boundary (`kind`) called `name`.
     ///
     /// # Errors
     /// `Scene` if the scene has no object with this name.

@@ -10,6 +10,7 @@
 mod balance;
 mod budget;
 mod contact_force;
+mod current;
 mod definition;
 mod elevation;
 mod energy;
@@ -21,6 +22,7 @@ mod line;
 mod mooring;
 mod motion;
 mod mounting;
+mod open_boundary;
 mod patch;
 mod points;
 mod pressure;
@@ -31,6 +33,7 @@ mod velocity;
 pub use budget::EnergyBudgetProbe;
 pub(crate) use budget::relative_residual;
 pub(crate) use contact_force::ContactList;
+pub use current::CurrentProbe;
 pub(crate) use definition::{EnergyReading, ProbeDefinition, ProbeLocation, ProbeScope};
 pub use elevation::{ElevationProbe, GaugeSurface};
 pub use energy::EnergyProbe;
@@ -41,6 +44,7 @@ pub use joint::JointProbe;
 pub use line::LineProbe;
 pub use mooring::MooringProbe;
 pub use motion::MotionProbe;
+pub use open_boundary::OpenBoundaryProbe;
 pub use patch::PatchProbe;
 pub use pressure::PressureProbe;
 pub use probe_row::ProbeRow;
@@ -52,6 +56,7 @@ pub use {
     balance::LoadBalancePlan,
     budget::EnergyBudgetPlan,
     contact_force::{ContactForcePlan, ContactListPlan},
+    current::CurrentPlan,
     elevation::{ElevationPlan, GaugeConfig},
     energy::EnergyPlan,
     flow::{FlowPlan, SectionConfig},
@@ -61,6 +66,7 @@ pub use {
     line::{RopePlan, SpringPlan},
     mooring::MooringPlan,
     motion::MotionPlan,
+    open_boundary::OpenBoundaryPlan,
     patch::{PatchConfig, PatchPlan},
     points::{PointRowConfig, PointsConfig},
     pressure::PressurePlan,
@@ -305,6 +311,11 @@ probe_kinds! {
     /// Energy budget since the start: sources, sinks and residual.
     #[schemars(extend("const" = true))]
     budget: bool => Budget(EnergyBudgetPlan);
+    /// Water that has passed through the open boundary with this name.
+    face: String => Face(OpenBoundaryPlan);
+    /// Discharge of the current and the force that holds it.
+    #[schemars(extend("const" = true))]
+    current: bool => Current(CurrentPlan);
 }
 
 impl ProbeConfig {

@@ -1,7 +1,7 @@
 //! Builds a scene: opens the files that it names, makes shapes and poses, fills the water.
 
 use super::{
-    Scene,
+    CurrentConfig, OpenBoundaryConfig, Scene,
     afloat::{PlacedSolids, placed_solids},
     context::{Context, FileNote},
     file_units::require_plausible_units,
@@ -9,6 +9,7 @@ use super::{
         analysis::ProbeSeries,
         gravity,
         model::require_depth,
+        open_boundary::FaceFlow,
         shape::{vector, world_bounds},
         solid::{SolidConfig, require_solid},
         water::{StillWaterLevel, WaterBody, WaterConfig, require_near_origin},
@@ -24,13 +25,13 @@ use crate::{
     math::{Bounds, Pose, Vector},
     model::{Model, TimeScheme},
     plan::{FramesPlan, Plan},
-    simulation::Setup,
+    simulation::{Driving, OpenBoundary, Setup},
     solid::{
         Constraints, InitialHold, Role, SolidSpec, TimeFunction, TimedRemoval,
         constraint::links::{check_force, check_rope, check_spring},
         mooring::check_mooring,
     },
-    system::{Periodic, periodic},
+    system::{Periodic, buffer_length, check_open_boundary, periodic},
 };
 
 /// Largest number of particles in a scene: they need about 100 GB of memory.
@@ -265,6 +266,27 @@ impl Scene {
         self.water.iter().enumerate().map(body).collect()
     }
 
+    /// Returns the key, the configuration and the sense of the flow of each open boundary.
+    fn faces(&self) -> impl Iterator<Item = (String, &OpenBoundaryConfig, FaceFlow)> {
+        let sections = [(&self.inflow, FaceFlow::In), (&self.outflow, FaceFlow::Out)];
+        sections.into_iter().flat_map(|(faces, flow)| {
+            faces.iter().enumerate().map(move |(i, face)| (format!("{}.{i}", flow.section()), face, flow))
+        })
+    }
+
+    /// Returns the open boundaries beside `water`, and the water of their buffers.
+    fn open_boundaries<const D: usize>(
+        &self,
+        ctx: &Context,
+        water: &[WaterBody<D>],
+        model: &Model,
+    ) -> Result<(Vec<OpenBoundary<D>>, Vec<WaterBody<D>>)> {
+        let length = buffer_length(model);
+        let build =
+            |(key, face, flow): (String, &OpenBoundaryConfig, FaceFlow)| face.build(ctx, (&key, flow), water, length);
+        Ok(self.faces().map(build).collect::<Result<Vec<_>>>()?.into_iter().unzip())
+    }
+
     /// Returns the joints, force elements and contact rules of `solids`, which must be in the order of the scene, over still water at
     /// the height `level` (m).
     pub(super) fn constraints<const D: usize>(
@@ -354,10 +376,16 @@ impl<const D: usize> SceneParts<D> {
     /// # Errors
     /// `Scene` if no water is left, or the plan of the run is wrong; `File` if a table cannot be read.
     pub(crate) fn fill(self) -> Result<BuiltScene<D>> {
-        let Self { scene, water, still, gravity_law, model, mut placed, constraints, domain, periodic, file_notes } =
+        let Self { scene, mut water, still, gravity_law, model, mut placed, constraints, domain, periodic, file_notes } =
             self;
         let (ctx, solids) = (&scene.context(), &placed.specs);
         ctx.add_file_notes(file_notes);
+        let mut driving = Driving::default();
+        driving.current = scene.current.as_ref().map(CurrentConfig::build);
+        driving.towed = scene.towed.as_ref().map(|towed| towed.build(ctx)).transpose()?;
+        let first_buffer = water.len();
+        let (open_boundaries, buffers) = scene.open_boundaries(ctx, &water, &model)?;
+        water.extend(buffers);
         let regions: Vec<WaterRegion<D>> =
             water.iter().map(|b| WaterRegion { shape: b.region.shape.clone(), pose: b.region.pose }).collect();
         // The initial position of a driven solid follows from its motion.
@@ -385,7 +413,8 @@ impl<const D: usize> SceneParts<D> {
         let nearest = |(x, home): (&Vector<D>, &usize)| match &water[*home] {
             own if own.inside.is_some() => Some(own),
             _ => {
-                let open = water.iter().filter(|body| body.inside.is_none());
+                let bodies = if *home < first_buffer { &water[..first_buffer] } else { &water[first_buffer..] };
+                let open = bodies.iter().filter(|body| body.inside.is_none());
                 open.min_by(|a, b| a.distance(x).total_cmp(&b.distance(x)))
             }
         };
@@ -419,7 +448,12 @@ impl<const D: usize> SceneParts<D> {
             symmetry: scene.symmetry.clone().unwrap_or_default().build(),
             limits,
             sponge_layers,
+            open_boundaries,
+            driving,
         };
+        for (i, (key, _, _)) in scene.faces().enumerate() {
+            check_open_boundary(&setup, i).map_err(|e| ctx.with_location(e, &key))?;
+        }
         setup.apply_symmetry().map_err(|e| ctx.with_location(e, "symmetry"))?;
         Ok(BuiltScene {
             setup,

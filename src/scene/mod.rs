@@ -32,6 +32,7 @@ mod section {
     pub(crate) mod ballast;
     pub(crate) mod contact;
     pub(crate) mod domain;
+    pub(crate) mod driving;
     pub(crate) mod force_element;
     pub(crate) mod gravity;
     pub(crate) mod joint;
@@ -40,6 +41,7 @@ mod section {
     pub(crate) mod model;
     pub(crate) mod mooring;
     pub(crate) mod motion;
+    pub(crate) mod open_boundary;
     pub(crate) mod outline;
     pub(crate) mod output;
     pub(crate) mod shape;
@@ -71,11 +73,13 @@ pub use {
     schema::schema,
     section::ballast::BallastConfig,
     section::contact::ContactConfig,
+    section::driving::{CurrentConfig, TowedConfig},
     section::force_element::{ForceConfig, RopeConfig, SpringConfig},
     section::joint::{JointConfig, JointKindConfig, MotorConfig},
     section::model::ModelConfig,
     section::mooring::{ClumpConfig, LineTypeConfig, MooringConfig},
     section::motion::DrivenConfig,
+    section::open_boundary::{FaceWaveConfig, OpenBoundaryConfig},
     section::output::FramesChoice,
     section::shape::{CompoundPartConfig, PlacementConfig, ShapeConfig},
     section::solid::{FreeBodyConfig, SolidConfig},
@@ -149,6 +153,16 @@ pub struct Scene {
     /// Sponge layers.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub damping: Vec<SpongeLayerConfig>,
+    /// Faces through which water enters.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub inflow: Vec<OpenBoundaryConfig>,
+    /// Faces through which water leaves.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub outflow: Vec<OpenBoundaryConfig>,
+    /// A current along a periodic axis.
+    pub current: Option<CurrentConfig>,
+    /// The motion of the frame of the scene.
+    pub towed: Option<TowedConfig>,
     /// Solids.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub solid: Vec<SolidConfig>,
@@ -261,6 +275,18 @@ impl Scene {
     /// Returns the same scene with one more sponge layer.
     pub fn damping(mut self, layer: SpongeLayerConfig) -> Self {
         self.damping.push(layer);
+        self
+    }
+
+    /// Returns the same scene with one more face through which water enters.
+    pub fn inflow(mut self, face: OpenBoundaryConfig) -> Self {
+        self.inflow.push(face);
+        self
+    }
+
+    /// Returns the same scene with one more face through which water leaves.
+    pub fn outflow(mut self, face: OpenBoundaryConfig) -> Self {
+        self.outflow.push(face);
         self
     }
 

@@ -10,6 +10,7 @@ use super::{
         contact,
         gravity::{self, GravityValues},
         joint::verify_names,
+        open_boundary::{self, FaceFlow},
         solid,
     },
     toml_source::ValueSource,
@@ -84,6 +85,11 @@ impl Scene {
         }
         each(&self.water, "water", |water, key| water.verify(ctx, key))?;
         each(&self.damping, "damping", |layer, key| layer.verify(ctx, key, self.periodic.as_ref()))?;
+        each(&self.inflow, "inflow", |face, key| face.verify(ctx, key, FaceFlow::In))?;
+        each(&self.outflow, "outflow", |face, key| face.verify(ctx, key, FaceFlow::Out))?;
+        open_boundary::verify_names(ctx, &self.inflow, &self.outflow)?;
+        self.current.iter().try_for_each(|current| current.verify(ctx, self.periodic.as_ref()))?;
+        self.towed.iter().try_for_each(|towed| towed.verify(ctx))?;
         solid::verify(ctx, &self.solid)?;
         let solids = &self.solid;
         verify_names(ctx, "joint", &names!(self.joint))?;
@@ -155,6 +161,19 @@ impl Scene {
         scene.guard.get_or_insert_default().fill(fills);
         for (i, layer) in scene.damping.iter_mut().enumerate() {
             layer.fill(fills, &format!("damping.{i}"));
+        }
+        let volume = self.water_particles() * self.dp.powi(self.dimension as i32);
+        if let Some(current) = &mut scene.current {
+            current.fill(fills, self.periodic.as_ref(), volume);
+        }
+        if let Some(towed) = &mut scene.towed {
+            towed.velocity.0.fill(fills, "towed.velocity");
+        }
+        for (i, face) in scene.inflow.iter_mut().enumerate() {
+            face.fill(ctx, fills, i, FaceFlow::In);
+        }
+        for (i, face) in scene.outflow.iter_mut().enumerate() {
+            face.fill(ctx, fills, i, FaceFlow::Out);
         }
         for (i, water) in scene.water.iter_mut().enumerate() {
             if let Some(shape) = &mut water.fill.shape {
@@ -297,7 +316,7 @@ impl Scene {
 }
 
 /// The order in which values are listed.
-const ORDER: [&str; 28] = [
+const ORDER: [&str; 32] = [
     "title",
     "dimension",
     "dp",
@@ -310,6 +329,10 @@ const ORDER: [&str; 28] = [
     "guard",
     "water",
     "damping",
+    "inflow",
+    "outflow",
+    "current",
+    "towed",
     "solid",
     "joint",
     "spring",

@@ -2,7 +2,11 @@
 
 use std::collections::HashSet;
 
-use super::{BoxConfig, ContactConfig, JointConfig, ProbeConfig, Scene, section::solid::require_solid};
+use super::{
+    BoxConfig, ContactConfig, JointConfig, ProbeConfig, Scene,
+    context::Context,
+    section::{open_boundary, solid::require_solid},
+};
 use crate::{
     error::{Error, ErrorCode, Result, suggestion},
     probe::ProbeScope,
@@ -58,21 +62,18 @@ impl ProbeScope for Scene {
     }
 
     fn require_constraint(&self, key: &str, kind: &str, name: &str) -> Result<()> {
-        let known: Vec<&str> = match kind {
-            "joint" => self.joint.iter().map(|joint| joint.name.as_str()).collect(),
-            "mooring" => self.mooring.iter().map(|mooring| mooring.name.as_str()).collect(),
-            "spring" => self.spring.iter().map(|spring| spring.name.as_str()).collect(),
-            _ => self.rope.iter().map(|rope| rope.name.as_str()).collect(),
+        let known: Vec<String> = match kind {
+            "joint" => self.joint.iter().map(|joint| joint.name.clone()).collect(),
+            "mooring" => self.mooring.iter().map(|mooring| mooring.name.clone()).collect(),
+            "open boundary" => open_boundary::names(&self.inflow, &self.outflow),
+            "spring" => self.spring.iter().map(|spring| spring.name.clone()).collect(),
+            _ => self.rope.iter().map(|rope| rope.name.clone()).collect(),
         };
-        if known.contains(&name) {
-            return Ok(());
-        }
-        let what = format!("no {kind} is called \"{name}\"{}", suggestion(name, known.iter().copied()));
-        let help = match known.is_empty() {
-            true => format!("the scene has no {kind}"),
-            false => format!("known: {}", known.join(", ")),
-        };
-        Err(self.context().error_with_help(key, what, help).with_code(ErrorCode::UnknownName))
+        require_known(&self.context(), (key, kind), name, &known)
+    }
+
+    fn has_current(&self) -> bool {
+        self.current.is_some()
     }
 
     fn require_contact(&self, key: &str, [a, b]: &[String; 2]) -> Result<()> {
@@ -113,4 +114,17 @@ impl ProbeScope for Scene {
     fn require_box(&self, key: &str, corners: &BoxConfig) -> Result<()> {
         corners.verify(&self.context(), key)
     }
+}
+
+/// Requires that `name` is one of the `known` names of the `kind` of object.
+fn require_known(ctx: &Context, (key, kind): (&str, &str), name: &str, known: &[String]) -> Result<()> {
+    if known.iter().any(|known| known == name) {
+        return Ok(());
+    }
+    let what = format!("no {kind} is called \"{name}\"{}", suggestion(name, known.iter().map(String::as_str)));
+    let help = match known.is_empty() {
+        true => format!("the scene has no {kind}"),
+        false => format!("known: {}", known.join(", ")),
+    };
+    Err(ctx.error_with_help(key, what, help).with_code(ErrorCode::UnknownName))
 }

@@ -55,12 +55,13 @@ impl<const D: usize> System<D> {
     /// Removes the water inside the last solid, whose boundary particles start with the pressure of the remaining water.
     /// Returns how particle arrays must change, the number of particles removed, and their energy (J).
     pub(crate) fn displace(&mut self) -> (Option<Reordering<D>>, usize, f64) {
-        let (before, mut energy) = (self.particle_count(), 0.0);
+        let (before, mut count, mut energy) = (self.particle_count(), 0, 0.0);
         if let Some(solid) = self.solids.last() {
             let (pose, water) = (solid.kinematics.pose, &self.fluid.particles);
             let inside = |x: &Vector<D>| solid.spec.shape.signed_distance(&pose.local(x)) < 0.0;
             let displaced: Vec<bool> = water.r[..before].par_iter().map(inside).collect();
             let gone = (0..before).filter(|&i| displaced[i]);
+            count = gone.clone().count();
             energy = gone.map(|i| self.particle_energy(&water.r[i], &water.v[i], water.rho[i])).sum();
             self.fluid.displaced = Some(displaced);
         }
@@ -68,7 +69,7 @@ impl<const D: usize> System<D> {
         self.fluid.displaced = None;
         self.init_hydrostatic(self.solids.last().map_or(0..0, |solid| solid.boundary.clone()));
         self.check_water();
-        (reordering, before - self.particle_count(), energy)
+        (reordering, count, energy)
     }
 
     /// Sets the masses of the free solids with ballast to those of time `t` (s), after their kinematics were restored.

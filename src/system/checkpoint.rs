@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use serde::{Deserialize, Serialize};
 
-use super::{AxisSet, Escape, System};
+use super::{AxisSet, Escape, FaceExchange, System, driving::CurrentState, open_boundary::Buffer};
 use crate::{
     error::{Error, ErrorKind, Result},
     interaction::PairSums,
@@ -26,6 +26,10 @@ pub(crate) struct SystemState<'a, const D: usize> {
     images: Cow<'a, [u32]>,
     /// Along which axes each image is reflected; empty without a symmetry plane.
     reflections: Cow<'a, [AxisSet]>,
+    /// Number of the face of each buffer particle, time and name of the next, and what has passed through each face.
+    buffer: (Cow<'a, [u8]>, f64, u32, Cow<'a, [FaceExchange<D>]>),
+    /// The force that holds a current.
+    current: CurrentState,
     /// Number of boundary particles.
     boundary_count: usize,
     /// The boundary particles whose density is not ρ₀, in ascending order, with their densities, kg/m³.
@@ -50,6 +54,13 @@ impl<const D: usize> System<D> {
             fluid: Cow::Borrowed(&self.fluid.particles),
             images: Cow::Borrowed(&self.fluid.images.originals),
             reflections: Cow::Borrowed(&self.fluid.images.reflections),
+            buffer: (
+                Cow::Borrowed(&self.fluid.buffer.faces),
+                self.fluid.buffer.time,
+                self.fluid.buffer.next_id,
+                Cow::Borrowed(&self.fluid.buffer.exchange),
+            ),
+            current: self.driving.current,
             boundary_count: self.boundary.particles.len(),
             boundary_density: density.filter(|(_, rho)| *rho != self.properties.rho0).collect(),
             kinematics: self.solids.iter().map(|s| s.kinematics).collect(),
@@ -75,8 +86,20 @@ impl<const D: usize> System<D> {
         };
         let Some(real) = count.checked_sub(state.images.len()) else { return false };
         let fewer = self.status.solids_added || self.fluid_domain.limits.escape == Escape::Remove;
-        let all = if fewer { real <= self.fluid_domain.initial_count } else { real == self.fluid_domain.initial_count };
-        all && state.images.iter().all(|&i| (i as usize) < real)
+        let faces = self.fluid_domain.open_boundaries.len();
+        let fits = state.current.is_finite()
+            && state.buffer.3.len() == faces
+            && state.buffer.0.len() <= real
+            && state.buffer.0.iter().all(|&face| usize::from(face) < faces);
+        let all = if faces > 0 {
+            true
+        } else if fewer {
+            real <= self.fluid_domain.initial_count
+        } else {
+            real == self.fluid_domain.initial_count
+        };
+        fits && all
+            && state.images.iter().all(|&i| (i as usize) < real)
             && state.reflections.len() == if self.symmetry_planes().any() { state.images.len() } else { 0 }
             && state.boundary_count == self.boundary.particles.len()
             && state.boundary_density.iter().all(|&(i, _)| (i as usize) < state.boundary_count)
@@ -114,6 +137,9 @@ impl<const D: usize> System<D> {
         self.fluid.stress = self.fluid.stress.take().map(|_| state.stress.into_owned());
         self.fluid.gradient_correction =
             self.fluid.gradient_correction.take().map(|_| state.gradient_correction.into_owned());
+        let (faces, time, next_id, exchange) = state.buffer;
+        self.driving.current = state.current;
+        self.fluid.buffer = Buffer { faces: faces.into_owned(), time, next_id, exchange: exchange.into_owned() };
         self.fluid.images.originals = state.images.into_owned();
         self.fluid.images.reflections = state.reflections.into_owned();
         // The corrections of the state belong to its lists, whatever this system was about to do.

@@ -2,16 +2,18 @@
 
 use rayon::prelude::*;
 
-use super::{Images, System};
+use super::{Images, System, open_boundary::Buffer};
 use crate::{
     math::{Matrix, Vector},
     model::{Model, PressureGradient},
     particles::{PARTICLES_PER_TASK, Particles},
 };
 
-/// The water: particles, then the images of those near periodic sides, and what the laws keep of each.
+/// The water: particles, then those in the buffers of open boundaries, then the images of those near periodic sides, and what the
+/// laws keep of each.
 pub(crate) struct Fluid<const D: usize> {
     pub(crate) particles: Particles<D>,
+    pub(super) buffer: Buffer<D>,
     pub(super) images: Images<D>,
     /// Stress from the last pass, m²/s²; `None` unless the viscosity has one.
     pub(super) stress: Option<Vec<Matrix<D>>>,
@@ -35,6 +37,7 @@ impl<const D: usize> Fluid<D> {
         Self {
             stress: zeros(model.viscosity.stress().is_some()),
             gradient_correction: zeros(model.gradient != PressureGradient::Plain),
+            buffer: Buffer::default(),
             particles: Particles { id: (0..r.len() as u32).collect(), r, v, rho },
             images,
             displaced: None,
@@ -53,8 +56,13 @@ impl<const D: usize> Fluid<D> {
 }
 
 impl<const D: usize> System<D> {
-    /// Number of water particles, images not counted.
+    /// Number of water particles, buffers of open boundaries and images not counted.
     pub(crate) fn particle_count(&self) -> usize {
+        self.own_count() - self.fluid.buffer.faces.len()
+    }
+
+    /// Number of particles that are no images: the water, and then the buffers of open boundaries.
+    pub(super) fn own_count(&self) -> usize {
         self.fluid.particles.len() - self.fluid.images.originals.len()
     }
 }

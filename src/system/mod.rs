@@ -6,9 +6,11 @@ mod boundary;
 mod boundary_extension;
 mod change;
 mod checkpoint;
+mod driving;
 mod fluid;
 mod free_surface;
 mod gap_pressure;
+mod open_boundary;
 pub(crate) mod periodic;
 mod setup;
 mod sponge_layer;
@@ -19,8 +21,12 @@ mod view;
 
 pub(crate) use boundary::Boundary;
 pub(crate) use checkpoint::SystemState;
+use driving::DrivingState;
+pub use driving::{Current, Driving, TowedFrame};
 pub(crate) use fluid::{Fluid, permute};
 use gap_pressure::GapPressure;
+pub use open_boundary::{FaceExchange, OpenBoundary};
+pub(crate) use open_boundary::{buffer_length, check as check_open_boundary};
 pub(crate) use periodic::Periodic;
 use periodic::{Images, SortedWater};
 pub use setup::Setup;
@@ -65,6 +71,7 @@ pub struct System<const D: usize> {
     constraints: Constraints<D>,
     /// Components of gravity as functions of time, m/s²; empty if it is constant.
     gravity_law: Vec<TimeFunction>,
+    driving: DrivingState,
     fluid_domain: FluidDomain<D>,
     pub(crate) rates: Rates<D>,
     pub(crate) status: Status,
@@ -76,6 +83,7 @@ struct FluidDomain<const D: usize> {
     domain: Bounds<D>,
     limits: ParticleLimits,
     sponge_layers: Vec<SpongeLayer<D>>,
+    open_boundaries: Vec<OpenBoundary<D>>,
     /// Height of the highest water at the start, m.
     initial_water_height: f64,
     /// Number of water particles at the start.
@@ -101,19 +109,29 @@ pub(crate) struct FluidRates<'a, const D: usize> {
     reflections: &'a [AxisSet],
     /// Number of particles that are no images.
     real: usize,
+    /// Number of water particles; those after them, before the images, are in buffers.
+    water: usize,
 }
 
 impl<'a, const D: usize> FluidRates<'a, D> {
     /// Acceleration and density rate of water particle `i`.
     #[inline]
     pub(crate) fn of(&self, i: usize) -> PairSums<D> {
-        let sums = self.pair_loop.fluid_sums(self.neighbours, self.original(i));
+        let original = self.original(i);
+        if original >= self.water {
+            return PairSums::zero();
+        }
+        let sums = self.pair_loop.fluid_sums(self.neighbours, original);
         if self.reflections.is_empty() { sums } else { reflected_sums(self.reflection(i), sums) }
     }
 
     /// The sums of water particle `i` that only some laws need.
     pub(crate) fn auxiliary_of(&self, i: usize) -> AuxiliarySums<f64, D> {
-        let sums = self.pair_loop.auxiliary_sums(self.neighbours, self.original(i));
+        let original = self.original(i);
+        if original >= self.water {
+            return AuxiliarySums::filled_with(0.0);
+        }
+        let sums = self.pair_loop.auxiliary_sums(self.neighbours, original);
         if self.reflections.is_empty() { sums } else { reflected_auxiliary(self.reflection(i), sums) }
     }
 
@@ -156,6 +174,8 @@ pub(crate) struct Reordering<const D: usize> {
     pub(crate) dried: Vec<u32>,
     /// Particles that were removed.
     pub(crate) removed: Vec<RemovedParticle<D>>,
+    /// Energy (J; J/m in 2-D) of the water that has entered through open boundaries less that of the water that has left.
+    pub(crate) exchanged_energy: f64,
 }
 
 /// An impulse that was shared equally by some water particles, and given to their images.
@@ -186,6 +206,8 @@ impl<const D: usize> System<D> {
             symmetry: _,
             limits,
             sponge_layers,
+            open_boundaries,
+            driving,
         } = setup;
         if !gravity_law.is_empty() {
             model.gravity = setup::gravity_at::<D>(&gravity_law, 0.0).iter().copied().collect();
@@ -207,6 +229,7 @@ impl<const D: usize> System<D> {
             domain: domain.unwrap_or_else(Bounds::empty),
             limits,
             sponge_layers,
+            open_boundaries,
             initial_water_height: particles.r.iter().map(|r| r[D - 1]).fold(f64::NEG_INFINITY, f64::max),
             initial_count: particles.len(),
         };
@@ -223,6 +246,7 @@ impl<const D: usize> System<D> {
             solids: Vec::new(),
             constraints,
             gravity_law,
+            driving: DrivingState::new(driving),
             fluid_domain: region,
             status: Status {
                 step_limits: StepLimits { acceleration: 0.0, approach_rate: 0.0 },
@@ -254,9 +278,14 @@ impl<const D: usize> System<D> {
         for i in 0..system.solids.len() {
             system.place_boundary(i);
         }
+        system.extend_domain_by_buffers();
+        system.start_buffers();
+        system.start_current();
         system.rebuild_neighbours();
+        system.update_buffer(0.0, 0.0);
         system.check_water();
         system.init_hydrostatic(0..system.boundary.particles.len());
+        system.set_gravity_at(0.0);
         system.update_rates();
         Ok(system)
     }
@@ -268,9 +297,12 @@ impl<const D: usize> System<D> {
             return None;
         }
         let start = Instant::now();
+        let exchanged = |system: &Self| system.face_exchange().iter().map(|face| face.energy).sum::<f64>();
+        let before = exchanged(self);
         let (SortedWater { order, reflections }, removed) = self.sort_water();
+        let exchanged_energy = exchanged(self) - before;
         self.status.neighbour_time += start.elapsed();
-        Some(Reordering { order, reflections, dried: self.rebuild_lists(), removed })
+        Some(Reordering { order, reflections, dried: self.rebuild_lists(), removed, exchanged_energy })
     }
 
     /// Rebuilds the neighbour lists within a step, if that is needed; the water keeps its order.
@@ -382,16 +414,17 @@ impl<const D: usize> System<D> {
     /// The sums of the water from the last pass of a pair loop at the present lists.
     pub(crate) fn fluid_rates_of<'a>(&'a self, pair_loop: &'a dyn PairLoop<D>) -> FluidRates<'a, D> {
         let Images { originals, reflections, .. } = &self.fluid.images;
-        FluidRates { pair_loop, neighbours: &self.neighbours, originals, reflections, real: self.particle_count() }
+        let (real, water) = (self.own_count(), self.particle_count());
+        FluidRates { pair_loop, neighbours: &self.neighbours, originals, reflections, real, water }
     }
 
     /// The water's particles, and their sums from the last force pass.
     pub(crate) fn fluid_and_rates(&mut self) -> (&mut Particles<D>, FluidRates<'_, D>) {
-        let real = self.particle_count();
+        let (real, water) = (self.own_count(), self.particle_count());
         let Fluid { particles, images, .. } = &mut self.fluid;
         let (pair_loop, neighbours) = (&*self.pair_loop, &self.neighbours);
         let Images { originals, reflections, .. } = images;
-        (particles, FluidRates { pair_loop, neighbours, originals, reflections, real })
+        (particles, FluidRates { pair_loop, neighbours, originals, reflections, real, water })
     }
 
     /// The stress that the next force pass reads, from the sums of this one.
@@ -476,18 +509,6 @@ impl<const D: usize> System<D> {
         self.solids.iter().enumerate().map(of).collect()
     }
 
-    /// Sets gravity to that of time `t` (s). Returns its change (m/s²); `None` if gravity is constant.
-    pub(crate) fn set_gravity_at(&mut self, t: f64) -> Option<Vector<D>> {
-        if self.gravity_law.is_empty() {
-            return None;
-        }
-        let gravity = setup::gravity_at(&self.gravity_law, t);
-        let change = gravity - self.properties.gravity;
-        self.properties.gravity = gravity;
-        self.pair_loop.set_gravity(&self.properties);
-        Some(change)
-    }
-
     /// The largest values that limit the next step.
     pub fn step_limits(&self) -> StepLimits {
         self.status.step_limits
@@ -500,7 +521,7 @@ impl<const D: usize> System<D> {
             return None;
         }
         let mass = self.particle_mass() * self.symmetry_planes().multiplicity(!self.solids[solid].division.cut);
-        let real = self.particle_count();
+        let (real, count) = (self.own_count(), self.particle_count());
         let images_of_all = self.solid_multiplicity(solid);
         let own = Bounds::around(&self.boundary.particles.r[self.home_boundary(solid)]);
         let water = &mut self.fluid.particles;
@@ -508,7 +529,7 @@ impl<const D: usize> System<D> {
         loop {
             let around = own.grown(distance);
             let mut particles = self.neighbours.fluid_within(&around);
-            particles.retain(|&i| i < real && around.contains(&water.r[i]));
+            particles.retain(|&i| i < count && around.contains(&water.r[i]));
             if !particles.is_empty() {
                 let velocity = impulse / (particles.len() as f64 * mass);
                 let gained: f64 = particles.iter().map(|&i| velocity.dot(&(water.v[i] + velocity * 0.5))).sum();

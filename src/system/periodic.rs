@@ -207,7 +207,7 @@ impl<const D: usize> System<D> {
     /// sorts it along the columns and puts new images at its end. Returns how the arrays of particles have changed, and what was
     /// removed.
     pub(super) fn sort_water(&mut self) -> (SortedWater, Vec<RemovedParticle<D>>) {
-        let real = self.particle_count();
+        let real = self.own_count();
         let folded = self.fluid.fold_at_planes(real);
         let Fluid { particles, images, displaced, .. } = &mut self.fluid;
         images.wrap(&mut particles.r[..real]);
@@ -215,17 +215,27 @@ impl<const D: usize> System<D> {
         let displaced = displaced.take();
         let lost = self.remove_outside(&mut order);
         if let Some(displaced) = displaced {
-            order.retain(|&i| !displaced[i as usize]);
+            order.retain(|&i| !displaced.get(i as usize).is_some_and(|displaced| *displaced));
         }
+        let created = self.exchange_at_faces(&mut order);
         let real = order.len();
+        let ways: Vec<Vector<D>> = order[real - created..]
+            .iter()
+            .enumerate()
+            .map(|(k, &i)| self.way_to_created(k, created, &self.fluid.particles.r[i as usize]))
+            .collect();
         let Fluid { particles, images, .. } = &mut self.fluid;
         let mut copies = Vec::new();
         if images.any() {
-            let sorted: Vec<Vector<D>> = order.iter().map(|&i| particles.r[i as usize]).collect();
+            let mut sorted: Vec<Vector<D>> = order.iter().map(|&i| particles.r[i as usize]).collect();
+            sorted[real - created..].iter_mut().zip(&ways).for_each(|(r, way)| *r += way);
             copies = images.make(&sorted);
             order.extend(copies.iter().map(|image| order[image.original as usize]).collect::<Vec<_>>());
         }
         self.fluid.permute(&order);
+        for (r, way) in self.fluid.particles.r[real - created..real].iter_mut().zip(&ways) {
+            *r += way;
+        }
         let images = &mut self.fluid.images;
         images.originals = copies.iter().map(|image| image.original).collect();
         let mut reflections = Vec::new();
@@ -239,12 +249,13 @@ impl<const D: usize> System<D> {
         for (r, image) in self.fluid.particles.r[real..].iter_mut().zip(&copies) {
             *r += image.away;
         }
+        self.name_created(created);
         (SortedWater { order, reflections }, lost)
     }
 
-    /// Limits the next step by the acceleration of the water without its images.
+    /// Limits the next step by the acceleration of the water without images and buffers.
     pub(super) fn limit_step_by_originals(&mut self) {
-        if self.fluid.images.any() {
+        if self.fluid.images.any() || !self.fluid.buffer.faces.is_empty() {
             // The outermost images lack half their neighbours: their acceleration says nothing of the water.
             let (real, rates) = (self.particle_count(), self.fluid_rates());
             let largest = (0..real).map(|i| rates.of(i).acceleration.norm_squared()).fold(0.0, f64::max);

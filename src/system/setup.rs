@@ -1,7 +1,7 @@
 //! What a simulation starts from.
 
 use super::{
-    SpongeLayer,
+    Current, Driving, OpenBoundary, SpongeLayer, TowedFrame, open_boundary,
     periodic::{self, Periodic},
     step_check::ParticleLimits,
 };
@@ -60,6 +60,10 @@ pub struct Setup<const D: usize> {
     pub limits: ParticleLimits,
     /// Where water loses its motion.
     pub sponge_layers: Vec<SpongeLayer<D>>,
+    /// Where water enters and leaves. Water beyond a face is its buffer at the start: it is filled [`Setup::buffer_length`] deep.
+    pub open_boundaries: Vec<OpenBoundary<D>>,
+    /// What drives water and bodies beside gravity.
+    pub driving: Driving,
 }
 
 impl<const D: usize> Setup<D> {
@@ -79,6 +83,8 @@ impl<const D: usize> Setup<D> {
             symmetry: [None; D],
             limits: ParticleLimits::default(),
             sponge_layers: Vec::new(),
+            open_boundaries: Vec::new(),
+            driving: Driving::default(),
         }
     }
 
@@ -219,6 +225,29 @@ impl<const D: usize> Setup<D> {
         self
     }
 
+    /// The same setup with one more open boundary.
+    pub fn open_boundary(mut self, face: OpenBoundary<D>) -> Self {
+        self.open_boundaries.push(face);
+        self
+    }
+
+    /// The same setup with a current along a periodic axis, which a body force holds.
+    pub fn current(mut self, current: Current) -> Self {
+        self.driving.current = Some(current);
+        self
+    }
+
+    /// The same setup in a frame that moves. Places and velocities are relative to it.
+    pub fn towed(mut self, frame: TowedFrame) -> Self {
+        self.driving.towed = Some(frame);
+        self
+    }
+
+    /// Length (m) of the buffers beyond open boundaries. Walls beside a face reach as far beyond it.
+    pub fn buffer_length(&self) -> f64 {
+        open_boundary::buffer_length(&self.model)
+    }
+
     /// Acceleration of gravity at the start, m/s².
     pub(crate) fn initial_gravity(&self) -> Vector<D> {
         match self.gravity_law.is_empty() {
@@ -267,6 +296,8 @@ impl<const D: usize> Setup<D> {
             return Err(Error::scene(format!("water particle {i} has no finite place")));
         }
         self.sponge_layers.iter().try_for_each(SpongeLayer::check)?;
+        self.driving.check(&self.periodic)?;
+        (0..self.open_boundaries.len()).try_for_each(|i| open_boundary::check(self, i))?;
         self.constraints.check(&self.solids)?;
         let has_planes = self.symmetry.iter().any(Option::is_some);
         periodic::check(&self.periodic, has_planes, m, &self.solids, &self.constraints)

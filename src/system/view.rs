@@ -241,10 +241,12 @@ impl<const D: usize> System<D> {
     /// Calls `visit` with index, place (m) and kernel value W (1/mᴰ) of each water particle whose support holds `x` (m). Across
     /// a periodic side or a symmetry plane the place is that of its image.
     pub fn visit_fluid_near(&self, x: &Vector<D>, visit: &mut dyn FnMut(usize, &Vector<D>, f64)) {
-        let real = self.particle_count();
+        let (real, water) = (self.own_count(), self.particle_count());
         self.neighbours.visit_fluid_around(x, &mut |i| {
             let own = i.checked_sub(real).map_or(i, |k| self.fluid.images.originals[k] as usize);
-            self.visit_within_support(&self.fluid.particles.r[i], x, own, visit);
+            if own < water {
+                self.visit_within_support(&self.fluid.particles.r[i], x, own, visit);
+            }
         });
     }
 

@@ -122,6 +122,11 @@ pub(crate) struct InitialFlow<const D: usize> {
 }
 
 impl<const D: usize> InitialFlow<D> {
+    /// No motion, and the hydrostatic pressure.
+    pub(crate) fn at_rest() -> Self {
+        Self { velocity: None, pressure: None }
+    }
+
     /// Velocity (m/s) and pressure beyond the hydrostatic one (Pa) at `r` (m).
     pub(crate) fn at(&self, r: &Vector<D>) -> (Vector<D>, f64) {
         let velocity = self.velocity.as_ref();

@@ -5,6 +5,7 @@ mod gravity;
 mod kernels;
 mod laws;
 mod neighbours;
+mod open_boundaries;
 mod periodic;
 mod simd;
 mod still_water;

@@ -1,0 +1,289 @@
+//! `[[inflow]]` and `[[outflow]]`: vertical faces through which water enters and leaves.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::water::{InitialFlow, WaterBody};
+use crate::{
+    error::{ErrorCode, Result},
+    geometry::{Shape, WaterRegion},
+    math::{Bounds, Pose, expression::UnsteadyField},
+    scene::{
+        context::{Context, Defaults},
+        untagged::{CoordinateUnit, FieldFormulaConfig, TimeValueConfig},
+    },
+    simulation::OpenBoundary,
+    wavemaker::WaveOnCurrent,
+};
+
+/// One `[[inflow]]` or `[[outflow]]`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+#[non_exhaustive]
+pub struct OpenBoundaryConfig {
+    /// Its name in messages and probes.
+    pub name: Option<String>,
+    /// Coordinate of a face normal to x, m.
+    pub x: Option<f64>,
+    /// Coordinate of a face normal to y, m; 3-D only.
+    pub y: Option<f64>,
+    /// Velocity in the sense of the flow, m/s: a number, or a formula in the position and t.
+    pub velocity: Option<FieldFormulaConfig>,
+    /// Factor on the velocity, –: a number, a formula in t or a table.
+    pub factor: Option<TimeValueConfig>,
+    /// Height of the surface at rest, m.
+    pub level: Option<f64>,
+    /// A regular wave that enters with the water.
+    pub wave: Option<FaceWaveConfig>,
+    /// Period of the waves that leave, s.
+    pub wave_period: Option<f64>,
+    /// Whether the velocity yields to waves that leave, so that they are not reflected.
+    pub absorb: Option<bool>,
+}
+
+/// A regular wave that enters through a face.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[non_exhaustive]
+pub struct FaceWaveConfig {
+    /// From trough to crest, m.
+    pub height: f64,
+    /// At a fixed place, s.
+    pub period: f64,
+    /// Time in which the wave rises to its height, s.
+    pub ramp: Option<f64>,
+}
+
+/// The sense of a flow through a face.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum FaceFlow {
+    /// Water enters.
+    In,
+    /// Water leaves.
+    Out,
+}
+
+impl FaceFlow {
+    /// The section of the scene.
+    pub(crate) fn section(self) -> &'static str {
+        match self {
+            Self::In => "inflow",
+            Self::Out => "outflow",
+        }
+    }
+}
+
+impl OpenBoundaryConfig {
+    /// The face normal to x at the coordinate `x` (m).
+    pub fn at_x(x: f64) -> Self {
+        Self { x: Some(x), ..Self::default() }
+    }
+
+    /// The same face with this velocity in the sense of the flow: a number (m/s) or a formula.
+    pub fn velocity(self, velocity: &str) -> Self {
+        Self { velocity: Some(FieldFormulaConfig(velocity.into())), ..self }
+    }
+
+    /// The same face with a surface at rest at the height `level` (m).
+    pub fn level(self, level: f64) -> Self {
+        Self { level: Some(level), ..self }
+    }
+
+    /// Number of the axis and coordinate (m).
+    fn place(&self) -> Option<(usize, f64)> {
+        match (self.x, self.y) {
+            (Some(x), None) => Some((0, x)),
+            (None, Some(y)) => Some((1, y)),
+            _ => None,
+        }
+    }
+
+    /// Refuses a face without a place, and one whose flow nothing determines.
+    pub(crate) fn verify(&self, ctx: &Context, key: &str, flow: FaceFlow) -> Result<()> {
+        if let Some(name) = &self.name {
+            ctx.require_file_name(&format!("{key}.name"), name)?;
+        }
+        if self.y.is_some() && ctx.dimension == 2 {
+            let what = "a face normal to y is horizontal in 2-D; faces are vertical";
+            return Err(ctx.error_with_help(&format!("{key}.y"), what, "write  x = 0.0"));
+        }
+        if self.place().is_none_or(|(_, at)| !at.is_finite()) {
+            let what = "a face is normal to one horizontal axis, at one coordinate";
+            return Err(ctx.error_with_help(key, what, "write  x = 0.0"));
+        }
+        match &self.velocity {
+            Some(velocity) if ctx.dimension == 2 => UnsteadyField::<2>::parse(&velocity.0).map(|_| ()),
+            Some(velocity) => UnsteadyField::<3>::parse(&velocity.0).map(|_| ()),
+            None => Ok(()),
+        }
+        .map_err(|e| ctx.with_location(e, &format!("{key}.velocity")))?;
+        if let Some(factor) = &self.factor {
+            factor.verify(ctx, &format!("{key}.factor"))?;
+        }
+        if self.velocity.is_none() {
+            if flow == FaceFlow::In {
+                let what = "an inflow has a velocity";
+                return Err(ctx.error_with_help(key, what, "write  velocity = 0.5        # m/s, into the water"));
+            }
+            if self.factor.is_some() || self.absorb == Some(true) {
+                let what = "without a velocity there is nothing to multiply or to return to";
+                let help = "write  velocity = 0.5        # m/s, that of the inflow";
+                return Err(ctx.error_with_help(key, what, help).with_code(ErrorCode::ConflictingKeys));
+            }
+        }
+        if let Some(wave) = &self.wave {
+            let key = format!("{key}.wave");
+            if flow == FaceFlow::Out {
+                return Err(ctx.error_with_help(&key, "waves enter through an inflow", "write it in [[inflow]]"));
+            }
+            if self.velocity.as_ref().is_none_or(|u| u.0.parse::<f64>().is_err()) || self.factor.is_some() {
+                let help = "write the velocity as a number, 0.0 without a current, and no factor";
+                return Err(ctx.error_with_help(&key, "theory has waves on a uniform current", help));
+            }
+            ctx.require_positive(&format!("{key}.height"), Some(wave.height))?;
+            ctx.require_positive(&format!("{key}.period"), Some(wave.period))?;
+            ctx.require_positive(&format!("{key}.ramp"), wave.ramp)?;
+        }
+        ctx.require_positive(&format!("{key}.wave_period"), self.wave_period)?;
+        if (self.absorb == Some(true) || self.wave.is_some() || self.wave_period.is_some())
+            && ctx.gravity.is_some()
+            && !ctx.has_gravity()
+        {
+            let what = "without gravity there are no waves";
+            return Err(ctx.error_with_help(key, what, "leave absorb, wave and wave_period out"));
+        }
+        match self.level.filter(|level| !level.is_finite()) {
+            Some(level) => Err(ctx.error_at(&format!("{key}.level"), format!("a level of {level} m"))),
+            None => Ok(()),
+        }
+    }
+
+    /// Fills in the defaults of face number `i` of its section.
+    pub(crate) fn fill(&mut self, ctx: &Context, defaults: &mut Defaults, i: usize, flow: FaceFlow) {
+        let (section, key) = (flow.section(), format!("{}.{i}", flow.section()));
+        defaults.fill(format!("{key}.name"), &mut self.name, default_name(section, i), "after its kind");
+        if let Some(factor) = &mut self.factor {
+            factor.0.fill(defaults, &format!("{key}.factor"));
+        }
+        if let Some(wave) = &mut self.wave {
+            defaults.fill(format!("{key}.wave.ramp"), &mut wave.ramp, 2.0 * wave.period, "two periods, s");
+        }
+        // A scene that gives no gravity has that of the earth.
+        let weight = ctx.gravity.is_none() || ctx.has_gravity();
+        let leaves = flow == FaceFlow::Out && self.velocity.is_some() && weight;
+        let absorbs = leaves || self.wave.is_some();
+        let why = match (flow, absorbs) {
+            (_, true) => "waves leave",
+            (FaceFlow::In, _) => "the discharge is exact",
+            (FaceFlow::Out, _) => "no velocity or no gravity is given",
+        };
+        defaults.fill(format!("{key}.absorb"), &mut self.absorb, absorbs, why);
+    }
+
+    /// The face beside `water`, and the buffer of length `length` (m) that is to be filled beyond it.
+    pub(crate) fn build<const D: usize>(
+        &self,
+        ctx: &Context,
+        (key, flow): (&str, FaceFlow),
+        water: &[WaterBody<D>],
+        length: f64,
+    ) -> Result<(OpenBoundary<D>, WaterBody<D>)> {
+        let Some((axis, at)) = self.place() else { return Err(ctx.error_at(key, "where is the face?")) };
+        let along = ["x", "y"][axis];
+        let all = water.iter().fold(Bounds::<D>::empty(), |all, body| all.union(&body.bounds()));
+        let is_lower = at - all.min[axis] < all.max[axis] - at;
+        let end = if is_lower { all.min[axis] } else { all.max[axis] };
+        if (at - end).abs() > 1e-6 * ctx.dp {
+            let what = format!("the face at {along} = {at} is not where the water ends, at {along} = {end}");
+            let help =
+                format!("write  {along} = {end}, or end the water at the face; the program fills the buffer beyond it");
+            return Err(ctx.error_with_help(&format!("{key}.{along}"), what, help));
+        }
+        let beside = water.iter().filter(|body| {
+            let bounds = body.bounds();
+            (if is_lower { bounds.min[axis] } else { bounds.max[axis] } - at).abs() <= 1e-6 * ctx.dp
+        });
+        let mut bounds = beside.clone().fold(Bounds::<D>::empty(), |all, body| all.union(&body.bounds()));
+        let top = beside.map(|body| body.level).fold(f64::NEG_INFINITY, f64::max);
+        let level = self.level.unwrap_or(top);
+        if ctx.has_gravity() && (level - top).abs() > 0.5 * ctx.dp {
+            let what = format!("the level {level} m differs from {top} m, that of the water beside the face");
+            let help = format!("write  level = {top}, or change the water: a step of the surface would break");
+            return Err(ctx.error_with_help(&format!("{key}.level"), what, help));
+        }
+        let (from, to) = if is_lower { (at - length, at) } else { (at, at + length) };
+        (bounds.min[axis], bounds.max[axis]) = (from, to);
+        bounds.max[D - 1] = top;
+        let velocity = self.velocity.as_ref().map(|velocity| UnsteadyField::parse(&velocity.0)).transpose();
+        let velocity = velocity.map_err(|e| ctx.with_location(e, &format!("{key}.velocity")))?;
+        let name = self.name.as_deref().unwrap_or(flow.section());
+        let face = match (flow, velocity) {
+            (FaceFlow::In, Some(velocity)) => OpenBoundary::inflow(name, axis, at, velocity),
+            (_, velocity) => OpenBoundary::outflow(name, axis, at, velocity),
+        };
+        let factor = self.factor.as_ref();
+        let factor = factor.map(|f| f.0.build(ctx, &format!("{key}.factor"), CoordinateUnit::Si)).transpose()?;
+        let (depth, g) = (top - bounds.min[D - 1], ctx.gravity_norm());
+        let current = self.velocity.as_ref().and_then(|velocity| velocity.0.parse::<f64>().ok()).unwrap_or(0.0);
+        let wave_of = |height: f64, period: f64, current: f64, ramp: f64| {
+            WaveOnCurrent::new(height, period, (depth, current, g), ramp)
+        };
+        let wave = self.wave.as_ref().map(|w| wave_of(w.height, w.period, current, w.ramp.unwrap_or(w.period)));
+        let wave = wave.transpose().map_err(|e| ctx.with_location(e, &format!("{key}.wave.period")))?;
+        // A wave that leaves goes with the flow of an outflow and against that of an inflow.
+        let with_it = if flow == FaceFlow::Out { current } else { -current };
+        let period = self.wave_period.or(self.wave.as_ref().map(|wave| wave.period));
+        let leaving = period.map(|period| wave_of(0.0, period, with_it, period)).transpose();
+        let leaving = leaving.map_err(|e| ctx.with_location(e, &format!("{key}.wave_period")))?;
+        let speed = leaving.map_or((g * depth).sqrt(), |wave| wave.relative_speed());
+        let absorbed_speed = self.absorb.unwrap_or(false).then_some(speed);
+        let wave = wave.map(|wave| (wave, bounds.min[D - 1]));
+        // Without velocity and level the pressure is that of the water.
+        let level = if face.velocity.is_some() { Some(level) } else { self.level };
+        let face = OpenBoundary { is_lower, factor, level, wave, absorbed_speed, ..face };
+        let shape = Shape::Box { size: bounds.size() };
+        let pose = Pose::at(0.5 * (bounds.min + bounds.max));
+        let buffer = WaterBody {
+            region: WaterRegion { shape, pose },
+            bottom: bounds.min[D - 1],
+            level: top,
+            flow: InitialFlow::at_rest(),
+            inside: None,
+        };
+        Ok((face, buffer))
+    }
+}
+
+/// The name of face number `i` of its section, if the scene gives none.
+fn default_name(section: &str, i: usize) -> String {
+    if i == 0 { section.into() } else { format!("{section}_{}", i + 1) }
+}
+
+/// The names of all faces.
+pub(crate) fn names(inflow: &[OpenBoundaryConfig], outflow: &[OpenBoundaryConfig]) -> Vec<String> {
+    let each = |faces: &[OpenBoundaryConfig], flow: FaceFlow| {
+        let name = |(i, face): (usize, &OpenBoundaryConfig)| {
+            face.name.clone().unwrap_or_else(|| default_name(flow.section(), i))
+        };
+        faces.iter().enumerate().map(name).collect::<Vec<_>>()
+    };
+    let mut names = each(inflow, FaceFlow::In);
+    names.extend(each(outflow, FaceFlow::Out));
+    names
+}
+
+/// Refuses faces of the same name.
+pub(crate) fn verify_names(ctx: &Context, inflow: &[OpenBoundaryConfig], outflow: &[OpenBoundaryConfig]) -> Result<()> {
+    let names = names(inflow, outflow);
+    match (0..names.len()).find(|&i| names[..i].contains(&names[i])) {
+        Some(i) => {
+            let key = match i.checked_sub(inflow.len()) {
+                Some(i) => format!("outflow.{i}"),
+                None => format!("inflow.{i}"),
+            };
+            let what = format!("two faces have the name \"{}\"", names[i]);
+            Err(ctx.error_with_help(&key, what, "give each its own:  name = \"...\""))
+        }
+        None => Ok(()),
+    }
+}

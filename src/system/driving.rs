@@ -1,0 +1,201 @@
+//! Uniform body forces beside gravity: one that holds the discharge of a periodic channel, and that of a towed frame.
+//!
+//! The force of a channel with the length L along its axis acts on water and bodies alike, as the slope of a river does. With the
+//! discharge Q = Σ V₀ u/L, the mean velocity U of the water, its value U₀ at the start and U_s at the discharge to be held,
+//!
+//!   a = s − (2/τ) (U − U₀),   ds/dt = (U_s − U)/τ²,
+//!
+//! so that U follows U_s without overshoot, as exp(−t/τ) (1 + t/τ), and a becomes the resistance of the channel per mass.
+//!
+//! In a frame that is towed with the velocity U_t(t) everything has the acceleration −dU_t/dt.
+
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use super::{System, setup};
+use crate::{
+    error::{Error, Result},
+    math::Vector,
+    neighbours::CHUNK,
+    solid::TimeFunction,
+};
+
+/// A current along a periodic axis.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct Current {
+    /// Number of the axis.
+    pub axis: usize,
+    /// Discharge in the sense of the axis, m³/s (m²/s in 2-D).
+    pub discharge: f64,
+    /// τ, s.
+    pub response: f64,
+}
+
+impl Current {
+    /// A current along axis number `axis` with this `discharge` (m³/s; m²/s in 2-D), followed within the time `response` (s).
+    pub fn new(axis: usize, discharge: f64, response: f64) -> Self {
+        Self { axis, discharge, response }
+    }
+}
+
+/// A frame that moves along an axis.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct TowedFrame {
+    /// Number of the axis.
+    pub axis: usize,
+    /// Velocity of the frame over the ground, m/s.
+    pub velocity: TimeFunction,
+}
+
+impl TowedFrame {
+    /// A frame that moves with `velocity` (m/s) along axis number `axis`.
+    pub fn new(axis: usize, velocity: impl Into<TimeFunction>) -> Self {
+        Self { axis, velocity: velocity.into() }
+    }
+}
+
+/// What drives water and bodies beside gravity.
+#[derive(Clone, Debug, Default)]
+#[non_exhaustive]
+pub struct Driving {
+    /// A current in a periodic channel.
+    pub current: Option<Current>,
+    /// The motion of the frame.
+    pub towed: Option<TowedFrame>,
+}
+
+impl Driving {
+    /// Refuses what has no meaning in a scene that is `periodic` along some axes.
+    pub(super) fn check<const D: usize>(&self, periodic: &super::Periodic<D>) -> Result<()> {
+        if let Some(Current { axis, discharge, response }) = self.current {
+            if periodic.get(axis).is_none_or(Option::is_none) {
+                let help =
+                    "write  periodic.x = [from, to], or let the water enter and leave by [[inflow]] and [[outflow]]";
+                return Err(Error::scene("a current is held along a periodic axis").help(help));
+            }
+            if !(discharge.is_finite() && response > 0.0 && response.is_finite()) {
+                return Err(Error::scene("a current has a discharge and a positive response time"));
+            }
+        }
+        match &self.towed {
+            Some(frame) if frame.axis >= D || !frame.velocity.value_and_rate(0.0).1.is_finite() => {
+                Err(Error::scene("a towed frame moves along an axis, with a velocity that has a rate at the start"))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// What drives water and bodies, and its state.
+pub(super) struct DrivingState {
+    pub(super) driving: Driving,
+    /// Mean velocity (m/s) at the start along the axis of the current.
+    start: f64,
+    /// State of the current in a checkpoint.
+    pub(super) current: CurrentState,
+}
+
+/// The state of the force that holds a current.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct CurrentState {
+    /// s, m/s².
+    integral: f64,
+    /// a, m/s².
+    acceleration: f64,
+}
+
+impl CurrentState {
+    /// Whether the numbers are finite.
+    pub(super) fn is_finite(&self) -> bool {
+        self.integral.is_finite() && self.acceleration.is_finite()
+    }
+}
+
+impl DrivingState {
+    /// Of what has not begun to act.
+    pub(super) fn new(driving: Driving) -> Self {
+        Self { driving, start: 0.0, current: CurrentState::default() }
+    }
+
+    /// Whether nothing but gravity acts.
+    fn is_none(&self) -> bool {
+        self.driving.current.is_none() && self.driving.towed.is_none()
+    }
+
+    /// The acceleration (m/s²) beside gravity at time `t` (s).
+    fn acceleration<const D: usize>(&self, t: f64) -> Vector<D> {
+        let mut sum = Vector::zeros();
+        if let Some(current) = &self.driving.current {
+            sum[current.axis] += self.current.acceleration;
+        }
+        if let Some(frame) = &self.driving.towed {
+            sum[frame.axis] -= frame.velocity.value_and_rate(t).1;
+        }
+        sum
+    }
+}
+
+impl<const D: usize> System<D> {
+    /// What drives water and bodies beside gravity.
+    pub fn driving(&self) -> &Driving {
+        &self.driving.driving
+    }
+
+    /// Acceleration (m/s²) by the force that holds the current; 0 without one.
+    pub fn current_acceleration(&self) -> f64 {
+        self.driving.current.acceleration
+    }
+
+    /// Discharge (m³/s; m²/s in 2-D) along the periodic axis number `axis`, a mean over the length of the period; `None` along another.
+    pub fn discharge(&self, axis: usize) -> Option<f64> {
+        let [from, to] = (*self.periodic().get(axis)?)?;
+        let water = self.fluid().v;
+        // Chunks are added in order.
+        let parts: Vec<f64> = water.par_chunks(CHUNK).map(|v| v.iter().map(|v| v[axis]).sum()).collect();
+        let volume = self.properties.particle_volume() * self.water_multiplicity();
+        Some(parts.iter().sum::<f64>() * volume / (to - from))
+    }
+
+    /// Discharge (m³/s; m²/s in 2-D) of water that moves at 1 m/s along `axis`, m² (m).
+    fn mean_section(&self, axis: usize) -> f64 {
+        let length = self.periodic()[axis].map_or(1.0, |[from, to]| to - from);
+        self.fluid().len() as f64 * self.properties.particle_volume() * self.water_multiplicity() / length
+    }
+
+    /// Starts the force that holds the current from the present motion.
+    pub(super) fn start_current(&mut self) {
+        if let Some(current) = self.driving.driving.current {
+            let discharge = self.discharge(current.axis).unwrap_or(0.0);
+            self.driving.start = discharge / self.mean_section(current.axis);
+        }
+    }
+
+    /// Adapts the force that holds the current after a step `dt` (s).
+    pub(crate) fn update_current(&mut self, dt: f64) {
+        let Some(Current { axis, discharge, response }) = self.driving.driving.current else { return };
+        let section = self.mean_section(axis);
+        let now = self.discharge(axis).unwrap_or(0.0) / section;
+        let DrivingState { start, current, .. } = &mut self.driving;
+        current.integral += (discharge / section - now) * dt / (response * response);
+        current.acceleration = current.integral - 2.0 / response * (now - *start);
+    }
+
+    /// Sets gravity, and what acts beside it, to that of time `t` (s). Returns its change (m/s²); `None` if it is constant.
+    pub(crate) fn set_gravity_at(&mut self, t: f64) -> Option<Vector<D>> {
+        if self.gravity_law.is_empty() && self.driving.is_none() {
+            return None;
+        }
+        let base = if self.gravity_law.is_empty() {
+            Vector::from_fn(|i, _| self.model.gravity.get(i).copied().unwrap_or(0.0))
+        } else {
+            setup::gravity_at(&self.gravity_law, t)
+        };
+        let gravity = base + self.driving.acceleration(t);
+        let change = gravity - self.properties.gravity;
+        self.properties.gravity = gravity;
+        self.pair_loop.set_gravity(&self.properties);
+        Some(change)
+    }
+}

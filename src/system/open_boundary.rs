@@ -1,0 +1,476 @@
+//! Open boundaries: vertical faces through which water enters and leaves, with buffer particles @tafuni2018.
+//!
+//! Beyond a face lies a buffer, some supports of the kernel long. Its particles stand in the arrays after the water and before
+//! the images. They take part in all pair sums, but their velocity and density are prescribed, and their own sums do not move
+//! them. When the lists are rebuilt, a buffer particle that has crossed the face becomes water, and a new one takes its place
+//! at the far end, one length of the buffer behind it. Water that has crossed the face becomes a buffer particle, and leaves at the
+//! far end.
+//!
+//! With x the compression of the water beside the face less that at rest below the level of the face, averaged with the
+//! kernel at the height of the buffer particle, its outward velocity u and its compression are
+//!
+//!   u = U,               x_b = x_rest + x     where the velocity U is prescribed,
+//!   u = U + c₀² x/c,     x_b = x_rest + x     where the face absorbs waves of speed c,
+//!   u = that of the water, x_b = x_rest       where the level alone is prescribed,
+//!   u = that of the water, x_b = x_rest + x   where nothing is.
+//!
+//! The second is the relation of velocity and pressure in a linear wave that moves out, at every depth @dean1991; for long waves it is
+//! that of @flather1976.
+
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use super::{Fluid, FluidDomain, Setup, System, periodic::WIDTH, reflected};
+use crate::{
+    error::{Error, ErrorCode, Result},
+    math::{Bounds, Vector, expression::UnsteadyField},
+    model::Model,
+    particles::Particles,
+    solid::{Role, TimeFunction},
+    wavemaker::{OrbitalMotion, WaveOnCurrent},
+};
+
+/// Distance from the face at which the water is observed, over h: there most of the kernel lies in the water.
+const OBSERVATION: f64 = 1.0;
+
+/// Least sum of V W with which water counts as beside the face; in water it is 1.
+const BESIDE: f64 = 0.05;
+
+/// Time in which the velocity of an absorbing face follows the water, over h/c: a wave of speed c moves by that part of h.
+const RESPONSE: f64 = 0.5;
+
+/// Greatest speed through a face over c₀: the density of water that stops there changes by two per cent.
+const FASTEST: f64 = 0.2;
+
+/// Speed through a face over the c₀ that a message proposes: the usual ratio in weakly compressible water @monaghan1994.
+const SOUND: f64 = 0.1;
+
+/// A vertical face that bounds the water, and the flow through it.
+///
+/// ```
+/// use pontoon::{math::expression::UnsteadyField, prelude::*, simulation::OpenBoundary};
+///
+/// let profile = UnsteadyField::parse("0.3*y")?;
+/// let face = OpenBoundary::<2>::inflow("inlet", 0, 1.5, profile).level(0.4);
+/// assert_eq!(face.name, "inlet");
+/// # Ok::<(), Error>(())
+/// ```
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct OpenBoundary<const D: usize> {
+    /// Its name in messages and books.
+    pub name: String,
+    /// Number of the axis normal to the face; not the last, which is vertical.
+    pub axis: usize,
+    /// Coordinate of the face along that axis, m.
+    pub at: f64,
+    /// Whether the water lies at greater coordinates.
+    pub is_lower: bool,
+    /// Whether the prescribed velocity is that of water that enters.
+    pub is_inflow: bool,
+    /// Velocity normal to the face (m/s), positive in the sense of the flow; that of the water beside the face if there is none.
+    pub velocity: Option<UnsteadyField<D>>,
+    /// Factor on the velocity as a function of time, –.
+    pub factor: Option<TimeFunction>,
+    /// Height of the surface at rest, m; if there is none, the pressure is that of the water beside the face.
+    pub level: Option<f64>,
+    /// A wave that enters with the water, and the height of the bed (m).
+    pub(crate) wave: Option<(WaveOnCurrent, f64)>,
+    /// Speed of waves that leave through the face (m/s); the velocity is kept exactly if there is none.
+    pub absorbed_speed: Option<f64>,
+}
+
+impl<const D: usize> OpenBoundary<D> {
+    fn new(name: &str, axis: usize, at: f64, is_inflow: bool, velocity: Option<UnsteadyField<D>>) -> Self {
+        let name = name.into();
+        Self {
+            name,
+            axis,
+            at,
+            is_lower: is_inflow,
+            is_inflow,
+            velocity,
+            factor: None,
+            level: None,
+            wave: None,
+            absorbed_speed: None,
+        }
+    }
+
+    /// A face normal to axis number `axis` at the coordinate `at` (m), through which water enters in the sense of the axis with this
+    /// `velocity` (m/s).
+    pub fn inflow(name: &str, axis: usize, at: f64, velocity: UnsteadyField<D>) -> Self {
+        Self::new(name, axis, at, true, Some(velocity))
+    }
+
+    /// A face normal to axis number `axis` at the coordinate `at` (m), through which water leaves in the sense of the axis.
+    pub fn outflow(name: &str, axis: usize, at: f64, velocity: Option<UnsteadyField<D>>) -> Self {
+        Self::new(name, axis, at, false, velocity)
+    }
+
+    /// The same face with the water on the other side: the flow is against the axis.
+    pub fn reversed(self) -> Self {
+        Self { is_lower: !self.is_lower, ..self }
+    }
+
+    /// The same face with a surface at rest at the height `level` (m).
+    pub fn level(self, level: f64) -> Self {
+        Self { level: Some(level), ..self }
+    }
+
+    /// The same face, which absorbs waves of this `speed` (m/s).
+    pub fn absorbing(self, speed: f64) -> Self {
+        Self { absorbed_speed: Some(speed), ..self }
+    }
+
+    /// The same face with this factor (–) on its velocity.
+    pub fn factor(self, factor: impl Into<TimeFunction>) -> Self {
+        Self { factor: Some(factor.into()), ..self }
+    }
+
+    /// Distance (m) of `x` (m) beyond the face, positive outside the water.
+    pub(crate) fn beyond(&self, x: &Vector<D>) -> f64 {
+        if self.is_lower { self.at - x[self.axis] } else { x[self.axis] - self.at }
+    }
+
+    /// The sense of the axis out of the water, –.
+    pub(crate) fn outward(&self) -> f64 {
+        if self.is_lower { -1.0 } else { 1.0 }
+    }
+
+    /// The motion of the wave that enters at `x` (m) and time `t` (s); none beyond inflows.
+    fn wave_motion(&self, x: &Vector<D>, t: f64) -> OrbitalMotion {
+        let motion = |(wave, bed): &(WaveOnCurrent, f64)| wave.motion(-self.beyond(x), x[D - 1] - bed, t);
+        self.wave.as_ref().map(motion).unwrap_or_default()
+    }
+
+    /// The prescribed velocity (m/s) out of the water at `x` (m) and time `t` (s).
+    pub(crate) fn outward_velocity(&self, x: &Vector<D>, t: f64) -> Option<f64> {
+        let sense = if self.is_inflow { -1.0 } else { 1.0 };
+        let factor = self.factor.as_ref().map_or(1.0, |factor| factor.value_and_rate(t).0);
+        self.velocity.as_ref().map(|velocity| sense * factor * velocity.value_at(x, t))
+    }
+}
+
+/// Length (m) of the buffers of a model: a whole number of dp, as far as images reach beyond a periodic side.
+pub(crate) fn buffer_length(model: &Model) -> f64 {
+    (WIDTH * model.support_radius() / model.dp - 1e-9).ceil() * model.dp
+}
+
+/// What has passed through a face since the start.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct FaceExchange<const D: usize> {
+    /// Number of particles that have entered.
+    pub entered: u64,
+    /// Number of particles that have left.
+    pub left: u64,
+    /// Momentum of the water that has entered less that of the water that has left, kg m/s (kg/s in 2-D).
+    pub momentum: Vector<D>,
+    /// Energy of the water that has entered less that of the water that has left, J (J/m in 2-D).
+    pub energy: f64,
+}
+
+impl<const D: usize> FaceExchange<D> {
+    /// Nothing yet.
+    fn zero() -> Self {
+        Self { entered: 0, left: 0, momentum: Vector::zeros(), energy: 0.0 }
+    }
+}
+
+/// The particles beyond the faces.
+#[derive(Default)]
+pub(super) struct Buffer<const D: usize> {
+    /// Number of the face of each of them; they follow the water in this order.
+    pub(super) faces: Vec<u8>,
+    /// Time (s) for which the particles were set.
+    pub(super) time: f64,
+    /// Name of the next particle.
+    pub(super) next_id: u32,
+    /// What has passed through each face.
+    pub(super) exchange: Vec<FaceExchange<D>>,
+}
+
+/// What a particle is after the lists were rebuilt.
+enum Place {
+    Water,
+    /// In the buffer of the face of that number.
+    Buffer(u8),
+    Gone,
+}
+
+impl<const D: usize> System<D> {
+    /// The open boundaries.
+    pub fn open_boundaries(&self) -> &[OpenBoundary<D>] {
+        &self.fluid_domain.open_boundaries
+    }
+
+    /// What has passed through each open boundary since the start, in their order.
+    pub fn face_exchange(&self) -> &[FaceExchange<D>] {
+        &self.fluid.buffer.exchange
+    }
+
+    /// Lets particles be as far outside the domain as the buffers reach.
+    pub(super) fn extend_domain_by_buffers(&mut self) {
+        let length = buffer_length(&self.model) + self.model.support_radius();
+        let FluidDomain { domain, open_boundaries, .. } = &mut self.fluid_domain;
+        for face in open_boundaries.iter() {
+            let end = face.at + face.outward() * length;
+            (domain.min[face.axis], domain.max[face.axis]) =
+                (domain.min[face.axis].min(end), domain.max[face.axis].max(end));
+        }
+    }
+
+    /// Puts the water beyond the faces into the buffers, before the first lists are made.
+    pub(super) fn start_buffers(&mut self) {
+        let faces = &self.fluid_domain.open_boundaries;
+        if faces.is_empty() {
+            return;
+        }
+        let beyond = |r: &Vector<D>| faces.iter().position(|face| face.beyond(r) > 0.0);
+        let r = &self.fluid.particles.r;
+        let (buffer, water): (Vec<u32>, Vec<u32>) =
+            (0..r.len() as u32).partition(|&i| beyond(&r[i as usize]).is_some());
+        let numbers = buffer.iter().filter_map(|&i| beyond(&r[i as usize])).map(|face| face as u8).collect();
+        let exchange = vec![FaceExchange::zero(); faces.len()];
+        let order: Vec<u32> = water.into_iter().chain(buffer).collect();
+        self.fluid.buffer = Buffer { faces: numbers, time: 0.0, next_id: order.len() as u32, exchange };
+        self.fluid.permute(&order);
+    }
+
+    /// Sorts the particles of `order` into water and buffers by their places, and appends the sources of new buffer particles.
+    /// Returns the number of these.
+    pub(super) fn exchange_at_faces(&mut self, order: &mut Vec<u32>) -> usize {
+        if self.fluid_domain.open_boundaries.is_empty() {
+            return 0;
+        }
+        let (water, length, mass) = (self.particle_count(), buffer_length(&self.model), self.particle_mass());
+        let mass = mass * self.water_multiplicity();
+        let mut exchange = std::mem::take(&mut self.fluid.buffer.exchange);
+        let (faces, before) = (&self.fluid_domain.open_boundaries, &self.fluid.buffer.faces);
+        let Particles { r, v, rho, .. } = &self.fluid.particles;
+        let (mut inside, mut buffer, mut numbers, mut created) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        for &i in order.iter() {
+            let old = i as usize;
+            let was = old.checked_sub(water).map(|k| before[k]);
+            let place = match was {
+                Some(face) => {
+                    let beyond = faces[face as usize].beyond(&r[old]);
+                    if beyond <= 0.0 {
+                        Place::Water
+                    } else if beyond > length {
+                        Place::Gone
+                    } else {
+                        Place::Buffer(face)
+                    }
+                }
+                None => match faces.iter().position(|face| face.beyond(&r[old]) > 0.0) {
+                    Some(face) if faces[face].beyond(&r[old]) > length => {
+                        exchange[face].count(-1.0, mass, &v[old], self.particle_energy(&r[old], &v[old], rho[old]));
+                        Place::Gone
+                    }
+                    Some(face) => Place::Buffer(face as u8),
+                    None => Place::Water,
+                },
+            };
+            match (was, &place) {
+                (Some(face), Place::Water) => {
+                    let energy = self.particle_energy(&r[old], &v[old], rho[old]);
+                    exchange[face as usize].count(1.0, mass, &v[old], energy);
+                    created.push((i, face));
+                }
+                (None, Place::Buffer(face)) => {
+                    let energy = self.particle_energy(&r[old], &v[old], rho[old]);
+                    exchange[*face as usize].count(-1.0, mass, &v[old], energy);
+                }
+                _ => {}
+            }
+            match place {
+                Place::Water => inside.push(i),
+                Place::Buffer(face) => {
+                    buffer.push(i);
+                    numbers.push(face);
+                }
+                Place::Gone => {}
+            }
+        }
+        inside.extend(buffer);
+        inside.extend(created.iter().map(|(i, _)| i));
+        numbers.extend(created.iter().map(|(_, face)| face));
+        *order = inside;
+        self.fluid.buffer.faces = numbers;
+        self.fluid.buffer.exchange = exchange;
+        created.len()
+    }
+
+    /// The way (m) to new buffer particle `k`, of `created`, from the particle at `source` (m) that has crossed its face.
+    pub(super) fn way_to_created(&self, k: usize, created: usize, source: &Vector<D>) -> Vector<D> {
+        let Buffer { faces, .. } = &self.fluid.buffer;
+        let face = &self.fluid_domain.open_boundaries[faces[faces.len() - created + k] as usize];
+        let mut way = Vector::zeros();
+        way[face.axis] = face.outward() * buffer_length(&self.model);
+        if face.wave.is_some() {
+            // The same place at rest, at the phase of the far end.
+            let rise = |x: &Vector<D>| face.wave_motion(x, self.fluid.buffer.time).rise;
+            way[D - 1] = rise(&(source + way)) - rise(source);
+        }
+        way
+    }
+
+    /// Names the last `created` particles before the images.
+    pub(super) fn name_created(&mut self, created: usize) {
+        let own = self.own_count();
+        let Fluid { particles, buffer, .. } = &mut self.fluid;
+        for id in &mut particles.id[own - created..own] {
+            *id = buffer.next_id;
+            buffer.next_id = buffer.next_id.wrapping_add(1);
+        }
+    }
+
+    /// Sets velocities and densities of the buffer particles at time `t` (s), `dt` (s) after they were set before.
+    pub(crate) fn update_buffer(&mut self, t: f64, dt: f64) {
+        let (water, own) = (self.particle_count(), self.own_count());
+        if water == own {
+            return;
+        }
+        self.fluid.buffer.time = t;
+        let states = (water..own).into_par_iter().map(|i| self.buffer_state(i, t, dt));
+        let states: Vec<(Vector<D>, f64)> = states.collect();
+        let Fluid { particles: Particles { v, rho, .. }, images, .. } = &mut self.fluid;
+        for (i, (velocity, density)) in (water..own).zip(states) {
+            (v[i], rho[i]) = (velocity, density);
+        }
+        for (k, &original) in images.originals.iter().enumerate().filter(|(_, i)| **i as usize >= water) {
+            let original = original as usize;
+            let axes = images.reflections.get(k).copied().unwrap_or(0);
+            (v[own + k], rho[own + k]) = (reflected(axes, v[original]), rho[original]);
+        }
+    }
+
+    /// Velocity (m/s) and density (kg/m³) of buffer particle `i`: see the head of this file.
+    fn buffer_state(&self, i: usize, t: f64, dt: f64) -> (Vector<D>, f64) {
+        let (particles, rho0) = (&self.fluid.particles, self.properties.rho0);
+        let face = &self.fluid_domain.open_boundaries[self.fluid.buffer.faces[i - self.particle_count()] as usize];
+        let (r, before) = (&particles.r[i], &particles.v[i]);
+        let level = face.level.unwrap_or(0.0);
+        let at_rest = |x: &Vector<D>| {
+            let head = (level - x[D - 1]) * -self.properties.gravity[D - 1];
+            self.equation_of_state.hydrostatic_compression(head)
+        };
+        let mut place = *r;
+        place[face.axis] = face.at - face.outward() * OBSERVATION * self.model.h;
+        let (mut volume, mut velocity, mut compression) = (0.0, Vector::<D>::zeros(), 0.0);
+        self.visit_fluid_near(&place, &mut |b, x, w| {
+            let share = w / particles.rho[b];
+            volume += share;
+            velocity += self.velocity_seen_at(b, x) * share;
+            compression += (particles.rho[b] / rho0 - 1.0 - at_rest(x)) * share;
+        });
+        let beside = volume * self.particle_mass() >= BESIDE;
+        let (velocity, compression) = if beside { (velocity / volume, compression / volume) } else { (*before, 0.0) };
+        let density = |x: f64| rho0 * (1.0 + at_rest(r) + x);
+        let Some(prescribed) = face.outward_velocity(r, t) else {
+            let held = face.level.is_some();
+            return (velocity, density(if held { 0.0 } else { compression }));
+        };
+        let wave = face.wave_motion(r, t);
+        let prescribed = prescribed - wave.along;
+        let mut along = Vector::zeros();
+        along[face.axis] = face.outward();
+        let outward = match face.absorbed_speed {
+            None => prescribed,
+            Some(speed) => {
+                // What it yields to waves that leave, at first and now.
+                let then = face.outward_velocity(r, t - dt).unwrap_or(0.0) - face.wave_motion(r, t - dt).along;
+                let yielded = before.dot(&along) - then;
+                let target = (self.properties.c0.powi(2) * compression - wave.pressure) / speed;
+                let part = if dt > 0.0 { (dt * speed / (RESPONSE * self.model.h)).min(1.0) } else { 1.0 };
+                prescribed + yielded + (target - yielded) * part
+            }
+        };
+        let mut velocity = along * outward;
+        velocity[D - 1] += wave.up;
+        (velocity, density(compression))
+    }
+}
+
+impl<const D: usize> FaceExchange<D> {
+    /// Counts a particle that enters (`sense` 1) or leaves (−1).
+    fn count(&mut self, sense: f64, mass: f64, v: &Vector<D>, energy: f64) {
+        if sense > 0.0 {
+            self.entered += 1;
+        } else {
+            self.left += 1;
+        }
+        self.momentum += v * (sense * mass);
+        self.energy += sense * energy;
+    }
+}
+
+/// Refuses open boundary number `i` of a setup if it cannot be.
+///
+/// # Errors
+/// `Scene` if the face is not vertical, lies across a periodic side or a symmetry plane, has no water on one of its sides, is too near
+/// to the end of a solid, or lets water pass faster than the valid range of the water allows.
+pub(crate) fn check<const D: usize>(setup: &Setup<D>, i: usize) -> Result<()> {
+    let (face, length) = (&setup.open_boundaries[i], setup.buffer_length());
+    let (name, axis, at) = (&face.name, face.axis, face.at);
+    if axis + 1 >= D || !at.is_finite() || setup.open_boundaries.len() > usize::from(u8::MAX) {
+        let what = format!("open boundary {name:?} needs a finite coordinate along a horizontal axis");
+        return Err(Error::scene(what));
+    }
+    let along = ["x", "y"][axis];
+    if setup.periodic[axis].is_some() || setup.symmetry[axis].is_some() {
+        let what = format!("open boundary {name:?} lies across {along}, which is periodic or has a symmetry plane");
+        let help =
+            format!("leave  periodic.{along}  and  symmetry.{along}  out; [current] drives a flow along a period");
+        return Err(Error::scene(what).with_code(ErrorCode::ConflictingKeys).help(help));
+    }
+    let beyond: Vec<f64> = setup.water.iter().map(|r| face.beyond(r)).collect();
+    let farthest = beyond.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    if !(farthest > 0.0 && beyond.iter().any(|beyond| *beyond < 0.0)) {
+        let what = format!("open boundary {name:?} at {along} = {at} has no water on both of its sides");
+        let help = "the water ends at the face, and neither it nor the buffer beyond it lies in a solid";
+        return Err(Error::scene(what).help(help));
+    }
+    if farthest > length {
+        let end = at + face.outward() * farthest;
+        let what = format!("water reaches from open boundary {name:?} at {along} = {at} to {end:.6}");
+        let help = format!("the buffer beyond a face is {length:.6} m long: move the face, or end the water there");
+        return Err(Error::scene(what).help(help));
+    }
+    for solid in &setup.solids {
+        let Bounds { min, max } = solid.shape.bounds_at(&solid.initial_kinematics().pose);
+        let ends = [min[axis], max[axis]].map(|x| (x - at) * face.outward());
+        if !ends.iter().any(|beyond| *beyond > 1e-6 * setup.model.dp && *beyond < length * (1.0 - 1e-9)) {
+            continue;
+        }
+        let end = at + face.outward() * length;
+        let what = format!("solid {:?} ends in the buffer of open boundary {name:?}", solid.name);
+        let help = match solid.role {
+            Role::Free(_) => format!("keep it on the water's side of {along} = {at}"),
+            _ => format!("let it reach to {along} = {end:.6} or further, or end at {along} = {at}"),
+        };
+        return Err(Error::scene(what).help(help));
+    }
+    let fastest = setup.water.iter().zip(&beyond).filter(|(_, beyond)| **beyond > 0.0);
+    let fastest = fastest.filter_map(|(r, _)| face.outward_velocity(r, 0.0)).map(f64::abs).fold(0.0, nan_max);
+    let most = FASTEST * setup.model.c0;
+    if fastest.is_nan() || fastest > most {
+        let what =
+            format!("water passes open boundary {name:?} at {fastest:.4} m/s; the speed of sound allows {most:.4}");
+        let help = format!("write  model.c0 = {:.3}  or more", fastest / SOUND);
+        return Err(Error::scene(what).with_code(ErrorCode::OutOfRange).help(help));
+    }
+    match face.absorbed_speed {
+        Some(speed) if !(speed > 0.0 && speed.is_finite()) => {
+            Err(Error::scene(format!("open boundary {name:?} absorbs waves of a positive speed, not {speed}")))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// The greater of two numbers, or NaN if one is.
+fn nan_max(a: f64, b: f64) -> f64 {
+    if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) }
+}

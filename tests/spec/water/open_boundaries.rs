@@ -1,0 +1,244 @@
+//! Open boundaries, currents and towed frames: levels, books, bits, theory and refused input.
+
+use pontoon::{
+    geometry::Shape,
+    math::{
+        Pose, Vector,
+        expression::{Formula, UnsteadyField},
+    },
+    model::{Diffusion, Model, PairLoopKind, Slip, TimeScheme, Viscosity},
+    simulation::{Current, OpenBoundary, Setup, Simulation, TowedFrame},
+    solid::{Role, SolidSpec},
+    sph::viscosity::Laminar,
+};
+
+use crate::common;
+
+const DP: f64 = 0.05;
+const DEPTH: f64 = 0.5;
+const LENGTH: f64 = 2.0;
+
+/// A bed whose top is at y = 0, from `from` to `to` (m).
+fn bed(from: f64, to: f64) -> SolidSpec<2> {
+    let shape = Shape::Box { size: Vector::from([to - from, 0.3]) };
+    common::solid("bed", shape, Pose::at(Vector::from([0.5 * (from + to), -0.15])), Role::Fixed)
+}
+
+/// A channel with water of the depth 0.5 m that flows with `speed` (m/s) from x = 0 to 2 m.
+fn channel(model: Model, speed: f64) -> Setup<2> {
+    let length = Setup::<2>::new(model.clone()).buffer_length();
+    let water = common::lattice([-length, 0.0], [LENGTH + 2.0 * length, DEPTH], DP);
+    let setup = Setup::new(model).solid(bed(-3.0, LENGTH + 3.0)).water(water, DEPTH);
+    let wave = (9.81 * DEPTH).sqrt();
+    setup
+        .velocity(|_| Vector::from([speed, 0.0]))
+        .open_boundary(OpenBoundary::inflow("inlet", 0, 0.0, UnsteadyField::constant(speed)).level(DEPTH))
+        .open_boundary(
+            OpenBoundary::outflow("outlet", 0, LENGTH, Some(UnsteadyField::constant(speed)))
+                .level(DEPTH)
+                .absorbing(wave),
+        )
+}
+
+fn run_to(sim: &mut Simulation<2>, end: f64) {
+    while sim.time() < end {
+        sim.step_to(end).expect("a sound run");
+    }
+}
+
+/// The number of particles that the faces and the start give the water.
+fn expected_count(sim: &Simulation<2>, start: usize) -> i64 {
+    let exchange = sim.system().face_exchange();
+    start as i64 + exchange.iter().map(|face| face.entered as i64 - face.left as i64).sum::<i64>()
+}
+
+#[test]
+fn a_uniform_flow_keeps_its_level_and_speed_and_its_books_close_exactly() {
+    for pair_loop in [PairLoopKind::Reference, PairLoopKind::Fast] {
+        let speed = 1.0;
+        let model = Model::water(2, DP, DEPTH).pair_loop(pair_loop);
+        let mut sim = Simulation::new(channel(model, speed)).expect("a sound setup");
+        let start = sim.system().fluid().len();
+        assert_eq!(start, (LENGTH / DP * DEPTH / DP).round() as usize, "the water between the faces");
+        run_to(&mut sim, 3.0 * LENGTH / speed);
+        let fluid = sim.system().fluid();
+        assert_eq!(fluid.len() as i64, expected_count(&sim, start));
+        // The inflow is exact to the rows that cross between two rebuilds of the lists.
+        let entered = sim.system().face_exchange()[0].entered as f64;
+        assert!((entered / (3 * start) as f64 - 1.0).abs() < 0.02, "{entered} of {}", 3 * start);
+        // One row more or less at each face is 2.5 % of 40 rows between two rebuilds of the lists.
+        let level = fluid.len() as f64 / start as f64;
+        assert!((level - 1.0).abs() < 0.03, "{pair_loop:?}: the volume is {level} of that at the start");
+        let mean = fluid.v.iter().map(|v| v[0]).sum::<f64>() / fluid.len() as f64;
+        assert!((mean - speed).abs() < 0.01 * speed, "{pair_loop:?}: {mean} m/s");
+        let mut ids = fluid.id.to_vec();
+        ids.sort_unstable();
+        assert!(ids.windows(2).all(|pair| pair[0] < pair[1]), "every name is there once");
+    }
+}
+
+#[test]
+fn hydrostatic_water_behind_an_inflow_at_rest_stays_at_rest() {
+    let mut setup = channel(Model::water(2, DP, DEPTH), 0.0);
+    for face in &mut setup.open_boundaries {
+        face.absorbed_speed = None;
+    }
+    let mut sim = Simulation::new(setup).expect("a sound setup");
+    run_to(&mut sim, 2.0);
+    let fastest = sim.system().fluid().v.iter().map(Vector::norm).fold(0.0, f64::max);
+    // A closed tank of this spacing has a hundredth of √(g d), 2.2 m/s, at the most.
+    assert!(fastest < 0.02, "{fastest} m/s");
+    assert!(sim.system().face_exchange().iter().all(|face| face.entered == 0 && face.left == 0));
+}
+
+#[test]
+fn a_channel_has_the_same_bits_on_any_number_of_threads_and_after_a_restart() {
+    for scheme in [TimeScheme::Symplectic, TimeScheme::Verlet { euler_every: 50 }] {
+        let build = || {
+            let mut model = Model::water(2, DP, DEPTH);
+            (model.scheme, model.cfl) = (scheme, 0.2);
+            Simulation::new(channel(model, 1.0)).expect("a sound setup")
+        };
+        let on = |threads: usize| {
+            common::on_threads(threads, || {
+                let mut sim = build();
+                common::steps(&mut sim, 150);
+                let saved = sim.save().expect("a state");
+                common::steps(&mut sim, 150);
+                (saved, sim.save().expect("a state"), sim.system().face_exchange()[0].entered)
+            })
+        };
+        let (saved, whole, entered) = on(1);
+        assert!(entered > 0, "water has entered");
+        assert!(on(3) == (saved.clone(), whole.clone(), entered));
+        let mut resumed = build();
+        resumed.restore(&saved).expect("a state of this setup");
+        common::steps(&mut resumed, 150);
+        assert!(resumed.save().expect("a state") == whole, "{scheme:?}");
+    }
+}
+
+#[test]
+fn open_boundaries_that_cannot_be_are_refused_with_the_number_that_would_do() {
+    let refused = |setup: Setup<2>| {
+        let error = Simulation::new(setup).err().expect("refused");
+        format!("{} {}", error.message, error.help.unwrap_or_default())
+    };
+    let usual = || channel(Model::water(2, DP, DEPTH), 1.0);
+    let mut fast = usual();
+    fast.open_boundaries[0].velocity = Some(UnsteadyField::constant(10.0));
+    assert!(refused(fast).contains("model.c0 = 100"));
+    let periodic = usual().periodic(0, 0.0, LENGTH);
+    assert!(refused(periodic).contains("periodic"));
+    let mut short = usual();
+    short.solids[0] = bed(-0.2, LENGTH + 3.0);
+    let text = refused(short);
+    let length = usual().buffer_length();
+    assert!(text.contains(&format!("{:.6}", -length)), "{text}");
+    let mut dry = usual();
+    dry.open_boundaries[1].at = 10.0;
+    assert!(refused(dry).contains("no water on both"));
+    let mut far = usual();
+    far.open_boundaries[1].at = 1.0;
+    assert!(refused(far).contains("the buffer beyond a face"));
+}
+
+#[test]
+fn the_force_that_holds_a_discharge_is_the_drag_of_poiseuille_flow() {
+    // Between plates: Q = a H³/(12 ν).
+    let (height, length, nu) = (1.0, 0.5, 0.1);
+    let discharge = 0.5;
+    let mut model = Model::water(2, DP, 1.0).gravity([0.0, 0.0]).diffusion(Diffusion::None);
+    (model.c0, model.viscosity, model.slip) = (20.0, Viscosity::Laminar(Laminar { nu0: nu }), Slip::None);
+    let slab = |name: &str, y: f64| {
+        let shape = Shape::Box { size: Vector::from([3.0, 0.2]) };
+        common::solid(name, shape, Pose::at(Vector::from([0.0, y])), Role::Fixed)
+    };
+    let setup = Setup::new(model)
+        .water(common::lattice([0.0, 0.0], [length, height], DP), 0.0)
+        .solids([slab("bottom", -0.1), slab("top", height + 0.1)])
+        .periodic(0, 0.0, length)
+        .current(Current::new(0, discharge, 0.2));
+    let mut sim = Simulation::new(setup).expect("a sound setup");
+    run_to(&mut sim, 3.0);
+    let held = sim.system().discharge(0).expect("a period");
+    assert!((held / discharge - 1.0).abs() < 1e-3, "{held} m²/s");
+    let theory = 12.0 * nu * discharge / height.powi(3);
+    let force = sim.system().current_acceleration();
+    assert!((force / theory - 1.0).abs() < 0.02, "{force} m/s² of {theory}");
+}
+
+#[test]
+fn in_a_towed_frame_water_at_rest_flows_back_with_the_velocity_of_the_carriage() {
+    let setup = Setup::new(Model::water(2, DP, DEPTH))
+        .solid(bed(-2.0, 4.0))
+        .water(common::lattice([0.0, 0.0], [LENGTH, DEPTH], DP), DEPTH)
+        .periodic(0, 0.0, LENGTH)
+        .towed(TowedFrame::new(0, Formula::parse("0.5*(1-cos(pi*t))").expect("a formula")));
+    let mut sim = Simulation::new(setup).expect("a sound setup");
+    run_to(&mut sim, 1.0);
+    let fluid = sim.system().fluid();
+    let mean = fluid.v.iter().map(|v| v[0]).sum::<f64>() / fluid.len() as f64;
+    // The frame moves with 1 m/s then; the force is taken in the middle of each step.
+    assert!((mean + 1.0).abs() < 1e-3, "{mean} m/s");
+}
+
+/// A scene of a channel with these faces.
+fn scene(faces: &str) -> String {
+    format!(
+        r#"
+        dimension = 2
+        dp = 0.05
+        until = 1.0
+        {faces}
+        [[water]]
+        fill = {{ box = {{ min = [0.0, 0.0], max = [2.0, 0.5] }} }}
+        velocity = [1.0, 0.0]
+        [[solid]]
+        name = "bed"
+        fixed = true
+        shape = {{ box = {{ size = [6.0, 0.3] }} }}
+        at = {{ x = 1.0, y = -0.15 }}
+        "#
+    )
+}
+
+#[test]
+fn a_scene_fills_the_buffers_beyond_its_faces() {
+    let faces = "inflow = [{ x = 0.0, velocity = 1.0 }]\noutflow = [{ x = 2.0, velocity = \"1.0\" }]";
+    let sim = common::scene_simulation::<2>(&scene(faces)).expect("a sound scene");
+    let names: Vec<&str> = sim.system().open_boundaries().iter().map(|face| face.name.as_str()).collect();
+    assert_eq!(names, ["inflow", "outflow"]);
+    assert_eq!(sim.system().fluid().len(), 400, "buffers are not counted as water");
+    let [inflow, outflow] = sim.system().open_boundaries() else { panic!("two faces") };
+    assert!(inflow.absorbed_speed.is_none(), "an inflow keeps its velocity");
+    let speed = outflow.absorbed_speed.expect("an outflow lets waves leave");
+    assert!((speed - (9.81f64 * 0.5).sqrt()).abs() < 1e-12, "{speed} m/s, that of long waves");
+}
+
+#[test]
+fn faces_of_a_scene_that_cannot_be_are_refused_with_their_key_and_a_remedy() {
+    for (faces, key, remedy) in [
+        ("inflow = [{ x = 0.0 }]", "inflow.0", "velocity = 0.5"),
+        ("inflow = [{ velocity = 1.0 }]", "inflow.0", "x = 0.0"),
+        ("inflow = [{ x = 0.3, velocity = 1.0 }]", "inflow.0.x", "x = 0"),
+        ("inflow = [{ x = 0.0, velocity = 1.0, level = 0.7 }]", "inflow.0.level", "level = 0.5"),
+        ("inflow = [{ y = 0.0, velocity = 1.0 }]", "inflow.0.y", "x = 0.0"),
+        ("inflow = [{ x = 0.0, velocity = \"1.0*q\" }]", "inflow.0.velocity", "t"),
+        ("inflow = [{ x = 0.0, velocity = 9.0 }]", "inflow.0", "model.c0 = 90"),
+        ("outflow = [{ x = 2.0, absorb = true }]", "outflow.0", "velocity = 0.5"),
+        ("outflow = [{ x = 2.0, wave = { height = 0.1, period = 1.0 } }]", "outflow.0.wave", "[[inflow]]"),
+        (
+            "inflow = [{ x = 0.0, velocity = -1.0, wave = { height = 0.1, period = 1.0 } }]",
+            "inflow.0.wave.period",
+            "period = ",
+        ),
+        ("current = { along = \"x\", discharge = 0.5 }", "current.along", "periodic = { x"),
+        ("towed = { along = \"y\", velocity = 1.0 }", "towed.along", "along = \"x\""),
+    ] {
+        let error = common::scene_simulation::<2>(&scene(faces)).err().expect(faces);
+        let place = error.location.as_ref().map(|place| place.key.clone()).unwrap_or_default();
+        assert!(place.starts_with(key), "{faces}: {place}: {}", error.message);
+        assert!(error.help.as_deref().unwrap_or_default().contains(remedy), "{faces}: {:?}", error.help);
+    }
+}
