@@ -36,7 +36,8 @@ fn sea<const D: usize>(x: &Vector<D>, bed: f64) -> NodeSurroundings<D> {
 /// anchor at rest, for the chain of MoorDyn's tests `quasi_static_chain`.
 fn chain([x, depth, length]: [f64; 3], segments: usize, rest: [f64; 2], motion: &str, series: &str) -> (f64, [f64; 2]) {
     let mut kind = LineType::new(0.252, 390.0, 1.674e9);
-    (kind.drag, kind.added_mass) = ([1.37, 0.64], [1.0, 0.0]);
+    // The table's 0.64 is 1.15/1.8, the longitudinal coefficient of studless chain on the area d l; ours acts on π d l.
+    (kind.drag, kind.added_mass) = ([1.37, 0.64 / std::f64::consts::PI], [1.0, 0.0]);
     // OrcaFlex gives a studless chain the contact diameter of its links: 3.35 bars of 0.252/1.8 m.
     kind.contact_diameter = Some(3.35 / 1.8 * 0.252);
     (kind.bed_stiffness, kind.bed_damping, kind.bed_friction) = (1e5, 1e4, 0.5);
@@ -111,41 +112,35 @@ fn jumper<const D: usize>(segments: usize, along: usize, series: &str) -> (f64, 
 const MOTION_A1: &str = include_str!("../../../references/mooring_chain_fairlead_motion_a1.csv");
 const MOTION_A2: &str = include_str!("../../../references/mooring_chain_fairlead_motion_a2.csv");
 
-/// OrcaFlex: at rest within 0.2 % (bound 1 %; the promise is 3 %). In motion the errors are 7.7 % and 6.1 % of the range (promise 8 %)
-/// for 50 m and 600 m, and 8.3 % and 9.6 % for the strong motion in 50 m and for 200 m, where the bed holds tension that the line
-/// had before it was laid down. MoorDyn allows itself 15 %.
+/// OrcaFlex: at rest within 0.2 % (bound 1 %; the promise is 3 %), in motion within 8 % of the range. In 50 m the segments are 5 m
+/// long: where the chain is laid down, segments of 10 m beat on the bed, 8.3 % of the range in the strong motion.
 #[test]
 #[cfg_attr(debug_assertions, ignore = "a minute without optimization: cargo test --release --lib")]
 fn chains_that_heave_follow_orcaflex() {
-    let shallow = |motion: &str, series: &str| chain([400.0, 50.0, 410.0], 41, [991.6, 826.2], motion, series);
+    let shallow = |motion: &str, series: &str| chain([400.0, 50.0, 410.0], 82, [991.6, 826.2], motion, series);
+    let deep = |place: [f64; 3], segments: usize, rest: [f64; 2], series: &str| {
+        chain(place, segments, rest, MOTION_A1, series)
+    };
     let cases = [
-        (shallow(MOTION_A1, include_str!("../../../references/mooring_chain_50m_a1.csv")), 0.08),
-        (shallow(MOTION_A2, include_str!("../../../references/mooring_chain_50m_a2.csv")), 0.09),
-        (
-            chain(
-                [700.0, 200.0, 760.0],
-                76,
-                [2065.4, 1402.2],
-                MOTION_A1,
-                include_str!("../../../references/mooring_chain_200m_a1.csv"),
-            ),
-            0.10,
+        shallow(MOTION_A1, include_str!("../../../references/mooring_chain_50m_a1.csv")),
+        shallow(MOTION_A2, include_str!("../../../references/mooring_chain_50m_a2.csv")),
+        deep(
+            [700.0, 200.0, 760.0],
+            76,
+            [2065.4, 1402.2],
+            include_str!("../../../references/mooring_chain_200m_a1.csv"),
         ),
-        (
-            chain(
-                [1500.0, 600.0, 1700.0],
-                170,
-                [5232.6, 3244.2],
-                MOTION_A1,
-                include_str!("../../../references/mooring_chain_600m_a1.csv"),
-            ),
-            0.08,
+        deep(
+            [1500.0, 600.0, 1700.0],
+            170,
+            [5232.6, 3244.2],
+            include_str!("../../../references/mooring_chain_600m_a1.csv"),
         ),
     ];
-    for (i, ((error, rest), bound)) in cases.into_iter().enumerate() {
+    for (i, (error, rest)) in cases.into_iter().enumerate() {
         println!("chain {i}: {error:.3} of the range, at rest {rest:.4?}");
         assert!(rest.iter().all(|error| error.abs() < 0.01), "chain {i} at rest: {rest:?}");
-        assert!(error < bound, "chain {i}: {error} of the range");
+        assert!(error < 0.08, "chain {i}: {error} of the range");
     }
 }
 
