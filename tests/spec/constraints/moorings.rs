@@ -119,6 +119,124 @@ fn a_driven_solid_moves_its_line() -> Result<()> {
     Ok(())
 }
 
+/// A driven solid that stands still, in place of the free box.
+fn standing() -> String {
+    MOORED.replace(
+        "at = { x = 0.8, draft = \"equilibrium\" }\nfree = { density = 500.0, velocity = [0.2, 0.0] }",
+        "at = { x = 0.8, y = 0.3 }\ndriven = { along = [1.0, 0.0], distance = { formula = \"0\" } }",
+    )
+}
+
+/// A line begins at rest at its time, with the force of the static line, and has none after its end.
+#[test]
+fn a_line_acts_from_since_until() -> Result<()> {
+    let scene = standing().replacen("length = 0.75", "length = 0.75\nsince = 0.05\nuntil = 0.15", 1);
+    let mut sim = scene_simulation::<2>(&scene)?;
+    let probe = MooringProbe::new(sim.system(), "west")?;
+    let other = MooringProbe::new(sim.system(), "east")?;
+    assert!(probe.sample(&sim).iter().all(|x| *x == 0.0) && sim.mooring_reading(0).nodes.is_empty());
+    run_to(&mut sim, 0.1)?;
+    let [west, east] = [&probe, &other].map(|probe| probe.sample(&sim)[0]);
+    assert!((west / east - 1.0).abs() < 0.05, "both lines hang alike: {west} N, {east} N");
+    run_to(&mut sim, 0.2)?;
+    assert!(probe.sample(&sim).iter().all(|x| *x == 0.0), "it has ended");
+    let events: Vec<String> = sim.events().iter().map(ToString::to_string).collect();
+    assert!(events.len() == 2 && events.iter().all(|event| event.contains("west")), "{events:?}");
+    Ok(())
+}
+
+/// A winch that hauls in slowly passes through the static tensions: after it has hauled in 0.03 m the line has the tension of one that is
+/// 0.03 m shorter.
+#[test]
+fn a_winch_changes_the_tension() -> Result<()> {
+    let winch = "length = 0.75\npaid_out = { formula = \"-0.1*min(t,0.3)\" }";
+    let mut sim = scene_simulation::<2>(&standing().replacen("length = 0.75", winch, 1))?;
+    run_to(&mut sim, 0.4)?;
+    let short = scene_simulation::<2>(&standing().replacen("length = 0.75", "length = 0.72", 1))?;
+    let [hauled, short] = [&sim, &short].map(|sim| sim.mooring_reading(0).end_forces[0].norm());
+    assert!((hauled / short - 1.0).abs() < 0.05, "{hauled} N after hauling in, {short} N of the short line");
+    Ok(())
+}
+
+/// Two anchor legs and a hawser that meet in a weight.
+const BRIDLE: &str = r#"
+[[mooring_point]]
+name = "joint"
+at = [0.45, 0.15]
+mass = 0.1
+volume = 2e-5
+[[mooring]]
+name = "hawser"
+between = ["box", "joint"]
+from = [0.65, 0.3]
+length = 0.3
+line = "chain"
+segments = 8
+[[mooring]]
+name = "leg"
+between = ["joint"]
+to = [0.2, 0.0]
+length = 0.3
+line = "chain"
+segments = 8
+[[mooring]]
+name = "short-leg"
+between = ["joint"]
+to = [0.35, 0.0]
+length = 0.2
+line = "chain"
+segments = 6
+"#;
+
+/// At rest the pulls of the lines that meet carry the weight of the point, and in motion the momentum of the box closes with them.
+#[test]
+fn lines_meet_in_a_point() -> Result<()> {
+    let mut sim = scene_simulation::<2>(&format!("{MOORED}{BRIDLE}"))?;
+    let lines: Vec<_> = (2..5).map(|line| sim.mooring_reading(line)).collect();
+    // The node of the point carries half a segment of each line beside its own weight.
+    let segments = [0.3 / 8.0, 0.3 / 8.0, 0.2 / 6.0];
+    let weight = (0.1 - 1000.0 * 2e-5) * 9.81 + WEIGHT * 0.5 * segments.iter().sum::<f64>();
+    let pull = -(lines[0].end_forces[1] + lines[1].end_forces[0] + lines[2].end_forces[0]);
+    let lying = lines.iter().any(|line| line.nodes.last() == lines[0].nodes.last() && line.on_bed > 0.0);
+    assert!(pull[0].abs() < 1e-3 * weight, "no pull to a side: {pull}");
+    assert!(lying || (pull[1] / -weight - 1.0).abs() < 0.02, "the lines bear {pull}, and {weight} N weigh");
+    sim.enable_load_breakdown();
+    run_to(&mut sim, 0.1)?;
+    let shares = sim.load_breakdown(1).unwrap();
+    let size = shares.kinds().into_iter().map(|(_, load)| load.force.norm()).fold(0.0, f64::max);
+    assert!(shares.residual().force.norm() < 1e-9 * size, "{}", shares.residual().force);
+    let ends = [sim.mooring_reading(2).nodes[8], sim.mooring_reading(3).nodes[0], sim.mooring_reading(4).nodes[0]];
+    assert!(ends[0] == ends[1] && ends[0] == ends[2], "the ends are in one place: {ends:?}");
+    Ok(())
+}
+
+/// Faulty points, tables and winches are refused with their line and the remedy.
+#[test]
+fn faulty_points_and_tables_are_refused() {
+    let whole = format!("{MOORED}{BRIDLE}");
+    let message = |from: &str, to: &str| {
+        assert!(whole.contains(from), "{from}");
+        let text = whole.replacen(from, to, 1);
+        let built = Scene::parse(&text, Path::new(""), &[]).and_then(|scene| scene.build::<2>());
+        built.err().unwrap_or_else(|| panic!("{to} is accepted")).to_string()
+    };
+    assert!(
+        message("between = [\"joint\"]\nto = [0.2", "between = [\"joint\"]\nfrom = [0.4, 0.1]\nto = [0.2")
+            .contains("leave out from")
+    );
+    assert!(
+        message("between = [\"box\", \"joint\"]\nfrom = [0.65, 0.3]", "between = [\"box\", \"joint\"]")
+            .contains("from is missing")
+    );
+    assert!(message("name = \"leg\"", "name = \"leg\"\nuntil = 0.2").contains("leave out since and until"));
+    assert!(message("name = \"joint\"", "name = \"box\"").contains("a solid is called"));
+    assert!(message("mass = 0.1", "mass = -0.1").contains("mass must be 0 or more"));
+    assert!(message("stiffness = 2e3", "stiffness = [[0.0, 1.0], [0.1, 2.0]]").contains("[0, 0]"));
+    assert!(message("length = 0.75", "length = 0.75\npaid_out = { formula = \"0.1*\" }").contains("formula"));
+    let lonely = "[[mooring_point]]\nname = \"lonely\"\nat = [0.5, 0.1]\n[[mooring_point]]\nname = \"joint\"";
+    assert!(message("[[mooring_point]]\nname = \"joint\"", lonely).contains("joins 0 lines"));
+}
+
 /// What a user may get wrong is refused with its line and the remedy.
 #[test]
 fn faulty_moorings_are_refused() {

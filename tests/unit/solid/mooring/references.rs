@@ -159,3 +159,74 @@ fn a_flexible_jumper_follows_low_and_langley() {
     println!("jumper along y: {error:.2} kN");
     assert!(error < 1.0, "{error} kN");
 }
+
+/// Lines on random decks against MoorDyn: `tests/moordyn_check.py` writes decks and tensions to the folder `MOORDYN_DECKS`.
+#[test]
+#[ignore = "needs decks: python3 tests/moordyn_check.py"]
+fn lines_follow_moordyn() {
+    let folder = std::env::var("MOORDYN_DECKS").unwrap();
+    let decks = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let mut decks: Vec<_> = decks.filter(|path| path.extension().is_some_and(|ext| ext == "csv")).collect();
+    decks.sort();
+    assert!(!decks.is_empty());
+    let errors = decks.iter().map(|path| deck_error(&std::fs::read_to_string(path).unwrap()));
+    let errors: Vec<f64> = errors.collect();
+    println!("decks: {errors:.4?}");
+    assert!(errors.iter().all(|error| *error < 0.02), "{errors:?} of the range");
+}
+
+/// Largest error of the tension at the fairlead over its range. The first row of `text` has the numbers of the deck, the others time
+/// (s) and tension (N).
+fn deck_error(text: &str) -> f64 {
+    let rows = table(text);
+    let [
+        depth,
+        top,
+        x,
+        length,
+        segments,
+        diameter,
+        mass,
+        stiffness,
+        zeta,
+        drag,
+        added,
+        drag_axial,
+        surge,
+        heave,
+        period,
+    ] = rows[0][..]
+    else {
+        panic!("{} columns", rows[0].len())
+    };
+    let mut kind = LineType::new(diameter, mass, stiffness);
+    (kind.drag, kind.added_mass) = ([drag, drag_axial], [added, 0.0]);
+    (kind.bed_stiffness, kind.bed_damping) = (1e5, 1e4);
+    kind.damping = LineDamping::OfCritical(zeta);
+    let material = kind.material(length / segments, 1025.0);
+    let gravity = Vector::from([0.0, -9.81]);
+    let around = |x: &Vector<2>| NodeSurroundings { wet: 1.0, ..sea(x, -depth) };
+    let ends = [[0.0, top].into(), [x, -depth].into()];
+    let mut line = MooringLine::<2>::straight(material, length, segments as usize, ends);
+    assert!(line.find_rest(&around, &gravity) < 1e-6);
+    let place = |t: f64| {
+        let ramp = (t / period).min(1.0);
+        let (ramp, phase) = (ramp * ramp * (3.0 - 2.0 * ramp), std::f64::consts::TAU * t / period);
+        Vector::from([surge * ramp * phase.sin(), top + heave * ramp * (1.0 - phase.cos())])
+    };
+    let (mut worst, mut low, mut high) = (0.0f64, f64::INFINITY, f64::NEG_INFINITY);
+    for pair in rows[1..].windows(2) {
+        // Ten steps between two rows; MoorDyn moves the fairlead evenly between them.
+        let (from, to) = (place(pair[0][0]), place(pair[1][0]));
+        for k in 1..=10 {
+            let near: Vec<_> = line.state.x.iter().map(around).collect();
+            let there = from + (to - from) * (f64::from(k) / 10.0);
+            line.advance([there, ends[1]], (pair[1][0] - pair[0][0]) / 10.0, &near, &gravity);
+        }
+        // MoorDyn gives the tension of the last segment.
+        let own = line.tension(0);
+        worst = worst.max((own - pair[1][1]).abs());
+        (low, high) = (low.min(pair[1][1]), high.max(pair[1][1]));
+    }
+    worst / (high - low)
+}
