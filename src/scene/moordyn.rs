@@ -24,7 +24,9 @@ enum Section {
 }
 
 /// Words by which the head of a section is known, in the order in which they are looked for.
-const SECTIONS: [(&str, Section); 16] = [
+const SECTIONS: [(&str, Section); 17] = [
+    ("NEED THIS", Section::None),
+    ("EXTERNAL", Section::Other("external loads")),
     ("LINE TYPE", Section::LineTypes),
     ("LINE DICTIONARY", Section::LineTypes),
     ("ROD TYPE", Section::Other("rod types")),
@@ -40,7 +42,6 @@ const SECTIONS: [(&str, Section); 16] = [
     ("LINE", Section::Lines),
     ("OPTION", Section::Options),
     ("OUTPUT", Section::None),
-    ("NEED THIS", Section::None),
 ];
 
 /// A type of line in a deck.

@@ -101,7 +101,7 @@ fn what_cannot_be_taken_over_is_refused() {
         made.err().unwrap_or_else(|| panic!("{to} is accepted")).to_string()
     };
     let near = message("3   hawser    3", "3   hauser    3");
-    assert!(near.contains("hawser") && near.contains("lines.txt:21"), "{near}");
+    assert!(near.contains("hawser") && near.contains("lines.txt:20"), "{near}");
     assert!(message("1        3        17.5", "R1A      3        17.5").contains("R1A"));
     assert!(message("4   Coupled ", "4   Body1   ").contains("Body1"));
     assert!(message("1.674e6 ", "1e6|2e6 ").contains("viscoelastic"));
