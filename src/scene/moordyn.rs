@@ -234,8 +234,7 @@ impl Deck {
     /// # Errors
     /// `Scene` if a free point ends one line alone, or a line ends on fixed points alone.
     pub(crate) fn to_toml(&self, solid: &str, level: f64) -> Result<String> {
-        let mut text =
-            String::from("# Mooring lines of a MoorDyn deck. z is the height above the bottom of the scene.\n");
+        let mut text = format!("# Mooring lines of a MoorDyn deck, with still water at the height {level:?} m.\n");
         for (value, name) in &self.options {
             let known = ["kbot", "cbot", "FrictionCoefficient"];
             if !known.iter().any(|known| known.eq_ignore_ascii_case(name)) {
