@@ -164,13 +164,10 @@ impl Junctions {
         let (mut matrix, mut right) = (DMatrix::zeros(size, size), DVector::zeros(size));
         for (&i, line) in self.lines.iter().zip(&condensed) {
             let points = self.points_of(i);
-            for k in 0..2 {
-                let Some(p) = points[k] else { continue };
+            for (k, p) in points.iter().enumerate().filter_map(|(k, p)| Some((k, (*p)?))) {
                 right.fixed_rows_mut::<D>(D * p).add_assign(&line.impulse[k]);
-                for l in 0..2 {
-                    if let Some(q) = points[l] {
-                        matrix.fixed_view_mut::<D, D>(D * p, D * q).add_assign(&line.matrix[k][l]);
-                    }
+                for (l, q) in points.iter().enumerate().filter_map(|(l, q)| Some((l, (*q)?))) {
+                    matrix.fixed_view_mut::<D, D>(D * p, D * q).add_assign(&line.matrix[k][l]);
                 }
             }
         }
