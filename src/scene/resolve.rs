@@ -97,8 +97,8 @@ impl Scene {
         each(&self.spring, "spring", |spring, key| spring.verify(ctx, key, solids))?;
         each(&self.rope, "rope", |rope, key| rope.verify(ctx, key, solids))?;
         each(&self.line_type, "line_type", |line, key| line.verify(ctx, key))?;
-        each(&self.mooring, "mooring", |mooring, key| mooring.verify(ctx, key, &self.mooring_scope()))?;
         each(&self.mooring_point, "mooring_point", |point, key| point.verify(ctx, key, solids))?;
+        each(&self.mooring, "mooring", |mooring, key| mooring.verify(ctx, key, &self.mooring_scope()))?;
         each(&self.wind, "wind", |wind, key| wind.verify(ctx, key, solids))?;
         each(&self.force, "force", |force, key| force.verify(ctx, key, solids))?;
         contact::verify(ctx, &self.contact, solids)?;

@@ -88,7 +88,8 @@ fn momentum_and_energy_close_with_the_lines() -> Result<()> {
     Ok(())
 }
 
-/// Without lines the box drifts on; the chains stop it.
+/// The chains slow the box: their stiffness against surge, about 10 N/m, takes 0.3 mm to 3 mm in 0.4 s from the way of 30 kg/m that
+/// move at 0.2 m/s.
 #[test]
 fn chains_hold_the_box() -> Result<()> {
     let (free, _) = MOORED.split_once("[[line_type]]").unwrap();
@@ -98,24 +99,27 @@ fn chains_hold_the_box() -> Result<()> {
         Ok(sim.system().solids()[1].kinematics.centre[0] - 0.8)
     };
     let (moored, free) = (drift(MOORED)?, drift(free)?);
-    assert!(moored < 0.9 * free && free > 0.01, "{moored} m with chains, {free} m without");
+    assert!((3e-4..3e-3).contains(&(free - moored)) && free > 0.01, "{moored} m with chains, {free} m without");
     Ok(())
 }
 
-/// A line between a driven solid and the ground is advanced without a free body.
+/// A line between a driven solid and the ground is advanced without a free body: where the solid stops, the fairlead bears what a line
+/// bears that starts there.
 #[test]
 fn a_driven_solid_moves_its_line() -> Result<()> {
     let driven = MOORED.replace(
         "at = { x = 0.8, draft = \"equilibrium\" }\nfree = { density = 500.0, velocity = [0.2, 0.0] }",
-        "at = { x = 0.8, y = 0.3 }\ndriven = { along = [1.0, 0.0], distance = { formula = \"0.05*sin(4*pi*t)\" } }",
+        "at = { x = 0.8, y = 0.3 }\ndriven = { along = [1.0, 0.0], distance = { formula = \"0.025*(1-cos(5*pi*min(t,0.2)))\" } }",
     );
     let mut sim = scene_simulation::<2>(&driven)?;
     let probe = MooringProbe::new(sim.system(), "west")?;
-    let start = probe.sample(&sim);
-    run_to(&mut sim, 0.125)?;
-    let now = probe.sample(&sim);
+    let start = probe.sample(&sim)[0];
+    run_to(&mut sim, 1.0)?;
     assert!((sim.mooring_reading(0).nodes[0][0] - 0.70).abs() < 1e-9, "the fairlead goes with the solid");
-    assert!(now[0] > 1.2 * start[0], "the tension grows from {} N to {} N", start[0], now[0]);
+    let there =
+        scene_simulation::<2>(&standing().replacen("x = 0.8", "x = 0.85", 1).replacen("[0.65, 0.3]", "[0.7, 0.3]", 1))?;
+    let [now, there] = [&sim, &there].map(|sim| probe.sample(sim)[0]);
+    assert!(there > 1.1 * start && (now / there - 1.0).abs() < 0.05, "from {start} N to {now} N, not {there} N");
     Ok(())
 }
 
@@ -151,7 +155,7 @@ fn a_line_acts_from_since_until() -> Result<()> {
 fn a_winch_changes_the_tension() -> Result<()> {
     let winch = "length = 0.75\npaid_out = { formula = \"-0.1*min(t,0.3)\" }";
     let mut sim = scene_simulation::<2>(&standing().replacen("length = 0.75", winch, 1))?;
-    run_to(&mut sim, 0.4)?;
+    run_to(&mut sim, 1.0)?;
     let short = scene_simulation::<2>(&standing().replacen("length = 0.75", "length = 0.72", 1))?;
     let [hauled, short] = [&sim, &short].map(|sim| sim.mooring_reading(0).end_forces[0].norm());
     assert!((hauled / short - 1.0).abs() < 0.05, "{hauled} N after hauling in, {short} N of the short line");
