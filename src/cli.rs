@@ -7,6 +7,7 @@
 
 mod bench;
 mod export;
+mod import_moordyn;
 mod inspect;
 mod json_log;
 mod report_page;
@@ -149,6 +150,14 @@ Examples:
 In Python: numpy.load(\"raft.npz\")[\"box.heave_m\"], and \"box.t_s\" for its times. For pandas the
 tables are as they should be: pandas.read_csv(\"runs/raft/series/box.csv\").")]
     Export(export::ExportArgs),
+    /// Print the lines, points and line types of a MoorDyn v2 deck as sections of a scene
+    #[command(after_help = "\
+Examples:
+  pontoon import-moordyn lines.txt --solid float --level 50 >> my-float/scene.toml
+  pontoon import-moordyn lines.txt                  looks at the sections first
+Coupled points are on the solid of --solid, free points become [[mooring_point]], and z grows by
+--level. What a scene has in another form, such as the depth, is named in comments.")]
+    ImportMoordyn(import_moordyn::ImportMoordynArgs),
     /// Watch a run's latest curves in the terminal, running or finished
     #[command(after_help = "\
 Examples:
@@ -274,6 +283,10 @@ fn dispatch(command: Command, command_line: &str) -> Result<u8> {
         Command::Compare(args) => report_page::compare(&args),
         Command::Export(args) => {
             print_output(&export::export(&args)?);
+            Ok(0)
+        }
+        Command::ImportMoordyn(args) => {
+            print_output(&import_moordyn::import(&args)?);
             Ok(0)
         }
         Command::Watch(args) => watch::watch(&args),

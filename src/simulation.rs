@@ -278,7 +278,8 @@ impl<const D: usize> Simulation<D> {
     pub fn step_limit(&self) -> f64 {
         let model = self.system.model();
         let water = step_size::fluid_step_limit(&self.system.step_limits(), self.system.properties(), model.cfl);
-        let ties = self.spring_step_limit().min(self.bodies.constraints().next_event(self.clock.time));
+        let events = self.bodies.constraints().next_event(self.clock.time);
+        let ties = self.spring_step_limit().min(events).min(self.bodies.moorings.next_event(self.clock.time));
         water.min(model.viscosity.step_limit(model.h)).min(model.dt_max).min(ties)
             * self.rollback.step_factor(self.clock.time)
     }

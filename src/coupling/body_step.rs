@@ -271,8 +271,8 @@ impl<const D: usize> BodyStep<'_, D> {
         let accounted = self.bodies.accounting.is_some() || self.bodies.constraints.has_reactions();
         let start = self.bodies.kinematics(self.system, t, constrained || accounted || moored);
         if moored {
-            let breaks = self.bodies.moorings.advance(self.system, &start, &targets, dt);
-            breaks.iter().for_each(|(name, tension)| self.bodies.constraints.record_break(name, t, *tension));
+            let changes = self.bodies.moorings.advance(self.system, &start, &targets, self.over);
+            changes.into_iter().for_each(|(name, change)| self.bodies.constraints.record_mooring(&name, t, change));
         }
         let mut pushes = Vec::new();
         if let Some(engine) = &mut self.bodies.engine {

@@ -4,12 +4,13 @@
 //! weight that water fills, Σ V_b W, over the share that fixed solids leave free; it grows from 0 to 1 over about a smoothing
 //! length at the surface. The water and the surfaces of the solids hold for a whole step.
 
+use super::Interval;
 use crate::{
     error::{Error, Result},
     math::{Bounds, Vector},
     solid::{
-        Kinematics, Load, Mobility, MooringReading, Role,
-        mooring::{BedPlane, LineState, Mooring, NodeSurroundings},
+        ConstraintChange, Kinematics, Load, Mobility, MooringReading, Role,
+        mooring::{BedPlane, Junctions, LineState, LineStep, Mooring, MooringLine, NodeSurroundings, junctions},
     },
     system::System,
 };
@@ -20,14 +21,16 @@ const LARGEST_REST: f64 = 1e-3;
 /// All mooring lines of a run.
 pub(crate) struct Moorings<const D: usize> {
     lines: Vec<Mooring<D>>,
+    /// The points in which lines meet.
+    junctions: Junctions,
     /// Fixed solids with the boxes (m) in which they are near.
     fixed: Vec<(usize, Bounds<D>)>,
     /// Load on each solid in the last step; empty without lines.
     loads: Vec<Load<D>>,
 }
 
-/// A break of a line: its name and its tension, N.
-pub(crate) type Break = (String, f64);
+/// The name of a line, and what happens to it.
+pub(crate) type Change = (String, ConstraintChange);
 
 impl<const D: usize> Moorings<D> {
     /// The lines of `system` at rest between their ends, on solids that start as `start`.
@@ -36,7 +39,8 @@ impl<const D: usize> Moorings<D> {
     /// `Scene` if a line finds no rest.
     pub(crate) fn new(system: &System<D>, start: &[Kinematics<D>]) -> Result<Self> {
         let specs = &system.constraints().moorings;
-        let mut made = Self { lines: Vec::new(), fixed: Vec::new(), loads: Vec::new() };
+        let (junctions, bodies) = junctions(&system.constraints().mooring_points, specs);
+        let mut made = Self { lines: Vec::new(), junctions, fixed: Vec::new(), loads: Vec::new() };
         if specs.is_empty() {
             return Ok(made);
         }
@@ -46,17 +50,30 @@ impl<const D: usize> Moorings<D> {
             matches!(solid.spec.role, Role::Fixed).then(|| (i, bounds.grown(reach)))
         };
         made.fixed = system.solids().iter().enumerate().filter_map(near).collect();
-        for spec in specs {
-            let mut mooring = Mooring::new(spec, start, system.properties().rho0);
-            let left = mooring.line.find_rest(&|x| made.surroundings(system, x), &system.gravity());
+        let mut lines: Vec<_> = specs.iter().map(|spec| Mooring::new(spec, start, system.properties().rho0)).collect();
+        let mut all: Vec<_> = lines.iter_mut().map(|mooring| &mut mooring.line).collect();
+        made.junctions.attach(&mut all, &bodies);
+        for (spec, left) in specs.iter().zip(made.find_rest(system, &mut all)) {
             if left.is_nan() || left > LARGEST_REST {
                 let what =
                     format!("mooring \"{}\" finds no rest: {left:.1e} of the weight of a node remains", spec.name);
                 return Err(Error::scene(what).help("start its ends nearer, make it longer, or give it fewer segments"));
             }
-            made.lines.push(mooring);
         }
+        made.lines = lines;
         Ok(made)
+    }
+
+    /// Brings all `lines` that act to rest. Returns the largest force on a node of each over its weight.
+    fn find_rest(&self, system: &System<D>, lines: &mut [&mut MooringLine<D>]) -> Vec<f64> {
+        let (around, gravity) = (|x: &Vector<D>| self.surroundings(system, x), system.gravity());
+        let joined = if self.junctions.is_empty() { 0.0 } else { self.junctions.find_rest(lines, &around, &gravity) };
+        let rest = |(i, line): (usize, &mut &mut MooringLine<D>)| match self.junctions.joins(i) {
+            true => joined,
+            false if line.state.acts => line.find_rest(&around, &gravity),
+            false => 0.0,
+        };
+        lines.iter_mut().enumerate().map(rest).collect()
     }
 
     /// Shape and tension of line number `i`.
@@ -74,22 +91,21 @@ impl<const D: usize> Moorings<D> {
     /// Stiffness (N/m) of the lines on solid number `solid` against a displacement along the x axis, at rest where it is.
     /// The lines find their rest again with their ends displaced.
     pub(crate) fn surge_stiffness(&self, system: &System<D>, solid: usize) -> f64 {
-        let of_line = |mooring: &Mooring<D>| {
-            let line = &mooring.line;
-            let last = line.segments();
-            let nodes = [0, last];
-            let way = 1e-3 * line.length();
-            let force = |way: f64| {
-                let mut moved = line.clone();
-                let own = (0..2).filter(|k| mooring.solids()[*k] == Some(solid));
-                own.clone().for_each(|k| moved.state.x[nodes[k]][0] += way);
-                moved.find_rest(&|x| self.surroundings(system, x), &system.gravity());
-                own.map(|k| moved.state.end_forces[k][0]).sum::<f64>()
-            };
-            (force(-way) - force(way)) / (2.0 * way)
+        let own = || {
+            let ends = self.lines.iter().enumerate().flat_map(|(i, line)| [0, 1].map(|k| (i, k, line.solids()[k])));
+            ends.filter(|(.., at)| *at == Some(solid)).map(|(i, k, _)| (i, k))
         };
-        let on_solid = |mooring: &&Mooring<D>| mooring.solids().contains(&Some(solid));
-        self.lines.iter().filter(on_solid).map(of_line).sum()
+        let way = own().map(|(i, _)| 1e-3 * self.lines[i].line.length()).fold(f64::INFINITY, f64::min);
+        let force = |way: f64| {
+            let mut moved: Vec<_> = self.lines.iter().map(|mooring| mooring.line.clone()).collect();
+            for (i, k) in own() {
+                let node = k * moved[i].segments();
+                moved[i].state.x[node][0] += way;
+            }
+            self.find_rest(system, &mut moved.iter_mut().collect::<Vec<_>>());
+            own().map(|(i, k)| moved[i].state.end_forces[k][0]).sum::<f64>()
+        };
+        (force(-way) - force(way)) / (2.0 * way)
     }
 
     /// Longest inner step of line number `i`, s.
@@ -102,28 +118,75 @@ impl<const D: usize> Moorings<D> {
         self.loads.get(i).copied().unwrap_or_else(Load::zero)
     }
 
-    /// Advances all lines by `dt` (s), while the solids go from `now` on; `next` is where driven solids go. Returns the lines that break.
+    /// Time (s) from `t` (s) to the next begin or end of a line; infinite if there is none.
+    pub(crate) fn next_event(&self, t: f64) -> f64 {
+        self.lines.iter().map(|mooring| mooring.lifetime().next_limit(t)).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Advances all lines over a step, while the solids go from `now` on; `next` is where driven solids go. Returns what happens to them.
     pub(super) fn advance(
         &mut self,
         system: &System<D>,
         now: &[Kinematics<D>],
         next: &[Option<Kinematics<D>>],
-        dt: f64,
-    ) -> Vec<Break> {
+        Interval { t, dt }: Interval,
+    ) -> Vec<Change> {
         let mut lines = std::mem::take(&mut self.lines);
-        let (mut breaks, mut loads) = (Vec::new(), vec![Load::zero(); now.len()]);
+        let mut changes = Vec::new();
         for mooring in &mut lines {
-            let around: Vec<_> = mooring.line.state.x.iter().map(|x| self.surroundings(system, x)).collect();
-            let (ends, broken) = mooring.advance(now, next, dt, &around, &system.gravity());
-            for (solid, load) in ends {
+            let change = self.update_lifetime(system, mooring, now, t);
+            changes.extend(change.map(|change| (mooring.name.clone(), change)));
+            mooring.pay_out(t + 0.5 * dt);
+        }
+        let gravity = system.gravity();
+        let step = |mooring: &Mooring<D>| LineStep {
+            ends: mooring.ends_after(now, next, dt),
+            around: mooring.line.state.x.iter().map(|x| self.surroundings(system, x)).collect(),
+        };
+        let steps: Vec<_> = lines.iter().map(step).collect();
+        let mut all: Vec<_> = lines.iter_mut().map(|mooring| &mut mooring.line).collect();
+        if !self.junctions.is_empty() {
+            self.junctions.advance(&mut all, &steps, dt, &gravity);
+        }
+        let alone = all.iter_mut().zip(&steps).enumerate();
+        for (_, (line, step)) in alone.filter(|(i, (line, _))| line.state.acts && !self.junctions.joins(*i)) {
+            line.advance(step.ends, dt, &step.around, &gravity);
+        }
+        let mut loads = vec![Load::zero(); now.len()];
+        for mooring in lines.iter_mut().filter(|mooring| mooring.line.state.acts) {
+            for (solid, load) in mooring.loads(now) {
                 if let Some(solid) = solid {
                     loads[solid] += load;
                 }
             }
-            breaks.extend(broken.map(|tension| (mooring.name.clone(), tension)));
+            let broken = mooring.break_overloaded();
+            changes.extend(broken.map(|tension| (mooring.name.clone(), ConstraintChange::Broken(tension))));
         }
         (self.lines, self.loads) = (lines, loads);
-        breaks
+        changes
+    }
+
+    /// Lets a line begin, at rest between its ends, or end at time `t` (s). Returns what happens.
+    fn update_lifetime(
+        &self,
+        system: &System<D>,
+        mooring: &mut Mooring<D>,
+        now: &[Kinematics<D>],
+        t: f64,
+    ) -> Option<ConstraintChange> {
+        match (mooring.line.state.acts, mooring.lifetime().contains(t)) {
+            (false, true) => {
+                mooring.pay_out(t);
+                mooring.begin(now);
+                mooring.line.place_at_rest(&|x| self.surroundings(system, x), &system.gravity());
+                Some(ConstraintChange::Connected)
+            }
+            (true, false) => {
+                mooring.end_lifetime();
+                Some(ConstraintChange::Released)
+            }
+            _ => None,
+        }
     }
 
     /// The longest step (s) with which the coupling to the solids is stable.

@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::{Finding, PreflightContext};
 use crate::{math::format::three_digits, simulation::Simulation};
 
-/// A mooring line at rest.
+/// A mooring line at rest that acts at the start.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MooringSummary {
     /// Name of the line.
@@ -22,6 +22,8 @@ pub struct MooringSummary {
     pub touchdown_m: Option<Vec<f64>>,
     /// Angle of the second end above the horizontal, degrees.
     pub anchor_angle_deg: f64,
+    /// Its shape at rest: coordinates of its nodes from the first end on, m.
+    pub shape_m: Vec<Vec<f64>>,
     /// Longest step of the line, s.
     pub step_s: f64,
 }
@@ -46,12 +48,15 @@ pub(super) fn summaries<const D: usize>(
 ) -> (Vec<MooringSummary>, Vec<MooredSurge>) {
     let specs = &context.system.constraints().moorings;
     let line = |(i, now): (usize, crate::solid::MooringReading<D>)| {
+        if now.nodes.is_empty() {
+            return None;
+        }
         // The touchdown point is where the lying part ends, seen from the lower end.
         let segment = specs[i].length / specs[i].segments as f64;
         let lying = (now.on_bed / segment).round() as usize;
         let from_second = now.nodes[0][D - 1] >= now.nodes[specs[i].segments][D - 1];
         let node = if from_second { specs[i].segments.saturating_sub(lying) } else { lying.min(specs[i].segments) };
-        MooringSummary {
+        Some(MooringSummary {
             name: specs[i].name.clone(),
             length_m: specs[i].length,
             fairlead_n: now.end_forces[0].norm(),
@@ -59,10 +64,11 @@ pub(super) fn summaries<const D: usize>(
             on_bed_m: now.on_bed,
             touchdown_m: (now.on_bed > 0.0).then(|| now.nodes[node].iter().copied().collect()),
             anchor_angle_deg: now.anchor_angle.to_degrees(),
+            shape_m: now.nodes.iter().map(|x| x.iter().copied().collect()).collect(),
             step_s: sim.mooring_step(i),
-        }
+        })
     };
-    let lines: Vec<MooringSummary> = sim.mooring_readings().into_iter().enumerate().map(line).collect();
+    let lines: Vec<MooringSummary> = sim.mooring_readings().into_iter().enumerate().filter_map(line).collect();
     for own in lines.iter().filter(|own| own.step_s * MOST_INNER_STEPS < sim.step_limit()) {
         let inner = (sim.step_limit() / own.step_s).ceil();
         let what = format!(

@@ -72,9 +72,10 @@ impl<const D: usize> Probe<D> for MooringProbe {
 
     fn sample(&self, sim: &Simulation<D>) -> Vec<f64> {
         let now = sim.mooring_reading(self.line);
-        let last = now.tensions.len() - 1;
-        let at = |share: f64| now.tensions[((share * now.tensions.len() as f64) as usize).min(last)];
-        let along = ALONG.map(|(_, share)| at(share));
+        let count = now.tensions.len();
+        // While the line does not act there are no segments.
+        let at = |share: f64| now.tensions.get(((share * count as f64) as usize).min(count.max(1) - 1)).copied();
+        let along = ALONG.map(|(_, share)| at(share).unwrap_or_default());
         let largest = now.tensions.iter().copied().fold(0.0, f64::max);
         let shape = [now.on_bed, now.anchor_angle.to_degrees()];
         let ends = now.end_forces.map(|force| force.norm());

@@ -77,7 +77,8 @@ fn float_bodies<const D: usize>(
     let bottom = level - pool.still.depth;
     let g = ctx.gravity_norm();
     let mut pulls = vec![0.0; specs.len()];
-    let at_rest = forces_at_rest(&constraints.moorings, &specs, &WaterAtRest { rho0, g, level });
+    let lines = (&constraints.moorings[..], &constraints.mooring_points[..]);
+    let at_rest = forces_at_rest(lines, &specs, &WaterAtRest { rho0, g, level });
     for (spec, forces) in constraints.moorings.iter().zip(at_rest) {
         let ends = spec.ends.iter().zip(forces);
         ends.for_each(|(end, force)| end.solid.into_iter().for_each(|i| pulls[i] -= force[D - 1] / g));

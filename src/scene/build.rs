@@ -9,6 +9,7 @@ use super::{
         analysis::ProbeSeries,
         gravity,
         model::require_depth,
+        mooring::MooringPointConfig,
         open_boundary::FaceFlow,
         shape::{vector, world_bounds},
         solid::{SolidConfig, require_solid},
@@ -29,7 +30,7 @@ use crate::{
     solid::{
         Constraints, InitialHold, Role, SolidSpec, TimeFunction, TimedRemoval,
         constraint::links::{check_force, check_rope, check_spring},
-        mooring::check_mooring,
+        mooring::{check_mooring, check_mooring_points},
     },
     system::{Periodic, buffer_length, check_open_boundary, periodic},
 };
@@ -318,10 +319,14 @@ impl Scene {
             constraints.ropes.push(rope);
         }
         for (i, mooring) in self.mooring.iter().enumerate() {
-            let mooring = mooring.build(&self.solid, &self.line_type);
-            check_mooring(&mooring, solids).map_err(|e| ctx.with_location(e, &format!("mooring.{i}")))?;
+            let key = format!("mooring.{i}");
+            let mooring = mooring.build(ctx, &key, &self.mooring_scope())?;
+            check_mooring(&mooring, solids).map_err(|e| ctx.with_location(e, &key))?;
             constraints.moorings.push(mooring);
         }
+        constraints.mooring_points = self.mooring_point.iter().map(MooringPointConfig::build).collect();
+        check_mooring_points(&constraints.mooring_points, &constraints.moorings)
+            .map_err(|e| ctx.with_location(e, "mooring_point"))?;
         for (i, force) in self.force.iter().enumerate() {
             let key = format!("force.{i}");
             let force = force.build(ctx, &key, &self.solid)?;

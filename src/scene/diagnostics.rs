@@ -128,6 +128,8 @@ const EXAMPLES: &[(&str, &str)] = &[
         "[[mooring]]\nname    = \"west\"\nbetween = [\"box\"]\nfrom    = [2.9, 0.4]\nto      = [1.0, 0.0]\n\
          length  = 2.1\nline    = \"chain\"",
     ),
+    ("paid_out", "paid_out = { formula = \"0.05*t\" }        # m"),
+    ("mooring_point", "[[mooring_point]]\nname   = \"bridle\"\nat     = [2.0, 0.3]\nmass   = 0.1\nvolume = 3e-4"),
     ("line", "line = \"chain\"        # the name of a [[line_type]]"),
     ("segments", "segments = 20"),
     ("clumps", "clumps = [{ at = 1.0, mass = 0.2 }]        # m, kg"),

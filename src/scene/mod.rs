@@ -17,6 +17,8 @@ mod file_content;
 mod file_units;
 pub(crate) mod files;
 mod mesh;
+#[cfg(any(feature = "cli", test))]
+pub(crate) mod moordyn;
 mod overrides;
 mod record;
 mod resolve;
@@ -77,7 +79,7 @@ pub use {
     section::force_element::{ForceConfig, RopeConfig, SpringConfig},
     section::joint::{JointConfig, JointKindConfig, MotorConfig},
     section::model::ModelConfig,
-    section::mooring::{ClumpConfig, LineTypeConfig, MooringConfig},
+    section::mooring::{ClumpConfig, LineTypeConfig, MooringConfig, MooringPointConfig},
     section::motion::DrivenConfig,
     section::open_boundary::{FaceWaveConfig, OpenBoundaryConfig},
     section::output::FramesChoice,
@@ -178,6 +180,9 @@ pub struct Scene {
     /// Materials of mooring lines.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub line_type: Vec<LineTypeConfig>,
+    /// Points in which mooring lines meet.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub mooring_point: Vec<MooringPointConfig>,
     /// Mooring lines with mass.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub mooring: Vec<MooringConfig>,
@@ -311,6 +316,17 @@ impl Scene {
     /// Returns the same scene with one more line type.
     pub fn line_type(mut self, line_type: LineTypeConfig) -> Self {
         self.line_type.push(line_type);
+        self
+    }
+
+    /// What a mooring line refers to.
+    fn mooring_scope(&self) -> section::mooring::MooringScope<'_> {
+        section::mooring::MooringScope { solids: &self.solid, points: &self.mooring_point, types: &self.line_type }
+    }
+
+    /// Returns the same scene with one more point in which mooring lines meet.
+    pub fn mooring_point(mut self, point: MooringPointConfig) -> Self {
+        self.mooring_point.push(point);
         self
     }
 

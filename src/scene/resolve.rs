@@ -96,13 +96,15 @@ impl Scene {
         verify_names(ctx, "spring", &names!(self.spring))?;
         verify_names(ctx, "rope", &names!(self.rope))?;
         verify_names(ctx, "line_type", &names!(self.line_type))?;
+        verify_names(ctx, "mooring_point", &names!(self.mooring_point))?;
         verify_names(ctx, "mooring", &names!(self.mooring))?;
         verify_names(ctx, "force", &names!(self.force))?;
         each(&self.joint, "joint", |joint, key| joint.verify(ctx, key, solids))?;
         each(&self.spring, "spring", |spring, key| spring.verify(ctx, key, solids))?;
         each(&self.rope, "rope", |rope, key| rope.verify(ctx, key, solids))?;
         each(&self.line_type, "line_type", |line, key| line.verify(ctx, key))?;
-        each(&self.mooring, "mooring", |mooring, key| mooring.verify(ctx, key, solids, &self.line_type))?;
+        each(&self.mooring_point, "mooring_point", |point, key| point.verify(ctx, key, solids))?;
+        each(&self.mooring, "mooring", |mooring, key| mooring.verify(ctx, key, &self.mooring_scope()))?;
         each(&self.wind, "wind", |wind, key| wind.verify(ctx, key, solids))?;
         each(&self.force, "force", |force, key| force.verify(ctx, key, solids))?;
         contact::verify(ctx, &self.contact, solids)?;
@@ -316,7 +318,7 @@ impl Scene {
 }
 
 /// The order in which values are listed.
-const ORDER: [&str; 32] = [
+const ORDER: [&str; 33] = [
     "title",
     "dimension",
     "dp",
@@ -338,6 +340,7 @@ const ORDER: [&str; 32] = [
     "spring",
     "rope",
     "line_type",
+    "mooring_point",
     "mooring",
     "force",
     "wind",

@@ -160,7 +160,7 @@ impl<'a, const D: usize> StaticSystem<'a, D> {
             let (force, torque) = force.steady_load()?;
             Some(SteadyForce { body, at, force, torque })
         };
-        let pulls = forces_at_rest(&constraints.moorings, solids, &water);
+        let pulls = forces_at_rest((&constraints.moorings, &constraints.mooring_points), solids, &water);
         let moored = constraints.moorings.iter().zip(pulls).flat_map(|(spec, forces)| {
             let pull = |(end, force): (&LineEnd<D>, Vector<D>)| {
                 Some(SteadyForce { body: number(Some(end.solid?))?, at: end.at, force, torque: Bivector::zero() })

@@ -11,8 +11,8 @@ use crate::{
     math::{Bounds, Pose, Vector},
     model::Model,
     solid::{
-        Constraints, ContactSpec, ForceSpec, InitialHold, JointSpec, MooringSpec, Role, RopeSpec, SolidSpec,
-        SpringSpec, TimeFunction,
+        Constraints, ContactSpec, ForceSpec, InitialHold, JointSpec, MooringPointSpec, MooringSpec, Role, RopeSpec,
+        SolidSpec, SpringSpec, TimeFunction,
     },
 };
 
@@ -164,6 +164,12 @@ impl<const D: usize> Setup<D> {
     /// The same setup with one more rope.
     pub fn rope(mut self, rope: RopeSpec<D>) -> Self {
         self.constraints.ropes.push(rope);
+        self
+    }
+
+    /// The same setup with one more point in which mooring lines meet.
+    pub fn mooring_point(mut self, point: MooringPointSpec<D>) -> Self {
+        self.constraints.mooring_points.push(point);
         self
     }
 

@@ -353,7 +353,7 @@ fn distance(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// The `solids` that are named in `between`.
-fn tied<'a>(solids: &'a [SolidConfig], between: &'a [String]) -> impl Iterator<Item = &'a SolidConfig> {
+pub(crate) fn tied<'a>(solids: &'a [SolidConfig], between: &'a [String]) -> impl Iterator<Item = &'a SolidConfig> {
     solids.iter().filter(|solid| between.contains(&solid.name))
 }
 

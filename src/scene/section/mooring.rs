@@ -1,17 +1,23 @@
-//! `[[mooring]]` and `[[line_type]]`: mooring lines with mass, and what they are made of.
+//! `[[mooring]]`, `[[mooring_point]]` and `[[line_type]]`: mooring lines with mass, the points in which they meet, and what they are
+//! made of.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    force_element::ends,
+    force_element::{ends, tied},
     lifetime::{Element, LifetimeConfig, StrengthConfig},
     solid::{SolidConfig, require_solid},
 };
 use crate::{
     error::{ErrorCode, Result, suggestion},
-    scene::context::{Context, Defaults},
-    solid::{ClumpSpec, LineDamping, LineType, MooringSpec},
+    math::NumberOrArray,
+    scene::{
+        context::{Context, Defaults},
+        section::shape::vector,
+        untagged::{CoordinateUnit, TimeFunctionConfig},
+    },
+    solid::{ClumpSpec, LineDamping, LineType, MooringPointSpec, MooringSpec},
 };
 
 /// Number of segments of a line unless it is given.
@@ -24,11 +30,13 @@ const SEGMENTS: usize = 20;
 pub struct MooringConfig {
     /// Name: letters, digits, `_` and `-`.
     pub name: String,
-    /// The solids at its two ends; or one, the other end on the ground.
+    /// The solids or mooring points at its two ends; or one, the other end on the ground.
     pub between: Vec<String>,
-    /// Attachment point on the first solid at the start, m.
+    /// Attachment point on the first solid at the start, m; absent at a mooring point.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub from: Vec<f64>,
-    /// Attachment point on the second solid or the ground at the start, m.
+    /// Attachment point on the second solid or the ground at the start, m; absent at a mooring point.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub to: Vec<f64>,
     /// Length without tension, m.
     pub length: f64,
@@ -36,8 +44,14 @@ pub struct MooringConfig {
     pub line: String,
     /// Number of segments.
     pub segments: Option<usize>,
+    /// Length that a winch pays out, m, over the time of the run, in addition to `length`.
+    pub paid_out: Option<TimeFunctionConfig>,
     /// Clump weights and floats.
     pub clumps: Option<Vec<ClumpConfig>>,
+    /// Time from which it acts, s.
+    pub since: Option<f64>,
+    /// Time at which it ends, s.
+    pub until: Option<f64>,
     /// Tension under which a segment breaks, N.
     pub breaks: Option<StrengthConfig>,
 }
@@ -54,6 +68,67 @@ pub struct ClumpConfig {
     pub volume: Option<f64>,
     /// Drag coefficient times area, m².
     pub drag_area: Option<f64>,
+    /// Added-mass coefficient of the volume.
+    pub added_mass: Option<f64>,
+}
+
+/// A section `[[mooring_point]]`: a point in which mooring lines meet, with the mass of a clump weight or a buoy.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[non_exhaustive]
+pub struct MooringPointConfig {
+    /// Name: letters, digits, `_` and `-`.
+    pub name: String,
+    /// Place from which it finds its rest at the start, m.
+    pub at: Vec<f64>,
+    /// Mass, kg.
+    pub mass: Option<f64>,
+    /// Volume, m³.
+    pub volume: Option<f64>,
+    /// Drag coefficient times area, m².
+    pub drag_area: Option<f64>,
+    /// Added-mass coefficient of the volume.
+    pub added_mass: Option<f64>,
+}
+
+impl MooringPointConfig {
+    /// A point without mass near this place (m).
+    pub fn new(name: impl Into<String>, at: impl Into<Vec<f64>>) -> Self {
+        Self { name: name.into(), at: at.into(), mass: None, volume: None, drag_area: None, added_mass: None }
+    }
+
+    /// Refuses a name of a solid, and numbers out of range.
+    pub(crate) fn verify(&self, ctx: &Context, key: &str, solids: &[SolidConfig]) -> Result<()> {
+        if solids.iter().any(|solid| solid.name == self.name) {
+            let what = format!("a solid is called \"{}\" too", self.name);
+            return Err(ctx.error_with_help(&format!("{key}.name"), what, "give each its own name"));
+        }
+        ctx.require_dimension(&format!("{key}.at"), &self.at)?;
+        verify_body(ctx, key, [self.mass, self.volume, self.drag_area, self.added_mass])
+    }
+
+    /// The point.
+    pub(crate) fn build<const D: usize>(&self) -> MooringPointSpec<D> {
+        let body = ClumpSpec {
+            at: 0.0,
+            mass: self.mass.unwrap_or_default(),
+            volume: self.volume.unwrap_or_default(),
+            drag_area: self.drag_area.unwrap_or_default(),
+            added_mass: self.added_mass.unwrap_or_default(),
+        };
+        MooringPointSpec::<D>::new(&self.name, vector(&self.at)).body(body)
+    }
+}
+
+/// Refuses a mass, volume, drag area or added-mass coefficient below 0.
+fn verify_body(ctx: &Context, key: &str, numbers: [Option<f64>; 4]) -> Result<()> {
+    for (word, x) in ["mass", "volume", "drag_area", "added_mass"].into_iter().zip(numbers) {
+        if let Some(x) = x.filter(|x| !(*x >= 0.0 && x.is_finite())) {
+            let what = format!("{word} must be 0 or more, not {x}");
+            return Err(ctx.error_at(&format!("{key}.{word}"), what).with_code(ErrorCode::OutOfRange));
+        }
+    }
+    Ok(())
 }
 
 /// A section `[[line_type]]`: what a mooring line is made of.
@@ -67,8 +142,8 @@ pub struct LineTypeConfig {
     pub diameter: f64,
     /// Mass of a metre in air, kg/m.
     pub mass_per_length: f64,
-    /// Axial stiffness EA, N.
-    pub stiffness: f64,
+    /// Axial stiffness EA, N; or rows of strain and tension, N.
+    pub stiffness: NumberOrArray,
     /// Axial damping BA, N s.
     pub damping: Option<f64>,
     /// Axial damping over the critical damping of a segment.
@@ -100,7 +175,7 @@ impl LineTypeConfig {
             name: name.into(),
             diameter,
             mass_per_length,
-            stiffness,
+            stiffness: NumberOrArray::One(stiffness),
             damping: None,
             damping_ratio: None,
             bending_stiffness: None,
@@ -117,7 +192,7 @@ impl LineTypeConfig {
 
     /// Fills in the defaults.
     pub(crate) fn fill(&mut self, defaults: &mut Defaults, key: &str) {
-        let usual = LineType::new(self.diameter, self.mass_per_length, self.stiffness);
+        let usual = LineType::new(self.diameter, self.mass_per_length, 1.0);
         if self.damping.is_none() {
             let why = "of a segment: no ringing of the shortest wave on the line";
             defaults.fill(format!("{key}.damping_ratio"), &mut self.damping_ratio, 1.0, why);
@@ -139,10 +214,19 @@ impl LineTypeConfig {
 
     /// Refuses numbers out of range.
     pub(crate) fn verify(&self, ctx: &Context, key: &str) -> Result<()> {
-        let positive =
-            [("diameter", self.diameter), ("mass_per_length", self.mass_per_length), ("stiffness", self.stiffness)];
-        for (word, x) in positive {
+        for (word, x) in [("diameter", self.diameter), ("mass_per_length", self.mass_per_length)] {
             ctx.require_positive(&format!("{key}.{word}"), Some(x))?;
+        }
+        match &self.stiffness {
+            NumberOrArray::One(x) => ctx.require_positive(&format!("{key}.stiffness"), Some(*x))?,
+            other if is_table(other) => {}
+            _ => {
+                let help = "a number (EA, N), or rows of strain and tension (N), as in  stiffness = [[0, 0], [0.01, 100], [0.05, 900]] : \
+                            the first is [0, 0], and both increase";
+                let error =
+                    ctx.error_with_help(&format!("{key}.stiffness"), "this is no table of tension over strain", help);
+                return Err(error.with_code(ErrorCode::OutOfRange));
+            }
         }
         let others = [
             ("damping", self.damping),
@@ -172,7 +256,12 @@ impl LineTypeConfig {
 
     /// The line type with all defaults.
     fn build(&self) -> LineType {
-        let mut made = LineType::new(self.diameter, self.mass_per_length, self.stiffness);
+        let mut made = LineType::new(self.diameter, self.mass_per_length, 1.0);
+        match &self.stiffness {
+            NumberOrArray::One(stiffness) => made.stiffness = *stiffness,
+            NumberOrArray::List(_) => {}
+            NumberOrArray::Rows(rows) => made = made.table(rows.iter().map(|row| [row[0], row[1]]).collect()),
+        }
         made.damping = match self.damping {
             Some(damping) => LineDamping::Given(damping),
             None => LineDamping::OfCritical(self.damping_ratio.unwrap_or(1.0)),
@@ -186,6 +275,33 @@ impl LineTypeConfig {
         made.bed_damping = or(self.bed_damping, made.bed_damping);
         made.bed_friction = or(self.bed_friction, made.bed_friction);
         made
+    }
+}
+
+/// Whether these are rows of increasing strain and tension from [0, 0] on.
+fn is_table(rows: &NumberOrArray) -> bool {
+    let NumberOrArray::Rows(rows) = rows else { return false };
+    let rises = |pair: &[Vec<f64>]| (0..2).all(|k| pair[1][k] > pair[0][k]);
+    rows.len() >= 2
+        && rows.iter().all(|row| row.len() == 2 && row.iter().all(|x| x.is_finite()))
+        && rows[0] == [0.0, 0.0]
+        && rows.windows(2).all(rises)
+}
+
+/// What a `[[mooring]]` refers to in its scene.
+pub(crate) struct MooringScope<'a> {
+    /// The solids.
+    pub(crate) solids: &'a [SolidConfig],
+    /// The points in which lines meet.
+    pub(crate) points: &'a [MooringPointConfig],
+    /// The line types.
+    pub(crate) types: &'a [LineTypeConfig],
+}
+
+impl MooringScope<'_> {
+    /// The number of the mooring point called `name`.
+    fn point(&self, name: &str) -> Option<usize> {
+        self.points.iter().position(|point| point.name == name)
     }
 }
 
@@ -207,7 +323,10 @@ impl MooringConfig {
             length,
             line: line.into(),
             segments: None,
+            paid_out: None,
             clumps: None,
+            since: None,
+            until: None,
             breaks: None,
         }
     }
@@ -215,36 +334,54 @@ impl MooringConfig {
     /// Fills in the defaults.
     pub(crate) fn fill(&mut self, defaults: &mut Defaults, key: &str) {
         defaults.fill(format!("{key}.segments"), &mut self.segments, SEGMENTS, "tension within 1 %");
+        if let Some(law) = &mut self.paid_out {
+            law.fill(defaults, &format!("{key}.paid_out"));
+        }
     }
 
     fn lifetime(&self) -> LifetimeConfig<'_> {
-        LifetimeConfig { since: None, until: None, breaks: self.breaks.as_ref() }
+        LifetimeConfig { since: self.since, until: self.until, breaks: self.breaks.as_ref() }
     }
 
     /// Refuses ends that do not move, an unknown line type, and numbers out of range.
-    pub(crate) fn verify(
-        &self,
-        ctx: &Context,
-        key: &str,
-        solids: &[SolidConfig],
-        types: &[LineTypeConfig],
-    ) -> Result<()> {
+    pub(crate) fn verify(&self, ctx: &Context, key: &str, scope: &MooringScope) -> Result<()> {
+        let MooringScope { solids, types, .. } = *scope;
         let between = format!("{key}.between");
         if !(1..=2).contains(&self.between.len()) {
             let what = format!("between names one solid or two, not {}", self.between.len());
             return Err(ctx.error_at(&between, what));
         }
-        self.between.iter().try_for_each(|name| require_solid(ctx, solids, &between, name))?;
+        let on_solids = self.between.iter().filter(|name| scope.point(name).is_none());
+        on_solids.clone().try_for_each(|name| require_solid(ctx, solids, &between, name))?;
         if self.between.len() == 2 && self.between[0] == self.between[1] {
             return Err(ctx.error_at(&between, format!("\"{}\" is named twice", self.between[0])));
         }
         let moves = |solid: &&SolidConfig| self.between.contains(&solid.name) && solid.fixed != Some(true);
-        if !solids.iter().any(|solid| moves(&solid)) {
+        let joined = on_solids.count() < self.between.len();
+        if !joined && !solids.iter().any(|solid| moves(&solid)) {
             let help = "one of them at least is  free = { ... }  or  driven = { ... }";
             return Err(ctx.error_with_help(&between, "this line holds nothing that moves", help));
         }
-        ctx.require_dimension(&format!("{key}.from"), &self.from)?;
-        ctx.require_dimension(&format!("{key}.to"), &self.to)?;
+        for (k, (word, at)) in [("from", &self.from), ("to", &self.to)].into_iter().enumerate() {
+            let point = self.between.get(k).filter(|name| scope.point(name).is_some());
+            match (point, at.is_empty()) {
+                (Some(name), false) => {
+                    let what = format!("{word} is given, and this end is in the mooring point \"{name}\"");
+                    let help = format!("leave out {word}: the point has its place");
+                    return Err(ctx.error_with_help(&format!("{key}.{word}"), what, help));
+                }
+                (Some(_), true) => {}
+                (None, true) => {
+                    let what = format!("{word} is missing: where is this end at the start?");
+                    let help = format!("write  {word} = [1.0, 0.0]        # m, with a number for each axis");
+                    return Err(ctx.error_with_help(key, what, help).with_code(ErrorCode::MissingKey));
+                }
+                (None, false) => ctx.require_dimension(&format!("{key}.{word}"), at)?,
+            }
+        }
+        if let Some(law) = &self.paid_out {
+            law.verify(ctx, &format!("{key}.paid_out"))?;
+        }
         ctx.require_positive(&format!("{key}.length"), Some(self.length))?;
         self.lifetime().verify(ctx, key, Element::Line)?;
         if !types.iter().any(|known| known.name == self.line) {
@@ -264,32 +401,42 @@ impl MooringConfig {
                 let what = format!("at is {}, and the line is {} m long", clump.at, self.length);
                 return Err(ctx.error_at(&format!("{key}.at"), what).with_code(ErrorCode::OutOfRange));
             }
-            for (word, x) in [("mass", Some(clump.mass)), ("volume", clump.volume), ("drag_area", clump.drag_area)] {
-                if let Some(x) = x.filter(|x| !(*x >= 0.0 && x.is_finite())) {
-                    let what = format!("{word} must be 0 or more, not {x}");
-                    return Err(ctx.error_at(&format!("{key}.{word}"), what).with_code(ErrorCode::OutOfRange));
-                }
-            }
+            verify_body(ctx, &key, [Some(clump.mass), clump.volume, clump.drag_area, clump.added_mass])?;
         }
         Ok(())
     }
 
-    /// The line between the points of `solids`.
-    pub(crate) fn build<const D: usize>(&self, solids: &[SolidConfig], types: &[LineTypeConfig]) -> MooringSpec<D> {
-        let kind = types.iter().find(|kind| kind.name == self.line);
-        let line = kind.map_or(LineType::new(1.0, 1.0, 1.0), LineTypeConfig::build);
-        let ends = ends(solids, &self.between, &self.from, &self.to);
+    /// The line between the solids and points of `scope`.
+    ///
+    /// # Errors
+    /// `Scene` if the law of the winch is not valid.
+    pub(crate) fn build<const D: usize>(
+        &self,
+        ctx: &Context,
+        key: &str,
+        scope: &MooringScope,
+    ) -> Result<MooringSpec<D>> {
+        let kind = scope.types.iter().find(|kind| kind.name == self.line);
+        let line = kind.map_or_else(|| LineType::new(1.0, 1.0, 1.0), LineTypeConfig::build);
+        let points = [0, 1].map(|k| self.between.get(k).and_then(|name| scope.point(name)));
+        let place = |k: usize, at: &[f64]| points[k].map_or_else(|| at.to_vec(), |p| scope.points[p].at.clone());
+        let ends = ends(scope.solids, &self.between, &place(0, &self.from), &place(1, &self.to));
         let mut made =
             MooringSpec::new(&self.name, ends, self.length, line).segments(self.segments.unwrap_or(SEGMENTS));
-        made.strength = self.lifetime().build(std::iter::empty()).strength;
+        made.points = points;
+        made.lifetime = self.lifetime().build(tied(scope.solids, &self.between));
+        if let Some(law) = &self.paid_out {
+            made.paid_out = Some(law.build(ctx, &format!("{key}.paid_out"), CoordinateUnit::Si)?);
+        }
         made.clumps = (self.clumps.iter().flatten())
             .map(|clump| ClumpSpec {
                 at: clump.at,
                 mass: clump.mass,
                 volume: clump.volume.unwrap_or_default(),
                 drag_area: clump.drag_area.unwrap_or_default(),
+                added_mass: clump.added_mass.unwrap_or_default(),
             })
             .collect();
-        made
+        Ok(made)
     }
 }

@@ -108,9 +108,9 @@ impl<const D: usize> Assembly<D> {
         }
     }
 
-    /// Records that the mooring line called `name` broke at time `t` (s) under this tension (N).
-    pub(crate) fn record_break(&mut self, name: &str, t: f64, tension: f64) {
-        self.state.phases.record(t, format!("mooring {name:?}"), ConstraintChange::Broken(tension));
+    /// Records a change of the mooring line called `name` at time `t` (s).
+    pub(crate) fn record_mooring(&mut self, name: &str, t: f64, change: ConstraintChange) {
+        self.state.phases.record(t, format!("mooring {name:?}"), change);
     }
 
     /// Records that the solid called `name` was removed at time `t` (s).

@@ -77,7 +77,7 @@ impl Lifetime {
     }
 
     /// Time (s) from `t` (s) to its next limit; infinite if there is none.
-    pub(in crate::solid) fn next_limit(&self, t: f64) -> f64 {
+    pub(crate) fn next_limit(&self, t: f64) -> f64 {
         match (self.has_begun(t), self.is_over(t)) {
             (_, true) => f64::INFINITY,
             (true, false) => self.until - t,

@@ -4,12 +4,14 @@ use std::collections::BTreeMap;
 
 use super::{
     joint::{JointKind, JointSpec, mode_count},
-    lifetime::Lifetime,
     lines::{LineEnd, RopeSpec, SpringSpec, start_length},
 };
 use crate::{
     error::{Error, Result},
-    solid::{ForceSpec, MooringSpec, Role, SolidSpec, WindSpec, mooring::check_mooring},
+    solid::{
+        ForceSpec, MooringPointSpec, MooringSpec, Role, SolidSpec, WindSpec,
+        mooring::{check_mooring, check_mooring_points},
+    },
 };
 
 /// All constraints of a simulation. Solids are numbered as in its list of solids.
@@ -24,6 +26,8 @@ pub struct Constraints<const D: usize> {
     pub ropes: Vec<RopeSpec<D>>,
     /// Mooring lines with mass.
     pub moorings: Vec<MooringSpec<D>>,
+    /// Points in which mooring lines meet.
+    pub mooring_points: Vec<MooringPointSpec<D>>,
     /// Prescribed forces and torques.
     pub forces: Vec<ForceSpec<D>>,
     /// Winds.
@@ -43,6 +47,7 @@ impl<const D: usize> Constraints<D> {
         made.joints.retain(|joint| joint.lifetime.contains(0.0));
         made.springs.retain(|spring| spring.lifetime.contains(0.0));
         made.ropes.retain(|rope| rope.lifetime.contains(0.0));
+        made.moorings.retain(|mooring| mooring.lifetime.contains(0.0));
         made.forces.retain(|force| force.lifetime.contains(0.0));
         made
     }
@@ -183,8 +188,7 @@ impl<const D: usize> Constraints<D> {
         let springs = self.springs.iter().map(|spring| (&spring.name, ends(&spring.ends), &spring.lifetime));
         let ropes = self.ropes.iter().map(|rope| (&rope.name, ends(&rope.ends), &rope.lifetime));
         let forces = self.forces.iter().map(|force| (&force.name, [Some(force.solid), None], &force.lifetime));
-        let whole_run = Lifetime::default();
-        let moorings = self.moorings.iter().map(|mooring| (&mooring.name, ends(&mooring.ends), &whole_run));
+        let moorings = self.moorings.iter().map(|mooring| (&mooring.name, ends(&mooring.ends), &mooring.lifetime));
         let in_wind =
             |wind: &WindSpec<D>| wind.targets.iter().any(|target| target.solid == solid && !target.lifetime.is_over(t));
         let mut named = joints.chain(springs).chain(ropes).chain(moorings).chain(forces);
@@ -204,6 +208,7 @@ impl<const D: usize> Constraints<D> {
         self.springs.iter().try_for_each(|spring| check_spring(spring, solids))?;
         self.ropes.iter().try_for_each(|rope| check_rope(rope, solids))?;
         self.moorings.iter().try_for_each(|mooring| check_mooring(mooring, solids))?;
+        check_mooring_points(&self.mooring_points, &self.moorings)?;
         self.forces.iter().try_for_each(|force| check_force(force, solids))?;
         self.winds.iter().try_for_each(|wind| check_wind(wind, solids))?;
         self.holds.iter().try_for_each(|hold| check_hold(hold, solids))?;

@@ -11,7 +11,7 @@ use super::{
 };
 use crate::{
     math::Vector,
-    solid::{Kinematics, Load, Mobility},
+    solid::{Kinematics, Lifetime, Load, Mobility},
 };
 
 /// Δt times the frequency of a body on the first segment, at most: the coupling is stable up to 0.8.
@@ -24,7 +24,7 @@ const RADIATION_STEP: f64 = 0.25;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct MooringReading<const D: usize> {
-    /// World positions of its nodes, m.
+    /// World positions of its nodes, m; empty while it does not act.
     pub nodes: Vec<Vector<D>>,
     /// Tension of each segment, N (N/m in 2-D).
     pub tensions: Vec<f64>,
@@ -36,35 +36,73 @@ pub struct MooringReading<const D: usize> {
     pub anchor_angle: f64,
 }
 
+impl<const D: usize> Default for MooringReading<D> {
+    /// Of a line that does not act.
+    fn default() -> Self {
+        let end_forces = [Vector::zeros(); 2];
+        Self { nodes: Vec::new(), tensions: Vec::new(), end_forces, on_bed: 0.0, anchor_angle: 0.0 }
+    }
+}
+
 /// A mooring line on the solids of a running system.
 pub(crate) struct Mooring<const D: usize> {
     pub(crate) name: String,
     solids: [Option<usize>; 2],
     /// Its ends in the frames of their solids, m.
     local_ends: [Vector<D>; 2],
-    strength: f64,
+    spec: MooringSpec<D>,
     pub(crate) line: MooringLine<D>,
 }
 
 impl<const D: usize> Mooring<D> {
     /// The line between the places where its ends start, straight, in water of the density `water_density` (kg/m³).
     pub(crate) fn new(spec: &MooringSpec<D>, start: &[Kinematics<D>], water_density: f64) -> Self {
-        let segment = spec.length / spec.segments as f64;
-        let material = spec.line.material(segment, water_density);
-        let mut line = MooringLine::straight(material, spec.length, spec.segments, spec.ends.map(|end| end.at));
+        let length = spec.length_at(0.0);
+        let material = spec.line.material(spec.length / spec.segments as f64, water_density);
+        let mut line = MooringLine::straight(material, length, spec.segments, spec.ends.map(|end| end.at));
         line.bodies = spec.node_bodies();
+        line.state.acts = spec.lifetime.contains(0.0);
         let local = |k: usize| {
             let (end, at) = (spec.ends[k].solid, spec.ends[k].at);
             end.map_or(at, |solid| start[solid].pose.local(&at))
         };
         let local_ends = [local(0), local(1)];
-        Self {
-            name: spec.name.clone(),
-            solids: spec.ends.map(|end| end.solid),
-            local_ends,
-            strength: spec.strength,
-            line,
+        Self { name: spec.name.clone(), solids: spec.ends.map(|end| end.solid), local_ends, spec: spec.clone(), line }
+    }
+
+    /// When it acts.
+    pub(crate) fn lifetime(&self) -> &Lifetime {
+        &self.spec.lifetime
+    }
+
+    /// Sets the length to that of the winch at time `t` (s).
+    pub(crate) fn pay_out(&mut self, t: f64) {
+        if self.spec.paid_out.is_some() {
+            self.line.state.segment = self.spec.length_at(t) / self.spec.segments as f64;
         }
+    }
+
+    /// Lets the line act from now on, with its ends where the solids `now` are, and with their velocities along it.
+    pub(crate) fn begin(&mut self, now: &[Kinematics<D>]) {
+        let ends = [0, 1].map(|k| self.end(k, now));
+        let velocity = |k: usize| {
+            let solid = self.solids[k].map(|solid| &now[solid]);
+            solid.map_or_else(Vector::zeros, |solid| solid.velocity + solid.spin.velocity_at(&(ends[k] - solid.centre)))
+        };
+        let (velocities, n) = ([velocity(0), velocity(1)], self.line.segments());
+        let state = &mut self.line.state;
+        state.acts = true;
+        for (i, (x, v)) in state.x.iter_mut().zip(&mut state.v).enumerate() {
+            let share = i as f64 / n as f64;
+            *x = ends[0] + (ends[1] - ends[0]) * share;
+            *v = velocities[0] + (velocities[1] - velocities[0]) * share;
+        }
+    }
+
+    /// Ends the line.
+    pub(crate) fn end_lifetime(&mut self) {
+        self.line.state.acts = false;
+        self.line.state.end_forces = [Vector::zeros(); 2];
     }
 
     /// The solids at its ends.
@@ -87,37 +125,31 @@ impl<const D: usize> Mooring<D> {
         }
     }
 
-    /// Advances the line by `dt` (s) from the solids `now` on; `next` is where driven solids go. Returns the load on the solid at each
-    /// end, and the tension (N) of a segment that breaks.
-    pub(crate) fn advance(
-        &mut self,
-        now: &[Kinematics<D>],
-        next: &[Option<Kinematics<D>>],
-        dt: f64,
-        around: &[NodeSurroundings<D>],
-        gravity: &Vector<D>,
-    ) -> ([(Option<usize>, Load<D>); 2], Option<f64>) {
-        let ends = [0, 1].map(|k| self.end_after(k, now, next, dt));
-        let forces = self.line.advance(ends, dt, around, gravity);
-        let load = |k: usize| match self.solids[k] {
+    /// The places (m) of both ends after a step `dt` (s) long from the solids `now` on; `next` is where driven solids go.
+    pub(crate) fn ends_after(&self, now: &[Kinematics<D>], next: &[Option<Kinematics<D>>], dt: f64) -> [Vector<D>; 2] {
+        [0, 1].map(|k| self.end_after(k, now, next, dt))
+    }
+
+    /// The mean load of the last step on the solid at each end, about the centres of the solids `now` at its begin.
+    pub(crate) fn loads(&self, now: &[Kinematics<D>]) -> [(Option<usize>, Load<D>); 2] {
+        [0, 1].map(|k| match self.solids[k] {
             Some(solid) => {
                 let arm = self.end(k, now) - now[solid].centre;
-                (Some(solid), Load::from_force_at(&arm, forces[k]))
+                (Some(solid), Load::from_force_at(&arm, self.line.state.end_forces[k]))
             }
             None => (None, Load::zero()),
-        };
-        let loads = [load(0), load(1)];
-        (loads, self.break_overloaded())
+        })
     }
 
     /// Breaks the segment of the largest tension if that exceeds the strength; returns the tension, N.
-    fn break_overloaded(&mut self) -> Option<f64> {
-        if self.strength.is_infinite() || self.line.state.broken.is_some() {
+    pub(crate) fn break_overloaded(&mut self) -> Option<f64> {
+        let strength = self.spec.lifetime.strength;
+        if strength.is_infinite() || self.line.state.broken.is_some() {
             return None;
         }
         let tensions = (0..self.line.segments()).map(|s| (s, self.line.tension(s)));
         let (segment, tension) = tensions.max_by(|a, b| a.1.total_cmp(&b.1))?;
-        (tension > self.strength).then(|| {
+        (tension > strength).then(|| {
             self.line.state.broken = Some(segment as u32);
             tension
         })
@@ -125,13 +157,13 @@ impl<const D: usize> Mooring<D> {
 
     /// The longest step (s) with which the coupling to a solid of this `mobility` at end `k` is stable, where the solids are.
     pub(crate) fn step_limit(&self, k: usize, mobility: &Mobility<D>, solids: &[Kinematics<D>]) -> f64 {
-        let Some(solid) = self.solids[k] else { return f64::INFINITY };
+        let Some(solid) = self.solids[k].filter(|_| self.line.state.acts) else { return f64::INFINITY };
         let arm = (self.end(k, solids) - solids[solid].centre).norm();
         let ease = mobility.linear.max() + arm * arm * mobility.angular.norm();
         if ease == 0.0 {
             return f64::INFINITY;
         }
-        let (material, length) = (&self.line.material, self.line.segment);
+        let (material, length) = (&self.line.material, self.line.state.segment);
         let swing = |length: f64| COUPLING_STEP / (material.stiffness / length * ease).sqrt();
         let radiation = RADIATION_STEP / ((material.stiffness * material.mass).sqrt() * ease);
         swing(length).max(radiation.min(swing(length * self.line.segments() as f64)))
@@ -140,15 +172,28 @@ impl<const D: usize> Mooring<D> {
     /// Shape and tension, where `around` is what is around each node.
     pub(crate) fn reading(&self, around: &[NodeSurroundings<D>]) -> MooringReading<D> {
         let (line, state) = (&self.line, &self.line.state);
+        if !state.acts {
+            return MooringReading::default();
+        }
         let lies = |i: &usize| around[*i].bed.is_some_and(|bed| line.material.depth(&bed, &state.x[*i]) > 0.0);
         let (q, _) = line.direction_and_length(line.segments() - 1);
         MooringReading {
             nodes: state.x.clone(),
             tensions: (0..line.segments()).map(|s| line.tension(s)).collect(),
-            end_forces: state.end_forces,
+            end_forces: [0, 1].map(|k| self.end_force(k)),
             on_bed: (0..around.len()).filter(lies).map(|i| line.share(i)).sum(),
             anchor_angle: (-q[D - 1]).clamp(-1.0, 1.0).asin(),
         }
+    }
+
+    /// The force (N) on what holds end `k`; in a mooring point the pull of the last segment.
+    fn end_force(&self, k: usize) -> Vector<D> {
+        if self.spec.points[k].is_none() {
+            return self.line.state.end_forces[k];
+        }
+        let segment = k * (self.line.segments() - 1);
+        let sign = if k == 0 { 1.0 } else { -1.0 };
+        self.line.direction_and_length(segment).0 * (sign * self.line.tension(segment))
     }
 
     /// The state in a checkpoint.

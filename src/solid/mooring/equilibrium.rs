@@ -8,7 +8,7 @@ use nalgebra::DVector;
 
 use super::{
     catenary::{Catenary, CatenarySpan},
-    forces::{NodeSurroundings, bending_forces, node_load},
+    forces::{NodeSurroundings, bending_forces, elastic_law, node_load},
     line::MooringLine,
 };
 use crate::math::{Matrix, Vector};
@@ -44,6 +44,13 @@ impl<const D: usize> MooringLine<D> {
         left
     }
 
+    /// Brings the line to rest between its held ends, as [`MooringLine::find_rest`] does, and keeps the velocities of its nodes.
+    pub(crate) fn place_at_rest(&mut self, around: &dyn Fn(&Vector<D>) -> NodeSurroundings<D>, gravity: &Vector<D>) {
+        let velocities = self.state.v.clone();
+        self.find_rest(around, gravity);
+        self.state.v = velocities;
+    }
+
     /// The elastic catenary between the ends, for the plane of both ends and of gravity, with the wet share and the bed of the lower.
     pub(crate) fn catenary(
         &self,
@@ -55,7 +62,8 @@ impl<const D: usize> MooringLine<D> {
         let below = around(&(if up.dot(&(last - first)) >= 0.0 { first } else { last }));
         let material = &self.material;
         let bodies: f64 = self.bodies.iter().map(|b| b.mass - below.wet * material.water_density * b.volume).sum();
-        let net = material.mass - below.wet * material.displaced() + bodies / (self.segment * self.segments() as f64);
+        let net =
+            material.mass - below.wet * material.displaced() + bodies / (self.state.segment * self.segments() as f64);
         // A line that floats up is the mirror image of one that hangs.
         let up = if net < 0.0 { -up } else { up };
         let rises = up.dot(&(last - first)) >= 0.0;
@@ -64,10 +72,11 @@ impl<const D: usize> MooringLine<D> {
         let level = high - low - up * z;
         let x = level.norm();
         let ahead = if x > 0.0 { level / x } else { Vector::zeros() };
-        let lies =
-            |bed: &super::forces::BedPlane<D>| bed.normal.dot(&up) > 0.7 && bed.depth(&low).abs() < 2.0 * self.segment;
+        let lies = |bed: &super::forces::BedPlane<D>| {
+            bed.normal.dot(&up) > 0.7 && bed.depth(&low).abs() < 2.0 * self.state.segment
+        };
         let weight = net.abs().max(1e-6 * material.mass) * gravity.norm();
-        let length = self.segment * self.segments() as f64;
+        let length = self.state.segment * self.segments() as f64;
         let bed = below.bed.filter(|_| net > 0.0).filter(lies).map(|_| 0.0);
         let span = CatenarySpan { x, z, length, weight, stiffness: material.stiffness, bed };
         Some((span.solve(), [ahead, up], rises))
@@ -79,7 +88,7 @@ impl<const D: usize> MooringLine<D> {
         let n = self.segments();
         let low = self.state.x[if rises { 0 } else { n }];
         for i in 1..n {
-            let s = self.segment * if rises { i } else { n - i } as f64;
+            let s = self.state.segment * if rises { i } else { n - i } as f64;
             let [x, z] = shape.position(s);
             self.state.x[i] = low + ahead * x + up * z;
         }
@@ -101,7 +110,7 @@ impl<const D: usize> MooringLine<D> {
             forces[s + 1] -= pull;
         }
         if self.material.bending > 0.0 {
-            let energy = self.material.bending / self.segment;
+            let energy = self.material.bending / self.state.segment;
             for i in 1..n {
                 let x = &self.state.x;
                 let bent = bending_forces([&x[i - 1], &x[i], &x[i + 1]], energy);
@@ -123,10 +132,10 @@ impl<const D: usize> MooringLine<D> {
         };
         for s in 0..n {
             let (q, length) = self.direction_and_length(s);
-            let tension = self.elastic_tension(s, length);
-            if tension > 0.0 {
+            let [tension, slope] = elastic_law(material, length / self.state.segment - 1.0);
+            if tension > 0.0 && self.state.broken != Some(s as u32) {
                 let along = q * q.transpose();
-                let block = along * (material.stiffness / self.segment) + (identity - along) * (tension / length);
+                let block = along * (slope / self.state.segment) + (identity - along) * (tension / length);
                 for (i, j, sign) in [(s, s, 1.0), (s + 1, s + 1, 1.0), (s + 1, s, -1.0)] {
                     add(i, j, &(block * sign));
                 }
@@ -140,7 +149,7 @@ impl<const D: usize> MooringLine<D> {
             }
         }
         if material.bending > 0.0 {
-            let stiff = material.bending / self.segment.powi(3);
+            let stiff = material.bending / self.state.segment.powi(3);
             let second = [1.0, -2.0, 1.0];
             for i in 1..n {
                 let q = (self.state.x[i + 1] - self.state.x[i - 1]).normalize();
@@ -160,8 +169,8 @@ impl<const D: usize> MooringLine<D> {
         if n < 2 {
             return 0.0;
         }
-        let weight = self.material.mass * self.segment * gravity.norm().max(f64::MIN_POSITIVE);
-        let least = 1e-6 * weight / self.segment;
+        let weight = self.material.mass * self.state.segment * gravity.norm().max(f64::MIN_POSITIVE);
+        let least = 1e-6 * weight / self.state.segment;
         let inner = |forces: &[Vector<D>]| DVector::from_iterator((n - 1) * D, forces[1..n].iter().flatten().copied());
         let largest = |forces: &[Vector<D>]| forces[1..n].iter().map(|f| f.norm()).fold(0.0, f64::max) / weight;
         let mut forces = self.forces(around, gravity);
@@ -175,7 +184,7 @@ impl<const D: usize> MooringLine<D> {
             let start = self.state.x.clone();
             let downhill = uphill.dot(&step);
             let longest = step.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
-            let mut part = (self.segment / longest).min(1.0);
+            let mut part = (self.state.segment / longest).min(1.0);
             for _ in 0..30 {
                 for i in 1..n {
                     self.state.x[i] = start[i] + Vector::from_fn(|k, _| part * step[(i - 1) * D + k]);

@@ -3,7 +3,7 @@
 //! A line of n segments of length l₀ has n + 1 nodes. A node has the mass and the water of half of each segment beside it. With
 //! the unit vector q along a segment of length l, its strain ε = l/l₀ − 1 and the tangent t at a node (Hall and Goupee 2015):
 //!
-//! - tension EA ε + BA ε̇ along q, where ε > 0; a slack segment carries nothing
+//! - tension EA ε, or that of a table, and BA ε̇ along q, where ε > 0; a slack segment carries nothing
 //! - bending: the energy EI/l₀ (1 − q₁·q₂) at a node between two segments
 //! - weight less buoyancy of the wet share φ: (m − φ ρ A) l₀ g
 //! - drag ½ ρ d l₀ φ (C_d |u_n| u_n + π C_dAx |u_t| u_t) of the velocity u of the water relative to the node
@@ -13,7 +13,7 @@
 //!
 //! The acceleration of the water is not in these forces: it is small beside the drag of a line much thinner than the waves are high.
 
-use std::f64::consts::PI;
+use std::{f64::consts::PI, sync::Arc};
 
 use crate::math::{Matrix, Vector};
 
@@ -53,14 +53,16 @@ impl<const D: usize> NodeSurroundings<D> {
 }
 
 /// Material of a line, and the water around it.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct LineMaterial {
     /// Volume-equivalent diameter d, m.
     pub(crate) diameter: f64,
     /// Mass of a metre, kg/m.
     pub(crate) mass: f64,
-    /// Axial stiffness EA, N.
+    /// Axial stiffness EA, N; the largest of a table.
     pub(crate) stiffness: f64,
+    /// Tension (N) over strain (–), linear between its rows; `None`: EA ε.
+    pub(crate) table: Option<Arc<[[f64; 2]]>>,
     /// Axial damping BA, N s.
     pub(crate) damping: f64,
     /// Bending stiffness EI, N m².
@@ -129,6 +131,19 @@ pub(crate) struct NodeBody {
     pub(crate) volume: f64,
     /// Drag coefficient times area, m².
     pub(crate) drag_area: f64,
+    /// Added-mass coefficient, –.
+    pub(crate) added_mass: f64,
+}
+
+impl NodeBody {
+    /// Adds another body in the same place.
+    pub(super) fn add(&mut self, other: &Self) {
+        let displaced = self.added_mass * self.volume + other.added_mass * other.volume;
+        self.mass += other.mass;
+        self.volume += other.volume;
+        self.drag_area += other.drag_area;
+        self.added_mass = if self.volume > 0.0 { displaced / self.volume } else { 0.0 };
+    }
 }
 
 /// The load of weight, water and bed on a node at `x` (m) that moves at `v` (m/s), with the line's length `share` (m) and a point
@@ -146,7 +161,9 @@ pub(super) fn node_load<const D: usize>(
     let displaced = around.wet * m.displaced() * share;
     let dry = m.mass * share + body.mass;
     let afloat = around.wet * m.water_density * body.volume;
-    let mass = identity * dry + across * (displaced * m.added_mass[0]) + tangential * (displaced * m.added_mass[1]);
+    let mass = identity * (dry + afloat * body.added_mass)
+        + across * (displaced * m.added_mass[0])
+        + tangential * (displaced * m.added_mass[1]);
     let relative = around.water_velocity - v;
     let axial = t.dot(&relative);
     let normal = (relative - t * axial).norm();
@@ -202,9 +219,16 @@ pub(super) fn friction<const D: usize>(
     way * (-material.bed_stiffness * material.contact_width * share)
 }
 
-/// Tension (N) of a segment without its damping, at the strain ε.
-pub(super) fn elastic_tension(material: &LineMaterial, strain: f64) -> f64 {
-    material.stiffness * strain.max(0.0)
+/// Tension (N) of a segment without its damping at the strain ε, and its slope dT/dε (N).
+pub(super) fn elastic_law(material: &LineMaterial, strain: f64) -> [f64; 2] {
+    if strain <= 0.0 {
+        return [0.0; 2];
+    }
+    let Some(table) = &material.table else { return [material.stiffness * strain, material.stiffness] };
+    let next = table.partition_point(|row| row[0] <= strain).clamp(1, table.len() - 1);
+    let ([e0, t0], [e1, t1]) = (table[next - 1], table[next]);
+    let slope = (t1 - t0) / (e1 - e0);
+    [t0 + slope * (strain - e0), slope]
 }
 
 /// Forces (N) of bending on three nodes between which two segments lie, with the energy EI/l₀ (1 − q₁·q₂) of `energy` = EI/l₀ (J).

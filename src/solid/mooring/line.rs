@@ -13,7 +13,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::forces::{
-    LineMaterial, NodeBody, NodeLoad, NodeSurroundings, bending_forces, elastic_tension, friction, node_load,
+    LineMaterial, NodeBody, NodeLoad, NodeSurroundings, bending_forces, elastic_law, friction, node_load,
 };
 use crate::math::{Matrix, Vector};
 
@@ -33,33 +33,37 @@ pub(crate) struct LineState<const D: usize> {
     pub(crate) grips: Vec<Option<Vector<D>>>,
     /// Number of the segment that has broken.
     pub(crate) broken: Option<u32>,
+    /// Length of a segment without tension, m.
+    pub(crate) segment: f64,
+    /// Whether the line acts now.
+    pub(crate) acts: bool,
 }
 
-/// A line of equal segments. An end is held, and moves as it is told, or it is free.
+/// A line of equal segments. An end is held, and moves as it is told, or it is free, or joined to ends of other lines.
 #[derive(Clone)]
 pub(crate) struct MooringLine<const D: usize> {
     pub(super) material: LineMaterial,
-    /// Length of a segment without tension, m.
-    pub(super) segment: f64,
     /// Point mass on each node.
     pub(super) bodies: Vec<NodeBody>,
     /// Whether each end is held.
     pub(super) held: [bool; 2],
     pub(crate) state: LineState<D>,
-    work: Workspace<D>,
+    pub(super) work: Workspace<D>,
 }
 
 /// Arrays of an inner step, kept from one to the next.
 #[derive(Clone, Default)]
-struct Workspace<const D: usize> {
+pub(super) struct Workspace<const D: usize> {
     /// Matrix of each node, and its inverse after the elimination.
-    matrix: Vec<Matrix<D>>,
+    pub(super) matrix: Vec<Matrix<D>>,
     /// Impulse on each node, N s.
-    impulse: Vec<Vector<D>>,
+    pub(super) impulse: Vec<Vector<D>>,
     /// Direction of each segment, and its coupling of both ends, kg.
-    coupling: Vec<(Vector<D>, f64)>,
+    pub(super) coupling: Vec<(Vector<D>, f64)>,
     /// Change of the velocity of each node, m/s.
-    change: Vec<Vector<D>>,
+    pub(super) change: Vec<Vector<D>>,
+    /// Change of the velocity of each node by that of each end along its segment, –; of joined lines.
+    pub(super) responses: [Vec<Vector<D>>; 2],
 }
 
 impl<const D: usize> MooringLine<D> {
@@ -68,7 +72,6 @@ impl<const D: usize> MooringLine<D> {
         let place = |i: usize| ends[0] + (ends[1] - ends[0]) * (i as f64 / segments as f64);
         Self {
             material,
-            segment: length / segments as f64,
             bodies: vec![NodeBody::default(); segments + 1],
             held: [true; 2],
             state: LineState {
@@ -77,6 +80,8 @@ impl<const D: usize> MooringLine<D> {
                 end_forces: [Vector::zeros(); 2],
                 grips: vec![None; segments + 1],
                 broken: None,
+                segment: length / segments as f64,
+                acts: true,
             },
             work: Workspace::default(),
         }
@@ -89,12 +94,12 @@ impl<const D: usize> MooringLine<D> {
 
     /// Length without tension, m.
     pub(crate) fn length(&self) -> f64 {
-        self.segment * self.segments() as f64
+        self.state.segment * self.segments() as f64
     }
 
     /// Length of the line that belongs to node `i`, m.
     pub(super) fn share(&self, i: usize) -> f64 {
-        if i == 0 || i == self.segments() { 0.5 * self.segment } else { self.segment }
+        if i == 0 || i == self.segments() { 0.5 * self.state.segment } else { self.state.segment }
     }
 
     /// Unit vector along segment `s` and its length, m.
@@ -107,7 +112,7 @@ impl<const D: usize> MooringLine<D> {
     /// Tension of segment `s` by its strain, N.
     pub(super) fn elastic_tension(&self, s: usize, length: f64) -> f64 {
         let broken = self.state.broken == Some(s as u32);
-        if broken { 0.0 } else { elastic_tension(&self.material, length / self.segment - 1.0) }
+        if broken { 0.0 } else { elastic_law(&self.material, length / self.state.segment - 1.0)[0] }
     }
 
     /// Tension of segment `s` with its damping, N.
@@ -120,7 +125,7 @@ impl<const D: usize> MooringLine<D> {
 
     /// Damping (N s/m) of a segment that carries `elastic` (N) and grows at `rate` (m/s): none where it would push.
     fn active_damping(&self, elastic: f64, rate: f64) -> f64 {
-        let damping = self.material.damping / self.segment;
+        let damping = self.material.damping / self.state.segment;
         if elastic > 0.0 && elastic + damping * rate > 0.0 { damping } else { 0.0 }
     }
 
@@ -133,7 +138,7 @@ impl<const D: usize> MooringLine<D> {
 
     /// Longest inner step, s.
     pub(crate) fn step_limit(&self) -> f64 {
-        INNER_STEP / self.material.highest_frequency(self.segment)
+        INNER_STEP / self.material.highest_frequency(self.state.segment)
     }
 
     /// Advances the line by `dt` (s), in which the held ends move evenly to the points `ends` (m). `around` is what is around each
@@ -145,16 +150,7 @@ impl<const D: usize> MooringLine<D> {
         around: &[NodeSurroundings<D>],
         gravity: &Vector<D>,
     ) -> [Vector<D>; 2] {
-        let n = self.segments();
-        let mut impulses = [Vector::zeros(); 2];
-        let nodes = [0, n];
-        for k in (0..2).filter(|k| self.held[*k]) {
-            let i = nodes[k];
-            let velocity = (ends[k] - self.state.x[i]) / dt;
-            let mass = self.load(i, around, gravity).mass;
-            impulses[k] -= mass * (velocity - self.state.v[i]);
-            self.state.v[i] = velocity;
-        }
+        let mut impulses = self.begin_step(ends, dt, around, gravity);
         let steps = (dt / self.step_limit()).ceil().max(1.0);
         let h = dt / steps;
         for _ in 0..steps as u64 {
@@ -162,14 +158,40 @@ impl<const D: usize> MooringLine<D> {
             self.kick(h, around, gravity, &mut impulses);
             self.drift(0.5 * h);
         }
+        self.end_step(ends, dt, impulses);
+        self.state.end_forces
+    }
+
+    /// Sets the velocities of the held ends that move evenly to the points `ends` (m) in a step `dt` (s) long. Returns the impulses
+    /// (N s) on what holds them.
+    pub(super) fn begin_step(
+        &mut self,
+        ends: [Vector<D>; 2],
+        dt: f64,
+        around: &[NodeSurroundings<D>],
+        gravity: &Vector<D>,
+    ) -> [Vector<D>; 2] {
+        let (mut impulses, nodes) = ([Vector::zeros(); 2], [0, self.segments()]);
+        for k in (0..2).filter(|k| self.held[*k]) {
+            let i = nodes[k];
+            let velocity = (ends[k] - self.state.x[i]) / dt;
+            let mass = self.load(i, around, gravity).mass;
+            impulses[k] -= mass * (velocity - self.state.v[i]);
+            self.state.v[i] = velocity;
+        }
+        impulses
+    }
+
+    /// Ends a step `dt` (s) long with the held ends at the points `ends` (m) and these `impulses` (N s) on what holds them.
+    pub(super) fn end_step(&mut self, ends: [Vector<D>; 2], dt: f64, impulses: [Vector<D>; 2]) {
+        let nodes = [0, self.segments()];
         for k in (0..2).filter(|k| self.held[*k]) {
             self.state.x[nodes[k]] = ends[k];
         }
         self.state.end_forces = impulses.map(|impulse| impulse / dt);
-        self.state.end_forces
     }
 
-    fn drift(&mut self, h: f64) {
+    pub(super) fn drift(&mut self, h: f64) {
         let LineState { x, v, .. } = &mut self.state;
         x.iter_mut().zip(v).for_each(|(x, v)| *x += *v * h);
     }
@@ -179,21 +201,21 @@ impl<const D: usize> MooringLine<D> {
         node_load(&self.material, (self.share(i), &self.bodies[i]), (x, v, &self.tangent(i)), &around[i], gravity)
     }
 
-    /// Changes the velocities by the forces of a step `h` (s) long; adds the impulses (N s) on what holds the ends.
-    fn kick(&mut self, h: f64, around: &[NodeSurroundings<D>], gravity: &Vector<D>, impulses: &mut [Vector<D>; 2]) {
+    /// Fills the matrices and the impulses of a step `h` (s) long.
+    pub(super) fn assemble(&mut self, h: f64, around: &[NodeSurroundings<D>], gravity: &Vector<D>) {
         let n = self.segments();
-        let Workspace { mut matrix, mut impulse, mut coupling, mut change } = std::mem::take(&mut self.work);
+        let mut work = std::mem::take(&mut self.work);
+        let Workspace { matrix, impulse, coupling, .. } = &mut work;
         matrix.clear();
         impulse.clear();
         coupling.clear();
-        change.clear();
         for i in 0..=n {
             let load = self.load(i, around, gravity);
             matrix.push(load.mass + load.drag * (0.5 * h) + load.bed * h);
             let mut force = load.force - (load.drag + load.bed) * self.state.v[i];
             if self.material.bed_friction > 0.0 {
                 let (x, grip) = (&self.state.x[i], &mut self.state.grips[i]);
-                let share = if i == 0 || i == n { 0.5 } else { 1.0 } * self.segment;
+                let share = if i == 0 || i == n { 0.5 } else { 1.0 } * self.state.segment;
                 force += friction(&self.material, share, x, around[i].bed, grip);
             }
             impulse.push(force * h);
@@ -213,7 +235,7 @@ impl<const D: usize> MooringLine<D> {
             coupling.push((q, half));
         }
         if self.material.bending > 0.0 {
-            let energy = self.material.bending / self.segment;
+            let energy = self.material.bending / self.state.segment;
             let whole = |s: usize| self.state.broken != Some(s as u32);
             for i in (1..n).filter(|i| whole(*i) && whole(i - 1)) {
                 let x = &self.state.x;
@@ -221,10 +243,26 @@ impl<const D: usize> MooringLine<D> {
                 forces.iter().zip(i - 1..).for_each(|(force, i)| impulse[i] += force * h);
             }
         }
-        let (first, last) = (usize::from(self.held[0]), if self.held[1] { n - 1 } else { n });
+        self.work = work;
+    }
+
+    /// Changes the velocities by the forces of a step `h` (s) long; adds the impulses (N s) on what holds the ends.
+    fn kick(&mut self, h: f64, around: &[NodeSurroundings<D>], gravity: &Vector<D>, impulses: &mut [Vector<D>; 2]) {
+        self.assemble(h, around, gravity);
+        let n = self.segments();
+        let inner = [usize::from(self.held[0]), if self.held[1] { n - 1 } else { n }];
+        let Workspace { matrix, impulse, coupling, change, .. } = &mut self.work;
+        change.clear();
         change.resize(n + 1, Vector::zeros());
-        solve(&mut matrix, &mut impulse, &coupling, [first, last], &mut change);
-        self.state.v.iter_mut().zip(&change).for_each(|(v, change)| *v += change);
+        eliminate(matrix, coupling, inner);
+        substitute(matrix, impulse, coupling, inner, change);
+        self.state.v.iter_mut().zip(&*change).for_each(|(v, change)| *v += change);
+        self.add_end_impulses(impulses);
+    }
+
+    /// Adds the impulses (N s) of the last change of the velocities on what holds the ends.
+    pub(super) fn add_end_impulses(&self, impulses: &mut [Vector<D>; 2]) {
+        let (n, Workspace { impulse, coupling, change, .. }) = (self.segments(), &self.work);
         if self.held[0] {
             let (q, half) = coupling[0];
             impulses[0] += impulse[0] + q * (half * q.dot(&change[1]));
@@ -233,7 +271,6 @@ impl<const D: usize> MooringLine<D> {
             let (q, half) = coupling[n - 1];
             impulses[1] += impulse[n] + q * (half * q.dot(&change[n - 1]));
         }
-        self.work = Workspace { matrix, impulse, coupling, change };
     }
 
     /// Energies of the dry line, J: motion, stretch and bending, height under `gravity` (m/s²).
@@ -242,12 +279,12 @@ impl<const D: usize> MooringLine<D> {
         let mass = |i: usize| self.material.mass * self.share(i) + self.bodies[i].mass;
         let nodes = || self.state.x.iter().zip(&self.state.v).enumerate();
         let stretch = |s: usize| {
-            let strain = (self.direction_and_length(s).1 / self.segment - 1.0).max(0.0);
-            0.5 * self.material.stiffness * strain * strain * self.segment
+            let strain = (self.direction_and_length(s).1 / self.state.segment - 1.0).max(0.0);
+            0.5 * self.material.stiffness * strain * strain * self.state.segment
         };
         let bend = |i: usize| {
             let cosine = self.direction_and_length(i - 1).0.dot(&self.direction_and_length(i).0);
-            self.material.bending / self.segment * (1.0 - cosine)
+            self.material.bending / self.state.segment * (1.0 - cosine)
         };
         [
             nodes().map(|(i, (_, v))| 0.5 * mass(i) * v.norm_squared()).sum(),
@@ -257,24 +294,35 @@ impl<const D: usize> MooringLine<D> {
     }
 }
 
-/// Solves for the changes of the velocities of the nodes from `first` to `last`: A Δv = impulse, where A has the blocks `matrix` on
-/// its diagonal and −b q qᵀ of `coupling` beside it.
-fn solve<const D: usize>(
+/// Replaces the blocks `matrix` of the nodes from `first` to `last` by what substitution needs. They stand on the diagonal, and
+/// −b q qᵀ of `coupling` beside it.
+pub(super) fn eliminate<const D: usize>(
     matrix: &mut [Matrix<D>],
-    impulse: &mut [Vector<D>],
     coupling: &[(Vector<D>, f64)],
     [first, last]: [usize; 2],
-    change: &mut [Vector<D>],
 ) {
     for i in first..=last {
         if i > first {
             let (q, b) = coupling[i - 1];
             let y = matrix[i - 1] * q;
-            let along = b * y.dot(&impulse[i - 1]);
             matrix[i] -= q * q.transpose() * (b * b * q.dot(&y));
-            impulse[i] += q * along;
         }
         matrix[i] = matrix[i].try_inverse().unwrap_or_else(Matrix::zeros);
+    }
+}
+
+/// Solves for the changes of the velocities of the nodes from `first` to `last` by their impulses, with the `matrix` of [`eliminate`].
+pub(super) fn substitute<const D: usize>(
+    matrix: &[Matrix<D>],
+    impulse: &mut [Vector<D>],
+    coupling: &[(Vector<D>, f64)],
+    [first, last]: [usize; 2],
+    change: &mut [Vector<D>],
+) {
+    for i in first + 1..=last {
+        let (q, b) = coupling[i - 1];
+        let along = b * (matrix[i - 1] * q).dot(&impulse[i - 1]);
+        impulse[i] += q * along;
     }
     for i in (first..=last).rev() {
         let mut right = impulse[i];

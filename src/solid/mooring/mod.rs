@@ -1,23 +1,25 @@
 //! Mooring lines with mass: elastic catenaries, and lumped-mass lines at rest and in motion.
 //!
-//! `forces` has the equations, `line` their integration in time, `equilibrium` and `catenary` the line at rest, and `attached` the
-//! line on the solids of a running system. Nothing here knows the particles: the coupling says what is around each node.
+//! `forces` has the equations, `line` their integration in time, `network` the points in which lines meet, `equilibrium` and
+//! `catenary` the line at rest, and `attached` the line on the solids of a running system. Nothing here knows the particles: the coupling says what is around each node.
 
 mod attached;
 mod catenary;
 mod equilibrium;
 mod forces;
 mod line;
+mod network;
 mod pretension;
 mod specification;
 
 pub(crate) use attached::Mooring;
 pub use attached::MooringReading;
 pub(crate) use forces::{BedPlane, NodeSurroundings};
-pub(crate) use line::LineState;
+pub(crate) use line::{LineState, MooringLine};
+pub(crate) use network::{Junctions, LineStep};
 pub(crate) use pretension::forces_at_rest;
-pub(crate) use specification::check_mooring;
-pub use specification::{ClumpSpec, LineDamping, LineType, MooringSpec};
+pub use specification::{ClumpSpec, LineDamping, LineType, MooringPointSpec, MooringSpec};
+pub(crate) use specification::{check_mooring, check_mooring_points, junctions};
 
 #[cfg(all(test, feature = "dim2", feature = "dim3"))]
 #[path = "../../../tests/unit/solid/mooring/references.rs"]

@@ -3,42 +3,54 @@
 use super::{
     forces::{BedPlane, NodeSurroundings},
     line::MooringLine,
-    specification::MooringSpec,
+    specification::{MooringPointSpec, MooringSpec, junctions},
 };
 use crate::{
     math::Vector,
     solid::{Role, SolidSpec, statics::WaterAtRest},
 };
 
-/// Step (m) of the difference that gives the normal of a surface, over the length of a segment.
+/// Step (m) of the difference that gives the normal of a surface, over the length of the shortest segment.
 const NORMAL_STEP: f64 = 1e-4;
 
 /// The force (N) on what holds each end of each line between `solids` where the ends start. What is below the surface is wet.
 pub(crate) fn forces_at_rest<const D: usize>(
-    moorings: &[MooringSpec<D>],
+    (moorings, points): (&[MooringSpec<D>], &[MooringPointSpec<D>]),
     solids: &[&SolidSpec<D>],
     water: &WaterAtRest,
 ) -> Vec<[Vector<D>; 2]> {
     let gravity = Vector::from_fn(|i, _| if i == D - 1 { -water.g } else { 0.0 });
-    let of_line = |spec: &MooringSpec<D>| {
-        let segment = spec.length / spec.segments as f64;
-        let around = |x: &Vector<D>| {
-            let distance = |solid: &&&SolidSpec<D>| solid.shape.signed_distance(&solid.pose.local(x));
-            let fixed = solids.iter().filter(|solid| matches!(solid.role, Role::Fixed));
-            let nearest = fixed.min_by(|a, b| distance(a).total_cmp(&distance(b)));
-            let bed = nearest.map(|solid| {
-                let local = solid.pose.local(x);
-                let normal = solid.pose.rotation * solid.shape.outward_normal(&local, NORMAL_STEP * segment);
-                BedPlane { point: x - normal * distance(&solid), normal }
-            });
-            let wet = if x[D - 1] < water.level { 1.0 } else { 0.0 };
-            NodeSurroundings { water_velocity: Vector::zeros(), wet, bed }
-        };
-        let material = spec.line.material(segment, water.rho0);
-        let mut line = MooringLine::straight(material, spec.length, spec.segments, spec.ends.map(|end| end.at));
-        line.bodies = spec.node_bodies();
-        line.find_rest(&around, &gravity);
-        line.state.end_forces
+    let segments = moorings.iter().map(|spec| spec.length / spec.segments as f64);
+    let shortest = segments.fold(f64::INFINITY, f64::min);
+    let around = |x: &Vector<D>| {
+        let distance = |solid: &&&SolidSpec<D>| solid.shape.signed_distance(&solid.pose.local(x));
+        let fixed = solids.iter().filter(|solid| matches!(solid.role, Role::Fixed));
+        let nearest = fixed.min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        let bed = nearest.map(|solid| {
+            let local = solid.pose.local(x);
+            let normal = solid.pose.rotation * solid.shape.outward_normal(&local, NORMAL_STEP * shortest);
+            BedPlane { point: x - normal * distance(&solid), normal }
+        });
+        let wet = if x[D - 1] < water.level { 1.0 } else { 0.0 };
+        NodeSurroundings { water_velocity: Vector::zeros(), wet, bed }
     };
-    moorings.iter().map(of_line).collect()
+    let line = |spec: &MooringSpec<D>| {
+        let material = spec.line.material(spec.length / spec.segments as f64, water.rho0);
+        let ends = spec.ends.map(|end| end.at);
+        let mut line = MooringLine::straight(material, spec.length_at(0.0), spec.segments, ends);
+        line.bodies = spec.node_bodies();
+        line
+    };
+    let mut lines: Vec<_> = moorings.iter().map(line).collect();
+    let (junctions, bodies) = junctions(points, moorings);
+    let mut all: Vec<_> = lines.iter_mut().collect();
+    junctions.attach(&mut all, &bodies);
+    let alone = all.iter_mut().enumerate().filter(|(i, _)| !junctions.joins(*i));
+    alone.for_each(|(_, line)| {
+        line.find_rest(&around, &gravity);
+    });
+    if !junctions.is_empty() {
+        junctions.find_rest(&mut all, &around, &gravity);
+    }
+    lines.into_iter().map(|line| line.state.end_forces).collect()
 }

@@ -1,9 +1,13 @@
 //! The specification of mooring lines, with the conventions of MoorDyn (Hall and Goupee 2015).
 
-use super::forces::{LineMaterial, NodeBody};
+use super::{
+    forces::{LineMaterial, NodeBody},
+    network::Junctions,
+};
 use crate::{
     error::{Error, ErrorCode, Result},
-    solid::{LineEnd, Role, SolidSpec},
+    math::Vector,
+    solid::{Lifetime, LineEnd, Role, SolidSpec, TimeFunction},
 };
 
 /// Stiffness of a bed unless it is given, Pa/m.
@@ -30,15 +34,17 @@ pub enum LineDamping {
 /// let chain = LineType::new(0.252, 390.0, 1.674e9);
 /// assert_eq!((chain.drag, chain.added_mass), ([1.2, 0.0], [1.0, 0.0]));
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct LineType {
     /// Volume-equivalent diameter d, m.
     pub diameter: f64,
     /// Mass of a metre in air, kg/m.
     pub mass_per_length: f64,
-    /// Axial stiffness EA, N.
+    /// Axial stiffness EA, N; with a table the largest in it.
     pub stiffness: f64,
+    /// Tension (N) over strain (–), linear between its rows and on beyond the last; `None`: EA times the strain.
+    pub table: Option<Vec<[f64; 2]>>,
     /// Axial damping.
     pub damping: LineDamping,
     /// Bending stiffness EI, N m²; 0 for chain.
@@ -66,6 +72,7 @@ impl LineType {
             diameter,
             mass_per_length,
             stiffness,
+            table: None,
             damping: LineDamping::OfCritical(1.0),
             bending_stiffness: 0.0,
             added_mass: [1.0, 0.0],
@@ -77,12 +84,19 @@ impl LineType {
         }
     }
 
+    /// The same line with a tension (N) over the strain (–): rows from no strain and no tension on, both of which increase.
+    pub fn table(self, rows: Vec<[f64; 2]>) -> Self {
+        let slopes = rows.windows(2).map(|pair| (pair[1][1] - pair[0][1]) / (pair[1][0] - pair[0][0]));
+        Self { stiffness: slopes.fold(0.0, f64::max), table: Some(rows), ..self }
+    }
+
     /// The material of segments of length `segment` (m) in water of the density `water_density` (kg/m³).
     pub(super) fn material(&self, segment: f64, water_density: f64) -> LineMaterial {
         LineMaterial {
             diameter: self.diameter,
             mass: self.mass_per_length,
             stiffness: self.stiffness,
+            table: self.table.as_deref().map(Into::into),
             damping: match self.damping {
                 LineDamping::Given(damping) => damping,
                 LineDamping::OfCritical(share) => share * segment * (self.stiffness * self.mass_per_length).sqrt(),
@@ -111,6 +125,39 @@ pub struct ClumpSpec {
     pub volume: f64,
     /// Drag coefficient times area, m².
     pub drag_area: f64,
+    /// Added-mass coefficient of the volume, –.
+    pub added_mass: f64,
+}
+
+impl ClumpSpec {
+    /// The point mass on its node.
+    pub(super) fn body(&self) -> NodeBody {
+        NodeBody { mass: self.mass, volume: self.volume, drag_area: self.drag_area, added_mass: self.added_mass }
+    }
+}
+
+/// A point in which mooring lines meet, with the mass of a clump weight or a buoy.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct MooringPointSpec<const D: usize> {
+    /// Its name.
+    pub name: String,
+    /// Place (m) from which the point finds its rest at the start.
+    pub at: Vector<D>,
+    /// Its mass, volume, drag and added mass; its `at` is not used.
+    pub body: ClumpSpec,
+}
+
+impl<const D: usize> MooringPointSpec<D> {
+    /// A point without mass near this place (m).
+    pub fn new(name: impl Into<String>, at: impl Into<Vector<D>>) -> Self {
+        Self { name: name.into(), at: at.into(), body: ClumpSpec::default() }
+    }
+
+    /// The same point with this mass, volume, drag and added mass.
+    pub fn body(self, body: ClumpSpec) -> Self {
+        Self { body, ..self }
+    }
 }
 
 /// The specification of a mooring line with mass.
@@ -130,14 +177,18 @@ pub struct MooringSpec<const D: usize> {
     pub name: String,
     /// Its two ends.
     pub ends: [LineEnd<D>; 2],
+    /// The number of the mooring point at each end; `None` if the end is on a solid or on the ground.
+    pub points: [Option<usize>; 2],
     /// Length without tension, m.
     pub length: f64,
+    /// Length (m) that a winch pays out, over the time of the run (s), in addition to `length`; all segments grow alike.
+    pub paid_out: Option<TimeFunction>,
     /// Number of segments.
     pub segments: usize,
     /// Its material; in 2-D that of the lines of a metre of width.
     pub line: LineType,
-    /// Tension under which a segment breaks, N; infinite if none does.
-    pub strength: f64,
+    /// When it acts, and the tension under which a segment breaks.
+    pub lifetime: Lifetime,
     /// Clump weights and floats.
     pub clumps: Vec<ClumpSpec>,
 }
@@ -145,7 +196,40 @@ pub struct MooringSpec<const D: usize> {
 impl<const D: usize> MooringSpec<D> {
     /// A line of this length (m) without tension, in 20 segments.
     pub fn new(name: impl Into<String>, ends: [LineEnd<D>; 2], length: f64, line: LineType) -> Self {
-        Self { name: name.into(), ends, length, segments: 20, line, strength: f64::INFINITY, clumps: Vec::new() }
+        Self {
+            name: name.into(),
+            ends,
+            points: [None; 2],
+            length,
+            paid_out: None,
+            segments: 20,
+            line,
+            lifetime: Lifetime::default(),
+            clumps: Vec::new(),
+        }
+    }
+
+    /// The same line with end number `end`, 0 or 1, in mooring point number `point`, which is near `at` (m).
+    pub fn joined(mut self, end: usize, point: usize, at: impl Into<Vector<D>>) -> Self {
+        self.points[end] = Some(point);
+        self.ends[end] = LineEnd::ground(at);
+        self
+    }
+
+    /// Whether it has an end in a mooring point.
+    pub(crate) fn is_joined(&self) -> bool {
+        self.points.iter().any(Option::is_some)
+    }
+
+    /// The same line on a winch that pays out this length (m) over the time of the run, in addition to its own.
+    pub fn paid_out(self, length: impl Into<TimeFunction>) -> Self {
+        Self { paid_out: Some(length.into()), ..self }
+    }
+
+    /// Length without tension at time `t` (s), m: a hundredth of the length at the start at least.
+    pub(crate) fn length_at(&self, t: f64) -> f64 {
+        let paid_out = self.paid_out.as_ref().map_or(0.0, |law| law.value_and_rate(t).0);
+        (self.length + paid_out).max(0.01 * self.length)
     }
 
     /// The same line in this number of segments.
@@ -159,9 +243,9 @@ impl<const D: usize> MooringSpec<D> {
         self
     }
 
-    /// The same line, a segment of which breaks under this tension (N).
-    pub fn strength(self, strength: f64) -> Self {
-        Self { strength, ..self }
+    /// The same line with this lifetime. Under its strength (N) a segment breaks.
+    pub fn lifetime(self, lifetime: Lifetime) -> Self {
+        Self { lifetime, ..self }
     }
 
     /// The point mass on each node.
@@ -169,10 +253,7 @@ impl<const D: usize> MooringSpec<D> {
         let mut bodies = vec![NodeBody::default(); self.segments + 1];
         for clump in &self.clumps {
             let node = (clump.at / self.length * self.segments as f64).round() as usize;
-            let body = &mut bodies[node.min(self.segments)];
-            body.mass += clump.mass;
-            body.volume += clump.volume;
-            body.drag_area += clump.drag_area;
+            bodies[node.min(self.segments)].add(&clump.body());
         }
         bodies
     }
@@ -193,8 +274,22 @@ pub(crate) fn check_mooring<const D: usize>(mooring: &MooringSpec<D>, solids: &[
         return refuse("has an end that is nowhere".into(), "its ends are points, m");
     }
     let moves = |&i: &usize| !matches!(solids[i].role, Role::Fixed);
-    if ends[0] == ends[1] || !ends.iter().flatten().any(moves) {
-        return refuse("holds nothing that moves".into(), "one of its ends is on a free or a driven solid");
+    if !mooring.is_joined() && (ends[0] == ends[1] || !ends.iter().flatten().any(moves)) {
+        let help = "one of its ends is on a free or a driven solid, or in a mooring point";
+        return refuse("holds nothing that moves".into(), help);
+    }
+    if mooring.is_joined() {
+        if mooring.points[0] == mooring.points[1] {
+            return refuse("has both ends in one mooring point".into(), "its ends are in two places");
+        }
+        if mooring.segments < 2 {
+            return refuse("has one segment and an end in a mooring point".into(), "write  segments = 2  or more");
+        }
+        if mooring.lifetime.since > 0.0 || mooring.lifetime.until.is_finite() {
+            let help = "a line with an end in a mooring point acts in the whole run: leave out since and until, and let its solids \
+                        stay; breaks is allowed";
+            return refuse("begins or ends in the run, and meets others in a mooring point".into(), help);
+        }
     }
     let line = &mooring.line;
     let damping = match line.damping {
@@ -227,11 +322,7 @@ pub(crate) fn check_mooring<const D: usize>(mooring: &MooringSpec<D>, solids: &[
     if !(length > 0.0 && length.is_finite()) {
         return refuse(format!("is {length} m long"), "give it a length above 0, m");
     }
-    let inside = |clump: &ClumpSpec| {
-        let least = clump.mass.min(clump.volume).min(clump.drag_area);
-        (0.0..=length).contains(&clump.at) && least >= 0.0 && (clump.mass + clump.volume + clump.drag_area).is_finite()
-    };
-    if !mooring.clumps.iter().all(inside) {
+    if !mooring.clumps.iter().all(|clump| (0.0..=length).contains(&clump.at) && is_body(clump)) {
         return refuse(
             "has a clump that is not on it, or has no valid mass".into(),
             "at is a length along the line, m",
@@ -249,9 +340,16 @@ pub(crate) fn check_mooring<const D: usize>(mooring: &MooringSpec<D>, solids: &[
             );
         }
     }
+    if let Some(rows) = &line.table {
+        let rises = |pair: &[[f64; 2]]| pair[1][0] > pair[0][0] && pair[1][1] > pair[0][1] && pair[1][1].is_finite();
+        if rows.len() < 2 || rows[0] != [0.0; 2] || !rows.windows(2).all(rises) {
+            let help = "it begins with [0, 0], has two rows or more, and strain and tension increase";
+            return refuse("has a line whose table of stiffness is not valid".into(), help);
+        }
+    }
     let distance = (mooring.ends[1].at - mooring.ends[0].at).norm();
-    let strain = distance / length - 1.0;
-    if strain > MOST_STRAIN {
+    let strain = distance / mooring.length_at(0.0) - 1.0;
+    if strain > MOST_STRAIN && !mooring.is_joined() {
         let tension = strain * line.stiffness;
         let error = Error::scene(format!(
             "{who} is {length} m long, and its ends start {distance:.6} m apart: its tension would be {tension:.3e} N"
@@ -259,6 +357,47 @@ pub(crate) fn check_mooring<const D: usize>(mooring: &MooringSpec<D>, solids: &[
         return Err(error.help(format!("write  length = {distance:.4}  or more, or start nearer")));
     }
     Ok(())
+}
+
+/// Whether a clump weight, a float or a point has a valid mass, volume and drag.
+fn is_body(body: &ClumpSpec) -> bool {
+    let numbers = [body.mass, body.volume, body.drag_area, body.added_mass];
+    numbers.iter().all(|x| *x >= 0.0 && x.is_finite())
+}
+
+/// Checks the points in which these lines meet.
+///
+/// # Errors
+/// `Scene`: names the point, what is wrong with it, and what would be right.
+pub(crate) fn check_mooring_points<const D: usize>(
+    points: &[MooringPointSpec<D>],
+    moorings: &[MooringSpec<D>],
+) -> Result<()> {
+    let meets = |p: usize| moorings.iter().filter(|line| line.points.contains(&Some(p))).count();
+    if let Some(line) = moorings.iter().find(|line| line.points.iter().flatten().any(|p| *p >= points.len())) {
+        let error = Error::scene(format!("mooring \"{}\" names a mooring point that is not there", line.name));
+        return Err(error.help(format!("there are {} points, numbered from 0", points.len())));
+    }
+    for (p, point) in points.iter().enumerate() {
+        let who = format!("mooring point \"{}\"", point.name);
+        if !is_body(&point.body) || !point.at.norm().is_finite() {
+            let error = Error::scene(format!("{who} has no valid place, mass, volume or drag"));
+            return Err(error.help("they are finite numbers, and all but the place 0 or more"));
+        }
+        if meets(p) < 2 {
+            let error = Error::scene(format!("{who} joins {} lines", meets(p)));
+            return Err(error.help("two lines or more end there; a weight on one line is a clump of that line"));
+        }
+    }
+    Ok(())
+}
+
+/// The points in which these lines meet, with the body of each.
+pub(crate) fn junctions<const D: usize>(
+    points: &[MooringPointSpec<D>],
+    moorings: &[MooringSpec<D>],
+) -> (Junctions, Vec<NodeBody>) {
+    (Junctions::new(moorings), points.iter().map(|point| point.body.body()).collect())
 }
 
 /// Most segments of a line.

@@ -9,7 +9,7 @@ use pontoon::{
     simulation::Simulation,
 };
 
-use crate::common::{run_to, scene_simulation, time_mean};
+use crate::common::{run_to, scene_simulation};
 
 /// A box on two slack chains in a small tank.
 const MOORED: &str = r#"
@@ -88,45 +88,157 @@ fn momentum_and_energy_close_with_the_lines() -> Result<()> {
     Ok(())
 }
 
-/// Without lines the box drifts on. A chain keeps it within its length and 1 % of stretch, 20 N of 2 kN.
+/// The chains slow the box: their stiffness against surge, about 10 N/m, takes 0.3 mm to 3 mm in 0.4 s from the way of 30 kg/m that
+/// move at 0.2 m/s.
 #[test]
 fn chains_hold_the_box() -> Result<()> {
     let (free, _) = MOORED.split_once("[[line_type]]").unwrap();
-    let farthest = |text: &str| -> Result<f64> {
+    let drift = |text: &str| -> Result<f64> {
         let mut sim: Simulation<2> = scene_simulation(text)?;
-        let mut farthest: f64 = 0.0;
-        while sim.time() < 1.8 {
-            sim.step()?;
-            farthest = farthest.max(sim.system().solids()[1].kinematics.centre[0] - 0.8);
-        }
-        Ok(farthest)
+        run_to(&mut sim, 0.4)?;
+        Ok(sim.system().solids()[1].kinematics.centre[0] - 0.8)
     };
-    let (moored, free) =
-        (farthest(&MOORED.replace("[0.2, 0.0]", "[0.4, 0.0]"))?, farthest(&free.replace("[0.2, 0.0]", "[0.4, 0.0]"))?);
-    let reach = (0.7575_f64.powi(2) - 0.3 * 0.3).sqrt() - 0.55;
-    assert!(moored < reach && free > 1.2 * reach, "{moored} m with chains of {reach} m, {free} m without");
+    let (moored, free) = (drift(MOORED)?, drift(free)?);
+    assert!((3e-4..3e-3).contains(&(free - moored)) && free > 0.01, "{moored} m with chains, {free} m without");
     Ok(())
 }
 
-/// A line between a driven solid and the ground is advanced without a free body: moved slowly, it comes to the tension at rest of the
-/// new place, within 3 % of its own oscillation.
+/// A line between a driven solid and the ground is advanced without a free body: where the solid stops, the fairlead bears what a line
+/// bears that starts there.
 #[test]
 fn a_driven_solid_moves_its_line() -> Result<()> {
-    let (free, law) = (
+    let driven = MOORED.replace(
         "at = { x = 0.8, draft = \"equilibrium\" }\nfree = { density = 500.0, velocity = [0.2, 0.0] }",
-        "driven = { along = [1.0, 0.0], distance = { formula = \"0.025*(1-cos(2*pi*min(t,0.5)))\" } }",
+        "at = { x = 0.8, y = 0.3 }\ndriven = { along = [1.0, 0.0], distance = { formula = \"0.025*(1-cos(5*pi*min(t,0.2)))\" } }",
     );
-    let mut sim = scene_simulation::<2>(&MOORED.replace(free, &format!("at = {{ x = 0.8, y = 0.3 }}\n{law}")))?;
-    let moved = MOORED
-        .replace(free, "at = { x = 0.85, y = 0.3 }\ndriven = { along = [1.0, 0.0], distance = { formula = \"0\" } }");
-    let moved =
-        moved.replace("from = [0.65, 0.3]", "from = [0.7, 0.3]").replace("from = [0.95, 0.3]", "from = [1.0, 0.3]");
+    let mut sim = scene_simulation::<2>(&driven)?;
     let probe = MooringProbe::new(sim.system(), "west")?;
-    let (start, rest) = (probe.sample(&sim)[0], probe.sample(&scene_simulation::<2>(&moved)?)[0]);
-    let [now] = time_mean(&mut sim, 0.8, 1.2, |sim| [probe.sample(sim)[0]])?;
+    let start = probe.sample(&sim)[0];
+    run_to(&mut sim, 1.0)?;
     assert!((sim.mooring_reading(0).nodes[0][0] - 0.70).abs() < 1e-9, "the fairlead goes with the solid");
-    assert!(rest > 1.1 * start && (now / rest - 1.0).abs() < 0.03, "{start} N, then {now} N, at rest {rest} N");
+    let there =
+        scene_simulation::<2>(&standing().replacen("x = 0.8", "x = 0.85", 1).replacen("[0.65, 0.3]", "[0.7, 0.3]", 1))?;
+    let [now, there] = [&sim, &there].map(|sim| probe.sample(sim)[0]);
+    assert!(there > 1.1 * start && (now / there - 1.0).abs() < 0.05, "from {start} N to {now} N, not {there} N");
     Ok(())
+}
+
+/// A driven solid that stands still, in place of the free box.
+fn standing() -> String {
+    MOORED.replace(
+        "at = { x = 0.8, draft = \"equilibrium\" }\nfree = { density = 500.0, velocity = [0.2, 0.0] }",
+        "at = { x = 0.8, y = 0.3 }\ndriven = { along = [1.0, 0.0], distance = { formula = \"0\" } }",
+    )
+}
+
+/// A line begins at rest at its time, with the force of the static line, and has none after its end.
+#[test]
+fn a_line_acts_from_since_until() -> Result<()> {
+    let scene = standing().replacen("length = 0.75", "length = 0.75\nsince = 0.05\nuntil = 0.15", 1);
+    let mut sim = scene_simulation::<2>(&scene)?;
+    let probe = MooringProbe::new(sim.system(), "west")?;
+    let other = MooringProbe::new(sim.system(), "east")?;
+    assert!(probe.sample(&sim).iter().all(|x| *x == 0.0) && sim.mooring_reading(0).nodes.is_empty());
+    run_to(&mut sim, 0.1)?;
+    let [west, east] = [&probe, &other].map(|probe| probe.sample(&sim)[0]);
+    assert!((west / east - 1.0).abs() < 0.05, "both lines hang alike: {west} N, {east} N");
+    run_to(&mut sim, 0.2)?;
+    assert!(probe.sample(&sim).iter().all(|x| *x == 0.0), "it has ended");
+    let events: Vec<String> = sim.events().iter().map(ToString::to_string).collect();
+    assert!(events.len() == 2 && events.iter().all(|event| event.contains("west")), "{events:?}");
+    Ok(())
+}
+
+/// A winch that hauls in slowly passes through the static tensions: after it has hauled in 0.03 m the line has the tension of one that is
+/// 0.03 m shorter.
+#[test]
+fn a_winch_changes_the_tension() -> Result<()> {
+    let winch = "length = 0.75\npaid_out = { formula = \"-0.1*min(t,0.3)\" }";
+    let mut sim = scene_simulation::<2>(&standing().replacen("length = 0.75", winch, 1))?;
+    run_to(&mut sim, 1.0)?;
+    let short = scene_simulation::<2>(&standing().replacen("length = 0.75", "length = 0.72", 1))?;
+    let [hauled, short] = [&sim, &short].map(|sim| sim.mooring_reading(0).end_forces[0].norm());
+    assert!((hauled / short - 1.0).abs() < 0.05, "{hauled} N after hauling in, {short} N of the short line");
+    Ok(())
+}
+
+/// Two anchor legs and a hawser that meet in a weight.
+const BRIDLE: &str = r#"
+[[mooring_point]]
+name = "joint"
+at = [0.45, 0.15]
+mass = 0.1
+volume = 2e-5
+[[mooring]]
+name = "hawser"
+between = ["box", "joint"]
+from = [0.65, 0.3]
+length = 0.3
+line = "chain"
+segments = 8
+[[mooring]]
+name = "leg"
+between = ["joint"]
+to = [0.2, 0.0]
+length = 0.3
+line = "chain"
+segments = 8
+[[mooring]]
+name = "short-leg"
+between = ["joint"]
+to = [0.35, 0.0]
+length = 0.2
+line = "chain"
+segments = 6
+"#;
+
+/// At rest the pulls of the lines that meet carry the weight of the point, and in motion the momentum of the box closes with them.
+#[test]
+fn lines_meet_in_a_point() -> Result<()> {
+    let mut sim = scene_simulation::<2>(&format!("{MOORED}{BRIDLE}"))?;
+    let lines: Vec<_> = (2..5).map(|line| sim.mooring_reading(line)).collect();
+    // The node of the point carries half a segment of each line beside its own weight.
+    let segments = [0.3 / 8.0, 0.3 / 8.0, 0.2 / 6.0];
+    let weight = (0.1 - 1000.0 * 2e-5) * 9.81 + WEIGHT * 0.5 * segments.iter().sum::<f64>();
+    let pull = -(lines[0].end_forces[1] + lines[1].end_forces[0] + lines[2].end_forces[0]);
+    let lying = lines.iter().any(|line| line.nodes.last() == lines[0].nodes.last() && line.on_bed > 0.0);
+    assert!(pull[0].abs() < 1e-3 * weight, "no pull to a side: {pull}");
+    assert!(lying || (pull[1] / -weight - 1.0).abs() < 0.02, "the lines bear {pull}, and {weight} N weigh");
+    sim.enable_load_breakdown();
+    run_to(&mut sim, 0.1)?;
+    let shares = sim.load_breakdown(1).unwrap();
+    let size = shares.kinds().into_iter().map(|(_, load)| load.force.norm()).fold(0.0, f64::max);
+    assert!(shares.residual().force.norm() < 1e-9 * size, "{}", shares.residual().force);
+    let ends = [sim.mooring_reading(2).nodes[8], sim.mooring_reading(3).nodes[0], sim.mooring_reading(4).nodes[0]];
+    assert!(ends[0] == ends[1] && ends[0] == ends[2], "the ends are in one place: {ends:?}");
+    Ok(())
+}
+
+/// Faulty points, tables and winches are refused with their line and the remedy.
+#[test]
+fn faulty_points_and_tables_are_refused() {
+    let whole = format!("{MOORED}{BRIDLE}");
+    let message = |from: &str, to: &str| {
+        assert!(whole.contains(from), "{from}");
+        let text = whole.replacen(from, to, 1);
+        let built = Scene::parse(&text, Path::new(""), &[]).and_then(|scene| scene.build::<2>());
+        built.err().unwrap_or_else(|| panic!("{to} is accepted")).to_string()
+    };
+    assert!(
+        message("between = [\"joint\"]\nto = [0.2", "between = [\"joint\"]\nfrom = [0.4, 0.1]\nto = [0.2")
+            .contains("leave out from")
+    );
+    assert!(
+        message("between = [\"box\", \"joint\"]\nfrom = [0.65, 0.3]", "between = [\"box\", \"joint\"]")
+            .contains("from is missing")
+    );
+    assert!(message("name = \"leg\"", "name = \"leg\"\nuntil = 0.2").contains("leave out since and until"));
+    assert!(message("name = \"joint\"", "name = \"box\"").contains("a solid is called"));
+    assert!(message("mass = 0.1", "mass = -0.1").contains("mass must be 0 or more"));
+    assert!(message("stiffness = 2e3", "stiffness = [[0.0, 1.0], [0.1, 2.0]]").contains("[0, 0]"));
+    assert!(message("length = 0.75", "length = 0.75\npaid_out = { formula = \"0.1*\" }").contains("formula"));
+    let lonely = "[[mooring_point]]\nname = \"lonely\"\nat = [0.5, 0.1]\n[[mooring_point]]\nname = \"joint\"";
+    assert!(message("[[mooring_point]]\nname = \"joint\"", lonely).contains("joins 0 lines"));
 }
 
 /// What a user may get wrong is refused with its line and the remedy.

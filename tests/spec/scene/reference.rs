@@ -280,6 +280,23 @@ to = [1.2, 0.0]
 length = 0.52
 line = "chain"
 segments = 8
+[[mooring_point]]
+name = "joint"
+at = [1.4, 0.15]
+[[mooring]]
+name = "upper"
+between = ["raft", "joint"]
+from = [1.6, 0.3]
+length = 0.3
+line = "chain"
+segments = 4
+[[mooring]]
+name = "lower"
+between = ["joint"]
+to = [1.2, 0.0]
+length = 0.3
+line = "chain"
+segments = 4
 [[force]]
 name = "wind"
 on = "raft"

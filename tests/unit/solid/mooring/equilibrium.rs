@@ -13,6 +13,7 @@ fn material() -> LineMaterial {
         diameter: 0.004,
         mass: 0.1,
         stiffness: 200.0,
+        table: None,
         damping: 0.0,
         bending: 0.0,
         added_mass: [1.0, 0.0],
@@ -98,4 +99,20 @@ fn a_slack_line_lies_down_and_a_buoyant_one_rises() {
     let mut line = MooringLine::<2>::straight(light, 2.0, 40, [[0.0, 0.0].into(), [1.0, 0.0].into()]);
     assert!(line.find_rest(&water, &down()) < 1e-8);
     assert!(line.state.x[20][1] > 0.5, "its middle rises to {} m", line.state.x[20][1]);
+}
+
+/// A line that hangs straight down with a weight on its end stretches by its table: two slopes, linear between and beyond the rows.
+#[test]
+fn a_table_gives_the_tension() {
+    let rows: [[f64; 2]; 3] = [[0.0, 0.0], [0.1, 1.0], [0.2, 5.0]];
+    let line = LineMaterial { stiffness: 40.0, table: Some(rows.into()), mass: 1e-6, ..material() };
+    for (weight, strain) in [(0.5, 0.05), (1.0, 0.1), (3.0, 0.15), (9.0, 0.3)] {
+        let mut hung = MooringLine::<2>::straight(line.clone(), 2.0, 8, [[0.0, 0.0].into(), [0.0, -2.5].into()]);
+        hung.bodies[4].mass = weight / GRAVITY;
+        // The lower half is slack: its end is as high as the weight.
+        hung.state.x[8] = [0.0, -1.0].into();
+        hung.find_rest(&|_: &Vector<2>| NodeSurroundings::air(), &down());
+        let length = -hung.state.x[4][1];
+        assert!((length - (1.0 + strain)).abs() < 1e-4, "{weight} N: {length} m");
+    }
 }

@@ -13,6 +13,7 @@ fn material() -> LineMaterial {
         diameter: 0.004,
         mass: 0.1,
         stiffness: 500.0,
+        table: None,
         damping: 0.0,
         bending: 0.0,
         added_mass: [1.0, 0.2],
@@ -157,7 +158,7 @@ fn added_mass_slows_the_start() {
 #[test]
 fn friction_slows_what_slides() {
     let rough = LineMaterial { bed_stiffness: 1e6, bed_damping: 1e4, bed_friction: 0.4, ..material() };
-    let mut line = MooringLine::<2>::straight(rough, 1.0, 10, [[0.0, 0.0].into(), [1.0, 0.0].into()]);
+    let mut line = MooringLine::<2>::straight(rough.clone(), 1.0, 10, [[0.0, 0.0].into(), [1.0, 0.0].into()]);
     line.held = [false; 2];
     let sunk = rough.mass * GRAVITY / (rough.bed_stiffness * rough.diameter);
     line.state.x.iter_mut().for_each(|x| x[1] = -sunk);
