@@ -96,7 +96,7 @@ pub(crate) fn relative_wave_number(omega: f64, depth: f64, current: f64, g: f64)
     let mut k = omega / (current.max(0.0) + (g * depth).sqrt());
     for _ in 0..ITERATIONS {
         let (now, slope) = frequency(k);
-        if !(slope > 0.0) {
+        if slope.is_nan() || slope <= 0.0 {
             return None;
         }
         k += (omega - now) / slope;
