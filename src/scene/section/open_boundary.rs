@@ -130,6 +130,8 @@ impl OpenBoundaryConfig {
         if let Some(factor) = &mut self.factor {
             factor.0.fill(defaults, &format!("{key}.factor"));
         }
+        // A scene that gives no gravity has that of the earth.
+        let weight = ctx.gravity.is_none() || ctx.has_gravity();
         let absorbs = flow == FaceFlow::Out && self.velocity.is_some() && weight;
         let why = match (flow, absorbs) {
             (_, true) => "waves leave",
