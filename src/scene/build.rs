@@ -385,9 +385,10 @@ impl<const D: usize> SceneParts<D> {
             self;
         let (ctx, solids) = (&scene.context(), &placed.specs);
         ctx.add_file_notes(file_notes);
-        let mut driving = Driving::default();
-        driving.current = scene.current.as_ref().map(CurrentConfig::build);
-        driving.towed = scene.towed.as_ref().map(|towed| towed.build(ctx)).transpose()?;
+        let driving = Driving {
+            current: scene.current.as_ref().map(CurrentConfig::build),
+            towed: scene.towed.as_ref().map(|towed| towed.build(ctx)).transpose()?,
+        };
         let first_buffer = water.len();
         let (open_boundaries, buffers) = scene.open_boundaries(ctx, &water, &model)?;
         water.extend(buffers);

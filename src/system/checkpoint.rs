@@ -26,8 +26,8 @@ pub(crate) struct SystemState<'a, const D: usize> {
     images: Cow<'a, [u32]>,
     /// Along which axes each image is reflected; empty without a symmetry plane.
     reflections: Cow<'a, [AxisSet]>,
-    /// Number of the face of each buffer particle, time and name of the next, and what has passed through each face.
-    buffer: (Cow<'a, [u8]>, f64, u32, Cow<'a, [FaceExchange<D>]>),
+    /// Number of the face of each buffer particle, the name of the next, and what has passed through each face.
+    buffer: (Cow<'a, [u8]>, u32, Cow<'a, [FaceExchange<D>]>),
     /// The force that holds a current.
     current: CurrentState,
     /// Number of boundary particles.
@@ -56,7 +56,6 @@ impl<const D: usize> System<D> {
             reflections: Cow::Borrowed(&self.fluid.images.reflections),
             buffer: (
                 Cow::Borrowed(&self.fluid.buffer.faces),
-                self.fluid.buffer.time,
                 self.fluid.buffer.next_id,
                 Cow::Borrowed(&self.fluid.buffer.exchange),
             ),
@@ -88,7 +87,7 @@ impl<const D: usize> System<D> {
         let fewer = self.status.solids_added || self.fluid_domain.limits.escape == Escape::Remove;
         let faces = self.fluid_domain.open_boundaries.len();
         let fits = state.current.is_finite()
-            && state.buffer.3.len() == faces
+            && state.buffer.2.len() == faces
             && state.buffer.0.len() <= real
             && state.buffer.0.iter().all(|&face| usize::from(face) < faces);
         let all = if faces > 0 {
@@ -137,9 +136,9 @@ impl<const D: usize> System<D> {
         self.fluid.stress = self.fluid.stress.take().map(|_| state.stress.into_owned());
         self.fluid.gradient_correction =
             self.fluid.gradient_correction.take().map(|_| state.gradient_correction.into_owned());
-        let (faces, time, next_id, exchange) = state.buffer;
+        let (faces, next_id, exchange) = state.buffer;
         self.driving.current = state.current;
-        self.fluid.buffer = Buffer { faces: faces.into_owned(), time, next_id, exchange: exchange.into_owned() };
+        self.fluid.buffer = Buffer { faces: faces.into_owned(), next_id, exchange: exchange.into_owned() };
         self.fluid.images.originals = state.images.into_owned();
         self.fluid.images.reflections = state.reflections.into_owned();
         // The corrections of the state belong to its lists, whatever this system was about to do.

@@ -27,7 +27,6 @@ use crate::{
     model::Model,
     particles::Particles,
     solid::{Role, TimeFunction},
-    wavemaker::{OrbitalMotion, WaveOnCurrent},
 };
 
 /// Distance from the face at which the water is observed, over h: there most of the kernel lies in the water.
@@ -74,8 +73,6 @@ pub struct OpenBoundary<const D: usize> {
     pub factor: Option<TimeFunction>,
     /// Height of the surface at rest, m; if there is none, the pressure is that of the water beside the face.
     pub level: Option<f64>,
-    /// A wave that enters with the water, and the height of the bed (m).
-    pub(crate) wave: Option<(WaveOnCurrent, f64)>,
     /// Speed of waves that leave through the face (m/s); the velocity is kept exactly if there is none.
     pub absorbed_speed: Option<f64>,
 }
@@ -92,7 +89,6 @@ impl<const D: usize> OpenBoundary<D> {
             velocity,
             factor: None,
             level: None,
-            wave: None,
             absorbed_speed: None,
         }
     }
@@ -138,12 +134,6 @@ impl<const D: usize> OpenBoundary<D> {
         if self.is_lower { -1.0 } else { 1.0 }
     }
 
-    /// The motion of the wave that enters at `x` (m) and time `t` (s); none beyond inflows.
-    fn wave_motion(&self, x: &Vector<D>, t: f64) -> OrbitalMotion {
-        let motion = |(wave, bed): &(WaveOnCurrent, f64)| wave.motion(-self.beyond(x), x[D - 1] - bed, t);
-        self.wave.as_ref().map(motion).unwrap_or_default()
-    }
-
     /// The prescribed velocity (m/s) out of the water at `x` (m) and time `t` (s).
     pub(crate) fn outward_velocity(&self, x: &Vector<D>, t: f64) -> Option<f64> {
         let sense = if self.is_inflow { -1.0 } else { 1.0 };
@@ -183,8 +173,6 @@ impl<const D: usize> FaceExchange<D> {
 pub(super) struct Buffer<const D: usize> {
     /// Number of the face of each of them; they follow the water in this order.
     pub(super) faces: Vec<u8>,
-    /// Time (s) for which the particles were set.
-    pub(super) time: f64,
     /// Name of the next particle.
     pub(super) next_id: u32,
     /// What has passed through each face.
@@ -234,7 +222,7 @@ impl<const D: usize> System<D> {
         let numbers = buffer.iter().filter_map(|&i| beyond(&r[i as usize])).map(|face| face as u8).collect();
         let exchange = vec![FaceExchange::zero(); faces.len()];
         let order: Vec<u32> = water.into_iter().chain(buffer).collect();
-        self.fluid.buffer = Buffer { faces: numbers, time: 0.0, next_id: order.len() as u32, exchange };
+        self.fluid.buffer = Buffer { faces: numbers, next_id: order.len() as u32, exchange };
         self.fluid.permute(&order);
     }
 
@@ -303,17 +291,12 @@ impl<const D: usize> System<D> {
         created.len()
     }
 
-    /// The way (m) to new buffer particle `k`, of `created`, from the particle at `source` (m) that has crossed its face.
-    pub(super) fn way_to_created(&self, k: usize, created: usize, source: &Vector<D>) -> Vector<D> {
+    /// The way (m) to new buffer particle `k`, of `created`, from the particle that has crossed its face.
+    pub(super) fn way_to_created(&self, k: usize, created: usize) -> Vector<D> {
         let Buffer { faces, .. } = &self.fluid.buffer;
         let face = &self.fluid_domain.open_boundaries[faces[faces.len() - created + k] as usize];
         let mut way = Vector::zeros();
         way[face.axis] = face.outward() * buffer_length(&self.model);
-        if face.wave.is_some() {
-            // The same place at rest, at the phase of the far end.
-            let rise = |x: &Vector<D>| face.wave_motion(x, self.fluid.buffer.time).rise;
-            way[D - 1] = rise(&(source + way)) - rise(source);
-        }
         way
     }
 
@@ -333,7 +316,6 @@ impl<const D: usize> System<D> {
         if water == own {
             return;
         }
-        self.fluid.buffer.time = t;
         let states = (water..own).into_par_iter().map(|i| self.buffer_state(i, t, dt));
         let states: Vec<(Vector<D>, f64)> = states.collect();
         let Fluid { particles: Particles { v, rho, .. }, images, .. } = &mut self.fluid;
@@ -373,24 +355,20 @@ impl<const D: usize> System<D> {
             let held = face.level.is_some();
             return (velocity, density(if held { 0.0 } else { compression }));
         };
-        let wave = face.wave_motion(r, t);
-        let prescribed = prescribed - wave.along;
         let mut along = Vector::zeros();
         along[face.axis] = face.outward();
         let outward = match face.absorbed_speed {
             None => prescribed,
             Some(speed) => {
                 // What it yields to waves that leave, at first and now.
-                let then = face.outward_velocity(r, t - dt).unwrap_or(0.0) - face.wave_motion(r, t - dt).along;
+                let then = face.outward_velocity(r, t - dt).unwrap_or(0.0);
                 let yielded = before.dot(&along) - then;
-                let target = (self.properties.c0.powi(2) * compression - wave.pressure) / speed;
+                let target = self.properties.c0.powi(2) * compression / speed;
                 let part = if dt > 0.0 { (dt * speed / (RESPONSE * self.model.h)).min(1.0) } else { 1.0 };
                 prescribed + yielded + (target - yielded) * part
             }
         };
-        let mut velocity = along * outward;
-        velocity[D - 1] += wave.up;
-        (velocity, density(compression))
+        (along * outward, density(compression))
     }
 }
 

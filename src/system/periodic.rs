@@ -219,11 +219,7 @@ impl<const D: usize> System<D> {
         }
         let created = self.exchange_at_faces(&mut order);
         let real = order.len();
-        let ways: Vec<Vector<D>> = order[real - created..]
-            .iter()
-            .enumerate()
-            .map(|(k, &i)| self.way_to_created(k, created, &self.fluid.particles.r[i as usize]))
-            .collect();
+        let ways: Vec<Vector<D>> = (0..created).map(|k| self.way_to_created(k, created)).collect();
         let Fluid { particles, images, .. } = &mut self.fluid;
         let mut copies = Vec::new();
         if images.any() {

@@ -12,7 +12,6 @@
 
 mod absorption;
 mod extent;
-mod on_current;
 mod paddle;
 mod record;
 mod second_order;
@@ -22,7 +21,6 @@ mod train;
 
 pub(crate) use absorption::{Absorber, AbsorptionSettings, AbsorptionState};
 pub(crate) use extent::LINEAR_SPEED_RATIO_MAX;
-pub(crate) use on_current::{OrbitalMotion, WaveOnCurrent};
 pub(crate) use paddle::Paddle;
 pub use solitary::SolitaryTheory;
 pub(crate) use solitary::SolitaryWave;

@@ -13,7 +13,6 @@ use crate::{
         untagged::{CoordinateUnit, FieldFormulaConfig, TimeValueConfig},
     },
     simulation::OpenBoundary,
-    wavemaker::WaveOnCurrent,
 };
 
 /// One `[[inflow]]` or `[[outflow]]`.
@@ -33,25 +32,8 @@ pub struct OpenBoundaryConfig {
     pub factor: Option<TimeValueConfig>,
     /// Height of the surface at rest, m.
     pub level: Option<f64>,
-    /// A regular wave that enters with the water.
-    pub wave: Option<FaceWaveConfig>,
-    /// Period of the waves that leave, s.
-    pub wave_period: Option<f64>,
     /// Whether the velocity yields to waves that leave, so that they are not reflected.
     pub absorb: Option<bool>,
-}
-
-/// A regular wave that enters through a face.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-#[non_exhaustive]
-pub struct FaceWaveConfig {
-    /// From trough to crest, m.
-    pub height: f64,
-    /// At a fixed place, s.
-    pub period: f64,
-    /// Time in which the wave rises to its height, s.
-    pub ramp: Option<f64>,
 }
 
 /// The sense of a flow through a face.
@@ -131,26 +113,9 @@ impl OpenBoundaryConfig {
                 return Err(ctx.error_with_help(key, what, help).with_code(ErrorCode::ConflictingKeys));
             }
         }
-        if let Some(wave) = &self.wave {
-            let key = format!("{key}.wave");
-            if flow == FaceFlow::Out {
-                return Err(ctx.error_with_help(&key, "waves enter through an inflow", "write it in [[inflow]]"));
-            }
-            if self.velocity.as_ref().is_none_or(|u| u.0.parse::<f64>().is_err()) || self.factor.is_some() {
-                let help = "write the velocity as a number, 0.0 without a current, and no factor";
-                return Err(ctx.error_with_help(&key, "theory has waves on a uniform current", help));
-            }
-            ctx.require_positive(&format!("{key}.height"), Some(wave.height))?;
-            ctx.require_positive(&format!("{key}.period"), Some(wave.period))?;
-            ctx.require_positive(&format!("{key}.ramp"), wave.ramp)?;
-        }
-        ctx.require_positive(&format!("{key}.wave_period"), self.wave_period)?;
-        if (self.absorb == Some(true) || self.wave.is_some() || self.wave_period.is_some())
-            && ctx.gravity.is_some()
-            && !ctx.has_gravity()
-        {
-            let what = "without gravity there are no waves";
-            return Err(ctx.error_with_help(key, what, "leave absorb, wave and wave_period out"));
+        if self.absorb == Some(true) && ctx.gravity.is_some() && !ctx.has_gravity() {
+            let what = "without gravity there are no waves to absorb";
+            return Err(ctx.error_with_help(key, what, "leave absorb out"));
         }
         match self.level.filter(|level| !level.is_finite()) {
             Some(level) => Err(ctx.error_at(&format!("{key}.level"), format!("a level of {level} m"))),
@@ -165,13 +130,9 @@ impl OpenBoundaryConfig {
         if let Some(factor) = &mut self.factor {
             factor.0.fill(defaults, &format!("{key}.factor"));
         }
-        if let Some(wave) = &mut self.wave {
-            defaults.fill(format!("{key}.wave.ramp"), &mut wave.ramp, 2.0 * wave.period, "two periods, s");
-        }
         // A scene that gives no gravity has that of the earth.
         let weight = ctx.gravity.is_none() || ctx.has_gravity();
-        let leaves = flow == FaceFlow::Out && self.velocity.is_some() && weight;
-        let absorbs = leaves || self.wave.is_some();
+        let absorbs = flow == FaceFlow::Out && self.velocity.is_some() && weight;
         let why = match (flow, absorbs) {
             (_, true) => "waves leave",
             (FaceFlow::In, _) => "the discharge is exact",
@@ -223,24 +184,12 @@ impl OpenBoundaryConfig {
         };
         let factor = self.factor.as_ref();
         let factor = factor.map(|f| f.0.build(ctx, &format!("{key}.factor"), CoordinateUnit::Si)).transpose()?;
-        let (depth, g) = (top - bounds.min[D - 1], ctx.gravity_norm());
-        let current = self.velocity.as_ref().and_then(|velocity| velocity.0.parse::<f64>().ok()).unwrap_or(0.0);
-        let wave_of = |height: f64, period: f64, current: f64, ramp: f64| {
-            WaveOnCurrent::new(height, period, (depth, current, g), ramp)
-        };
-        let wave = self.wave.as_ref().map(|w| wave_of(w.height, w.period, current, w.ramp.unwrap_or(w.period)));
-        let wave = wave.transpose().map_err(|e| ctx.with_location(e, &format!("{key}.wave.period")))?;
-        // A wave that leaves goes with the flow of an outflow and against that of an inflow.
-        let with_it = if flow == FaceFlow::Out { current } else { -current };
-        let period = self.wave_period.or(self.wave.as_ref().map(|wave| wave.period));
-        let leaving = period.map(|period| wave_of(0.0, period, with_it, period)).transpose();
-        let leaving = leaving.map_err(|e| ctx.with_location(e, &format!("{key}.wave_period")))?;
-        let speed = leaving.map_or((g * depth).sqrt(), |wave| wave.relative_speed());
+        // Long waves.
+        let speed = (ctx.gravity_norm() * (top - bounds.min[D - 1])).sqrt();
         let absorbed_speed = self.absorb.unwrap_or(false).then_some(speed);
-        let wave = wave.map(|wave| (wave, bounds.min[D - 1]));
         // Without velocity and level the pressure is that of the water.
         let level = if face.velocity.is_some() { Some(level) } else { self.level };
-        let face = OpenBoundary { is_lower, factor, level, wave, absorbed_speed, ..face };
+        let face = OpenBoundary { is_lower, factor, level, absorbed_speed, ..face };
         let shape = Shape::Box { size: bounds.size() };
         let pose = Pose::at(0.5 * (bounds.min + bounds.max));
         let buffer = WaterBody {

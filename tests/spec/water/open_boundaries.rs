@@ -227,12 +227,6 @@ fn faces_of_a_scene_that_cannot_be_are_refused_with_their_key_and_a_remedy() {
         ("inflow = [{ x = 0.0, velocity = \"1.0*q\" }]", "inflow.0.velocity", "t"),
         ("inflow = [{ x = 0.0, velocity = 9.0 }]", "inflow.0", "model.c0 = 90"),
         ("outflow = [{ x = 2.0, absorb = true }]", "outflow.0", "velocity = 0.5"),
-        ("outflow = [{ x = 2.0, wave = { height = 0.1, period = 1.0 } }]", "outflow.0.wave", "[[inflow]]"),
-        (
-            "inflow = [{ x = 0.0, velocity = -1.0, wave = { height = 0.1, period = 1.0 } }]",
-            "inflow.0.wave.period",
-            "period = ",
-        ),
         ("current = { along = \"x\", discharge = 0.5 }", "current.along", "periodic = { x"),
         ("towed = { along = \"y\", velocity = 1.0 }", "towed.along", "along = \"x\""),
     ] {
