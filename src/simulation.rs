@@ -37,7 +37,7 @@ use crate::{
         constraint::assembly::{Assembly, AssemblyState},
         mooring::LineState,
     },
-    system::{LimitViolation, System, SystemState},
+    system::{LimitViolation, System, SystemState, set_gravity_at, update_buffer, update_current},
     time_integration::{Stepper, step_size},
 };
 
@@ -238,7 +238,7 @@ impl<const D: usize> Simulation<D> {
             }
             self.removed.extend(reordering.removed.into_iter().map(|lost| (self.clock.time, lost)));
         }
-        self.system.update_buffer(self.clock.time, self.clock.dt);
+        update_buffer(&mut self.system, self.clock.time, self.clock.dt);
         self.system.update_rates();
         let allowed = self.step_limit();
         let left = end - self.clock.time;
@@ -256,7 +256,7 @@ impl<const D: usize> Simulation<D> {
         self.clock.dt = dt;
         self.clock.steps += 1;
         self.clock.time = if left <= allowed { end } else { self.clock.time + dt };
-        self.system.update_current(dt);
+        update_current(&mut self.system, dt);
         self.change_gravity(self.clock.time);
         self.bodies.update_masses(&mut self.system, self.clock.time, dt)?;
         self.guard()?;
@@ -265,7 +265,7 @@ impl<const D: usize> Simulation<D> {
 
     /// Sets gravity to that of time `t` (s), if it changes.
     fn change_gravity(&mut self, t: f64) {
-        let Some(change) = self.system.set_gravity_at(t) else { return };
+        let Some(change) = set_gravity_at(&mut self.system, t) else { return };
         if let Some(engine) = self.bodies.engine_mut() {
             engine.set_gravity(&self.system.gravity());
         }
@@ -485,7 +485,7 @@ impl<const D: usize> Simulation<D> {
         }
         (self.stepper, self.clock) = (kept.stepper.into_owned(), kept.clock);
         self.removed = kept.removed.into_owned();
-        self.system.set_gravity_at(self.clock.time);
+        set_gravity_at(&mut self.system, self.clock.time);
         self.system.set_masses_at(self.clock.time);
         self.rollback.restart(kept.rollbacks.into_owned());
         Ok(())

@@ -268,7 +268,7 @@ impl Scene {
     }
 
     /// Returns the key, the configuration and the sense of the flow of each open boundary.
-    fn faces(&self) -> impl Iterator<Item = (String, &OpenBoundaryConfig, FaceFlow)> {
+    fn open_faces(&self) -> impl Iterator<Item = (String, &OpenBoundaryConfig, FaceFlow)> {
         let sections = [(&self.inflow, FaceFlow::In), (&self.outflow, FaceFlow::Out)];
         sections.into_iter().flat_map(|(faces, flow)| {
             faces.iter().enumerate().map(move |(i, face)| (format!("{}.{i}", flow.section()), face, flow))
@@ -285,7 +285,7 @@ impl Scene {
         let length = buffer_length(model);
         let build =
             |(key, face, flow): (String, &OpenBoundaryConfig, FaceFlow)| face.build(ctx, (&key, flow), water, length);
-        Ok(self.faces().map(build).collect::<Result<Vec<_>>>()?.into_iter().unzip())
+        Ok(self.open_faces().map(build).collect::<Result<Vec<_>>>()?.into_iter().unzip())
     }
 
     /// Returns the joints, force elements and contact rules of `solids`, which must be in the order of the scene, over still water at
@@ -457,7 +457,7 @@ impl<const D: usize> SceneParts<D> {
             open_boundaries,
             driving,
         };
-        for (i, (key, _, _)) in scene.faces().enumerate() {
+        for (i, (key, _, _)) in scene.open_faces().enumerate() {
             check_open_boundary(&setup, i).map_err(|e| ctx.with_location(e, &key))?;
         }
         setup.apply_symmetry().map_err(|e| ctx.with_location(e, "symmetry"))?;

@@ -9,14 +9,12 @@
 //!
 //! In a frame that is towed with the velocity U_t(t) everything has the acceleration −dU_t/dt.
 
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::{System, setup};
 use crate::{
     error::{Error, Result},
     math::Vector,
-    neighbours::CHUNK,
     solid::TimeFunction,
 };
 
@@ -103,7 +101,7 @@ pub(crate) struct CurrentState {
     /// s, m/s².
     integral: f64,
     /// a, m/s².
-    acceleration: f64,
+    pub(super) acceleration: f64,
 }
 
 impl CurrentState {
@@ -137,65 +135,43 @@ impl DrivingState {
     }
 }
 
-impl<const D: usize> System<D> {
-    /// What drives water and bodies beside gravity.
-    pub fn driving(&self) -> &Driving {
-        &self.driving.driving
-    }
+/// Discharge (m³/s; m²/s in 2-D) of water that moves at 1 m/s along `axis`, m² (m).
+fn mean_section<const D: usize>(system: &System<D>, axis: usize) -> f64 {
+    let length = system.periodic()[axis].map_or(1.0, |[from, to]| to - from);
+    system.fluid().len() as f64 * system.properties.particle_volume() * system.water_multiplicity() / length
+}
 
-    /// Acceleration (m/s²) by the force that holds the current; 0 without one.
-    pub fn current_acceleration(&self) -> f64 {
-        self.driving.current.acceleration
+/// Starts the force that holds the current from the present motion.
+pub(super) fn start_current<const D: usize>(system: &mut System<D>) {
+    if let Some(current) = system.driving.driving.current {
+        let discharge = system.discharge(current.axis).unwrap_or(0.0);
+        system.driving.start = discharge / mean_section(system, current.axis);
     }
+}
 
-    /// Discharge (m³/s; m²/s in 2-D) along the periodic axis number `axis`, a mean over the length of the period; `None` along another.
-    pub fn discharge(&self, axis: usize) -> Option<f64> {
-        let [from, to] = (*self.periodic().get(axis)?)?;
-        let water = self.fluid().v;
-        // Chunks are added in order.
-        let parts: Vec<f64> = water.par_chunks(CHUNK).map(|v| v.iter().map(|v| v[axis]).sum()).collect();
-        let volume = self.properties.particle_volume() * self.water_multiplicity();
-        Some(parts.iter().sum::<f64>() * volume / (to - from))
-    }
+/// Adapts the force that holds the current after a step `dt` (s).
+pub(crate) fn update_current<const D: usize>(system: &mut System<D>, dt: f64) {
+    let Some(Current { axis, discharge, response }) = system.driving.driving.current else { return };
+    let section = mean_section(system, axis);
+    let now = system.discharge(axis).unwrap_or(0.0) / section;
+    let DrivingState { start, current, .. } = &mut system.driving;
+    current.integral += (discharge / section - now) * dt / (response * response);
+    current.acceleration = current.integral - 2.0 / response * (now - *start);
+}
 
-    /// Discharge (m³/s; m²/s in 2-D) of water that moves at 1 m/s along `axis`, m² (m).
-    fn mean_section(&self, axis: usize) -> f64 {
-        let length = self.periodic()[axis].map_or(1.0, |[from, to]| to - from);
-        self.fluid().len() as f64 * self.properties.particle_volume() * self.water_multiplicity() / length
+/// Sets gravity, and what acts beside it, to that of time `t` (s). Returns its change (m/s²); `None` if it is constant.
+pub(crate) fn set_gravity_at<const D: usize>(system: &mut System<D>, t: f64) -> Option<Vector<D>> {
+    if system.gravity_law.is_empty() && system.driving.is_none() {
+        return None;
     }
-
-    /// Starts the force that holds the current from the present motion.
-    pub(super) fn start_current(&mut self) {
-        if let Some(current) = self.driving.driving.current {
-            let discharge = self.discharge(current.axis).unwrap_or(0.0);
-            self.driving.start = discharge / self.mean_section(current.axis);
-        }
-    }
-
-    /// Adapts the force that holds the current after a step `dt` (s).
-    pub(crate) fn update_current(&mut self, dt: f64) {
-        let Some(Current { axis, discharge, response }) = self.driving.driving.current else { return };
-        let section = self.mean_section(axis);
-        let now = self.discharge(axis).unwrap_or(0.0) / section;
-        let DrivingState { start, current, .. } = &mut self.driving;
-        current.integral += (discharge / section - now) * dt / (response * response);
-        current.acceleration = current.integral - 2.0 / response * (now - *start);
-    }
-
-    /// Sets gravity, and what acts beside it, to that of time `t` (s). Returns its change (m/s²); `None` if it is constant.
-    pub(crate) fn set_gravity_at(&mut self, t: f64) -> Option<Vector<D>> {
-        if self.gravity_law.is_empty() && self.driving.is_none() {
-            return None;
-        }
-        let base = if self.gravity_law.is_empty() {
-            Vector::from_fn(|i, _| self.model.gravity.get(i).copied().unwrap_or(0.0))
-        } else {
-            setup::gravity_at(&self.gravity_law, t)
-        };
-        let gravity = base + self.driving.acceleration(t);
-        let change = gravity - self.properties.gravity;
-        self.properties.gravity = gravity;
-        self.pair_loop.set_gravity(&self.properties);
-        Some(change)
-    }
+    let base = if system.gravity_law.is_empty() {
+        Vector::from_fn(|i, _| system.model.gravity.get(i).copied().unwrap_or(0.0))
+    } else {
+        setup::gravity_at(&system.gravity_law, t)
+    };
+    let gravity = base + system.driving.acceleration(t);
+    let change = gravity - system.properties.gravity;
+    system.properties.gravity = gravity;
+    system.pair_loop.set_gravity(&system.properties);
+    Some(change)
 }

@@ -23,10 +23,11 @@ pub(crate) use boundary::Boundary;
 pub(crate) use checkpoint::SystemState;
 use driving::DrivingState;
 pub use driving::{Current, Driving, TowedFrame};
+pub(crate) use driving::{set_gravity_at, update_current};
 pub(crate) use fluid::{Fluid, permute};
 use gap_pressure::GapPressure;
 pub use open_boundary::{FaceExchange, OpenBoundary};
-pub(crate) use open_boundary::{buffer_length, check as check_open_boundary};
+pub(crate) use open_boundary::{buffer_length, check as check_open_boundary, update_buffer};
 pub(crate) use periodic::Periodic;
 use periodic::{Images, SortedWater};
 pub use setup::Setup;
@@ -278,14 +279,14 @@ impl<const D: usize> System<D> {
         for i in 0..system.solids.len() {
             system.place_boundary(i);
         }
-        system.extend_domain_by_buffers();
-        system.start_buffers();
-        system.start_current();
+        open_boundary::extend_domain_by_buffers(&mut system);
+        open_boundary::start_buffers(&mut system);
+        driving::start_current(&mut system);
         system.rebuild_neighbours();
-        system.update_buffer(0.0, 0.0);
+        open_boundary::update_buffer(&mut system, 0.0, 0.0);
         system.check_water();
         system.init_hydrostatic(0..system.boundary.particles.len());
-        system.set_gravity_at(0.0);
+        driving::set_gravity_at(&mut system, 0.0);
         system.update_rates();
         Ok(system)
     }

@@ -187,189 +187,176 @@ enum Place {
     Gone,
 }
 
-impl<const D: usize> System<D> {
-    /// The open boundaries.
-    pub fn open_boundaries(&self) -> &[OpenBoundary<D>] {
-        &self.fluid_domain.open_boundaries
+/// Lets particles be as far outside the domain as the buffers reach.
+pub(super) fn extend_domain_by_buffers<const D: usize>(system: &mut System<D>) {
+    let length = buffer_length(&system.model) + system.model.support_radius();
+    let FluidDomain { domain, open_boundaries, .. } = &mut system.fluid_domain;
+    for face in open_boundaries.iter() {
+        let end = face.at + face.outward() * length;
+        (domain.min[face.axis], domain.max[face.axis]) =
+            (domain.min[face.axis].min(end), domain.max[face.axis].max(end));
     }
+}
 
-    /// What has passed through each open boundary since the start, in their order.
-    pub fn face_exchange(&self) -> &[FaceExchange<D>] {
-        &self.fluid.buffer.exchange
+/// Puts the water beyond the faces into the buffers, before the first lists are made.
+pub(super) fn start_buffers<const D: usize>(system: &mut System<D>) {
+    let faces = &system.fluid_domain.open_boundaries;
+    if faces.is_empty() {
+        return;
     }
+    let beyond = |r: &Vector<D>| faces.iter().position(|face| face.beyond(r) > 0.0);
+    let r = &system.fluid.particles.r;
+    let (buffer, water): (Vec<u32>, Vec<u32>) = (0..r.len() as u32).partition(|&i| beyond(&r[i as usize]).is_some());
+    let numbers = buffer.iter().filter_map(|&i| beyond(&r[i as usize])).map(|face| face as u8).collect();
+    let exchange = vec![FaceExchange::zero(); faces.len()];
+    let order: Vec<u32> = water.into_iter().chain(buffer).collect();
+    system.fluid.buffer = Buffer { faces: numbers, next_id: order.len() as u32, exchange };
+    system.fluid.permute(&order);
+}
 
-    /// Lets particles be as far outside the domain as the buffers reach.
-    pub(super) fn extend_domain_by_buffers(&mut self) {
-        let length = buffer_length(&self.model) + self.model.support_radius();
-        let FluidDomain { domain, open_boundaries, .. } = &mut self.fluid_domain;
-        for face in open_boundaries.iter() {
-            let end = face.at + face.outward() * length;
-            (domain.min[face.axis], domain.max[face.axis]) =
-                (domain.min[face.axis].min(end), domain.max[face.axis].max(end));
-        }
+/// Sorts the particles of `order` into water and buffers by their places, and appends the sources of new buffer particles.
+/// Returns the number of these.
+pub(super) fn exchange_at_faces<const D: usize>(system: &mut System<D>, order: &mut Vec<u32>) -> usize {
+    if system.fluid_domain.open_boundaries.is_empty() {
+        return 0;
     }
-
-    /// Puts the water beyond the faces into the buffers, before the first lists are made.
-    pub(super) fn start_buffers(&mut self) {
-        let faces = &self.fluid_domain.open_boundaries;
-        if faces.is_empty() {
-            return;
-        }
-        let beyond = |r: &Vector<D>| faces.iter().position(|face| face.beyond(r) > 0.0);
-        let r = &self.fluid.particles.r;
-        let (buffer, water): (Vec<u32>, Vec<u32>) =
-            (0..r.len() as u32).partition(|&i| beyond(&r[i as usize]).is_some());
-        let numbers = buffer.iter().filter_map(|&i| beyond(&r[i as usize])).map(|face| face as u8).collect();
-        let exchange = vec![FaceExchange::zero(); faces.len()];
-        let order: Vec<u32> = water.into_iter().chain(buffer).collect();
-        self.fluid.buffer = Buffer { faces: numbers, next_id: order.len() as u32, exchange };
-        self.fluid.permute(&order);
-    }
-
-    /// Sorts the particles of `order` into water and buffers by their places, and appends the sources of new buffer particles.
-    /// Returns the number of these.
-    pub(super) fn exchange_at_faces(&mut self, order: &mut Vec<u32>) -> usize {
-        if self.fluid_domain.open_boundaries.is_empty() {
-            return 0;
-        }
-        let (water, length, mass) = (self.particle_count(), buffer_length(&self.model), self.particle_mass());
-        let mass = mass * self.water_multiplicity();
-        let mut exchange = std::mem::take(&mut self.fluid.buffer.exchange);
-        let (faces, before) = (&self.fluid_domain.open_boundaries, &self.fluid.buffer.faces);
-        let Particles { r, v, rho, .. } = &self.fluid.particles;
-        let (mut inside, mut buffer, mut numbers, mut created) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-        for &i in order.iter() {
-            let old = i as usize;
-            let was = old.checked_sub(water).map(|k| before[k]);
-            let place = match was {
-                Some(face) => {
-                    let beyond = faces[face as usize].beyond(&r[old]);
-                    if beyond <= 0.0 {
-                        Place::Water
-                    } else if beyond > length {
-                        Place::Gone
-                    } else {
-                        Place::Buffer(face)
-                    }
+    let (water, length, mass) = (system.particle_count(), buffer_length(&system.model), system.particle_mass());
+    let mass = mass * system.water_multiplicity();
+    let mut exchange = std::mem::take(&mut system.fluid.buffer.exchange);
+    let (faces, before) = (&system.fluid_domain.open_boundaries, &system.fluid.buffer.faces);
+    let Particles { r, v, rho, .. } = &system.fluid.particles;
+    let (mut inside, mut buffer, mut numbers, mut created) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    for &i in order.iter() {
+        let old = i as usize;
+        let was = old.checked_sub(water).map(|k| before[k]);
+        let place = match was {
+            Some(face) => {
+                let beyond = faces[face as usize].beyond(&r[old]);
+                if beyond <= 0.0 {
+                    Place::Water
+                } else if beyond > length {
+                    Place::Gone
+                } else {
+                    Place::Buffer(face)
                 }
-                None => match faces.iter().position(|face| face.beyond(&r[old]) > 0.0) {
-                    Some(face) if faces[face].beyond(&r[old]) > length => {
-                        exchange[face].count(-1.0, mass, &v[old], self.particle_energy(&r[old], &v[old], rho[old]));
-                        Place::Gone
-                    }
-                    Some(face) => Place::Buffer(face as u8),
-                    None => Place::Water,
-                },
-            };
-            match (was, &place) {
-                (Some(face), Place::Water) => {
-                    let energy = self.particle_energy(&r[old], &v[old], rho[old]);
-                    exchange[face as usize].count(1.0, mass, &v[old], energy);
-                    created.push((i, face));
-                }
-                (None, Place::Buffer(face)) => {
-                    let energy = self.particle_energy(&r[old], &v[old], rho[old]);
-                    exchange[*face as usize].count(-1.0, mass, &v[old], energy);
-                }
-                _ => {}
             }
-            match place {
-                Place::Water => inside.push(i),
-                Place::Buffer(face) => {
-                    buffer.push(i);
-                    numbers.push(face);
+            None => match faces.iter().position(|face| face.beyond(&r[old]) > 0.0) {
+                Some(face) if faces[face].beyond(&r[old]) > length => {
+                    exchange[face].count(-1.0, mass, &v[old], system.particle_energy(&r[old], &v[old], rho[old]));
+                    Place::Gone
                 }
-                Place::Gone => {}
+                Some(face) => Place::Buffer(face as u8),
+                None => Place::Water,
+            },
+        };
+        match (was, &place) {
+            (Some(face), Place::Water) => {
+                let energy = system.particle_energy(&r[old], &v[old], rho[old]);
+                exchange[face as usize].count(1.0, mass, &v[old], energy);
+                created.push((i, face));
             }
-        }
-        inside.extend(buffer);
-        inside.extend(created.iter().map(|(i, _)| i));
-        numbers.extend(created.iter().map(|(_, face)| face));
-        *order = inside;
-        self.fluid.buffer.faces = numbers;
-        self.fluid.buffer.exchange = exchange;
-        created.len()
-    }
-
-    /// The way (m) to new buffer particle `k`, of `created`, from the particle that has crossed its face.
-    pub(super) fn way_to_created(&self, k: usize, created: usize) -> Vector<D> {
-        let Buffer { faces, .. } = &self.fluid.buffer;
-        let face = &self.fluid_domain.open_boundaries[faces[faces.len() - created + k] as usize];
-        let mut way = Vector::zeros();
-        way[face.axis] = face.outward() * buffer_length(&self.model);
-        way
-    }
-
-    /// Names the last `created` particles before the images.
-    pub(super) fn name_created(&mut self, created: usize) {
-        let own = self.own_count();
-        let Fluid { particles, buffer, .. } = &mut self.fluid;
-        for id in &mut particles.id[own - created..own] {
-            *id = buffer.next_id;
-            buffer.next_id = buffer.next_id.wrapping_add(1);
-        }
-    }
-
-    /// Sets velocities and densities of the buffer particles at time `t` (s), `dt` (s) after they were set before.
-    pub(crate) fn update_buffer(&mut self, t: f64, dt: f64) {
-        let (water, own) = (self.particle_count(), self.own_count());
-        if water == own {
-            return;
-        }
-        let states = (water..own).into_par_iter().map(|i| self.buffer_state(i, t, dt));
-        let states: Vec<(Vector<D>, f64)> = states.collect();
-        let Fluid { particles: Particles { v, rho, .. }, images, .. } = &mut self.fluid;
-        for (i, (velocity, density)) in (water..own).zip(states) {
-            (v[i], rho[i]) = (velocity, density);
-        }
-        for (k, &original) in images.originals.iter().enumerate().filter(|(_, i)| **i as usize >= water) {
-            let original = original as usize;
-            let axes = images.reflections.get(k).copied().unwrap_or(0);
-            (v[own + k], rho[own + k]) = (reflected(axes, v[original]), rho[original]);
-        }
-    }
-
-    /// Velocity (m/s) and density (kg/m³) of buffer particle `i`: see the head of this file.
-    fn buffer_state(&self, i: usize, t: f64, dt: f64) -> (Vector<D>, f64) {
-        let (particles, rho0) = (&self.fluid.particles, self.properties.rho0);
-        let face = &self.fluid_domain.open_boundaries[self.fluid.buffer.faces[i - self.particle_count()] as usize];
-        let (r, before) = (&particles.r[i], &particles.v[i]);
-        let level = face.level.unwrap_or(0.0);
-        let at_rest = |x: &Vector<D>| {
-            let head = (level - x[D - 1]) * -self.properties.gravity[D - 1];
-            self.equation_of_state.hydrostatic_compression(head)
-        };
-        let mut place = *r;
-        place[face.axis] = face.at - face.outward() * OBSERVATION * self.model.h;
-        let (mut volume, mut velocity, mut compression) = (0.0, Vector::<D>::zeros(), 0.0);
-        self.visit_fluid_near(&place, &mut |b, x, w| {
-            let share = w / particles.rho[b];
-            volume += share;
-            velocity += self.velocity_seen_at(b, x) * share;
-            compression += (particles.rho[b] / rho0 - 1.0 - at_rest(x)) * share;
-        });
-        let beside = volume * self.particle_mass() >= BESIDE;
-        let (velocity, compression) = if beside { (velocity / volume, compression / volume) } else { (*before, 0.0) };
-        let density = |x: f64| rho0 * (1.0 + at_rest(r) + x);
-        let Some(prescribed) = face.outward_velocity(r, t) else {
-            let held = face.level.is_some();
-            return (velocity, density(if held { 0.0 } else { compression }));
-        };
-        let mut along = Vector::zeros();
-        along[face.axis] = face.outward();
-        let outward = match face.absorbed_speed {
-            None => prescribed,
-            Some(speed) => {
-                // What it yields to waves that leave, at first and now.
-                let then = face.outward_velocity(r, t - dt).unwrap_or(0.0);
-                let yielded = before.dot(&along) - then;
-                let target = self.properties.c0.powi(2) * compression / speed;
-                let part = if dt > 0.0 { (dt * speed / (RESPONSE * self.model.h)).min(1.0) } else { 1.0 };
-                prescribed + yielded + (target - yielded) * part
+            (None, Place::Buffer(face)) => {
+                let energy = system.particle_energy(&r[old], &v[old], rho[old]);
+                exchange[*face as usize].count(-1.0, mass, &v[old], energy);
             }
-        };
-        (along * outward, density(compression))
+            _ => {}
+        }
+        match place {
+            Place::Water => inside.push(i),
+            Place::Buffer(face) => {
+                buffer.push(i);
+                numbers.push(face);
+            }
+            Place::Gone => {}
+        }
     }
+    inside.extend(buffer);
+    inside.extend(created.iter().map(|(i, _)| i));
+    numbers.extend(created.iter().map(|(_, face)| face));
+    *order = inside;
+    system.fluid.buffer.faces = numbers;
+    system.fluid.buffer.exchange = exchange;
+    created.len()
+}
+
+/// The way (m) to new buffer particle `k`, of `created`, from the particle that has crossed its face.
+pub(super) fn way_to_created<const D: usize>(system: &System<D>, k: usize, created: usize) -> Vector<D> {
+    let Buffer { faces, .. } = &system.fluid.buffer;
+    let face = &system.fluid_domain.open_boundaries[faces[faces.len() - created + k] as usize];
+    let mut way = Vector::zeros();
+    way[face.axis] = face.outward() * buffer_length(&system.model);
+    way
+}
+
+/// Names the last `created` particles before the images.
+pub(super) fn name_created<const D: usize>(system: &mut System<D>, created: usize) {
+    let own = system.own_count();
+    let Fluid { particles, buffer, .. } = &mut system.fluid;
+    for id in &mut particles.id[own - created..own] {
+        *id = buffer.next_id;
+        buffer.next_id = buffer.next_id.wrapping_add(1);
+    }
+}
+
+/// Sets velocities and densities of the buffer particles at time `t` (s), `dt` (s) after they were set before.
+pub(crate) fn update_buffer<const D: usize>(system: &mut System<D>, t: f64, dt: f64) {
+    let (water, own) = (system.particle_count(), system.own_count());
+    if water == own {
+        return;
+    }
+    let states = (water..own).into_par_iter().map(|i| buffer_state(system, i, t, dt));
+    let states: Vec<(Vector<D>, f64)> = states.collect();
+    let Fluid { particles: Particles { v, rho, .. }, images, .. } = &mut system.fluid;
+    for (i, (velocity, density)) in (water..own).zip(states) {
+        (v[i], rho[i]) = (velocity, density);
+    }
+    for (k, &original) in images.originals.iter().enumerate().filter(|(_, i)| **i as usize >= water) {
+        let original = original as usize;
+        let axes = images.reflections.get(k).copied().unwrap_or(0);
+        (v[own + k], rho[own + k]) = (reflected(axes, v[original]), rho[original]);
+    }
+}
+
+/// Velocity (m/s) and density (kg/m³) of buffer particle `i`: see the head of this file.
+fn buffer_state<const D: usize>(system: &System<D>, i: usize, t: f64, dt: f64) -> (Vector<D>, f64) {
+    let (particles, rho0) = (&system.fluid.particles, system.properties.rho0);
+    let face = &system.fluid_domain.open_boundaries[system.fluid.buffer.faces[i - system.particle_count()] as usize];
+    let (r, before) = (&particles.r[i], &particles.v[i]);
+    let level = face.level.unwrap_or(0.0);
+    let at_rest = |x: &Vector<D>| {
+        let head = (level - x[D - 1]) * -system.properties.gravity[D - 1];
+        system.equation_of_state.hydrostatic_compression(head)
+    };
+    let mut place = *r;
+    place[face.axis] = face.at - face.outward() * OBSERVATION * system.model.h;
+    let (mut volume, mut velocity, mut compression) = (0.0, Vector::<D>::zeros(), 0.0);
+    system.visit_fluid_near(&place, &mut |b, x, w| {
+        let share = w / particles.rho[b];
+        volume += share;
+        velocity += system.velocity_seen_at(b, x) * share;
+        compression += (particles.rho[b] / rho0 - 1.0 - at_rest(x)) * share;
+    });
+    let beside = volume * system.particle_mass() >= BESIDE;
+    let (velocity, compression) = if beside { (velocity / volume, compression / volume) } else { (*before, 0.0) };
+    let density = |x: f64| rho0 * (1.0 + at_rest(r) + x);
+    let Some(prescribed) = face.outward_velocity(r, t) else {
+        let held = face.level.is_some();
+        return (velocity, density(if held { 0.0 } else { compression }));
+    };
+    let mut along = Vector::zeros();
+    along[face.axis] = face.outward();
+    let outward = match face.absorbed_speed {
+        None => prescribed,
+        Some(speed) => {
+            // What it yields to waves that leave, at first and now.
+            let then = face.outward_velocity(r, t - dt).unwrap_or(0.0);
+            let yielded = before.dot(&along) - then;
+            let target = system.properties.c0.powi(2) * compression / speed;
+            let part = if dt > 0.0 { (dt * speed / (RESPONSE * system.model.h)).min(1.0) } else { 1.0 };
+            prescribed + yielded + (target - yielded) * part
+        }
+    };
+    (along * outward, density(compression))
 }
 
 impl<const D: usize> FaceExchange<D> {

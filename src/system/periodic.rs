@@ -13,7 +13,7 @@
 //! no water is near it.
 
 use super::{
-    Fluid, RemovedParticle, System,
+    Fluid, RemovedParticle, System, open_boundary,
     symmetry::{AxisSet, SymmetryPlanes, reflected, reflected_tensor},
 };
 use crate::{
@@ -217,9 +217,9 @@ impl<const D: usize> System<D> {
         if let Some(displaced) = displaced {
             order.retain(|&i| !displaced.get(i as usize).is_some_and(|displaced| *displaced));
         }
-        let created = self.exchange_at_faces(&mut order);
+        let created = open_boundary::exchange_at_faces(self, &mut order);
         let real = order.len();
-        let ways: Vec<Vector<D>> = (0..created).map(|k| self.way_to_created(k, created)).collect();
+        let ways: Vec<Vector<D>> = (0..created).map(|k| open_boundary::way_to_created(self, k, created)).collect();
         let Fluid { particles, images, .. } = &mut self.fluid;
         let mut copies = Vec::new();
         if images.any() {
@@ -245,7 +245,7 @@ impl<const D: usize> System<D> {
         for (r, image) in self.fluid.particles.r[real..].iter_mut().zip(&copies) {
             *r += image.away;
         }
-        self.name_created(created);
+        open_boundary::name_created(self, created);
         (SortedWater { order, reflections }, lost)
     }
 

@@ -2,13 +2,16 @@
 
 use std::{collections::BTreeMap, time::Duration};
 
+use rayon::prelude::*;
+
 use super::{
-    Fluid, Periodic, System, reflected,
+    Driving, FaceExchange, Fluid, OpenBoundary, Periodic, System, reflected,
     symmetry::{SymmetryPlanes, reflected_turn},
 };
 use crate::{
     math::{Bivector, Bounds, Pose, Vector},
     model::{Model, TimeScheme},
+    neighbours::CHUNK,
     particles::{ParticlesView, optional_bytes},
     solid::{Constraints, Load, LoadContext, Role, Solid},
     sph::{FluidProperties, boundary::WallExtrapolation},
@@ -48,6 +51,36 @@ impl<const D: usize> System<D> {
     /// Number of the solid of that name.
     pub fn find_solid(&self, name: &str) -> Option<usize> {
         self.solids.iter().position(|s| s.spec.name == name)
+    }
+
+    /// What drives water and bodies beside gravity.
+    pub fn driving(&self) -> &Driving {
+        &self.driving.driving
+    }
+
+    /// Acceleration (m/s²) by the force that holds the current; 0 without one.
+    pub fn current_acceleration(&self) -> f64 {
+        self.driving.current.acceleration
+    }
+
+    /// Discharge (m³/s; m²/s in 2-D) along the periodic axis number `axis`, a mean over the length of the period; `None` along another.
+    pub fn discharge(&self, axis: usize) -> Option<f64> {
+        let [from, to] = (*self.periodic().get(axis)?)?;
+        let water = self.fluid().v;
+        // Chunks are added in order.
+        let parts: Vec<f64> = water.par_chunks(CHUNK).map(|v| v.iter().map(|v| v[axis]).sum()).collect();
+        let volume = self.properties.particle_volume() * self.water_multiplicity();
+        Some(parts.iter().sum::<f64>() * volume / (to - from))
+    }
+
+    /// The open boundaries.
+    pub fn open_boundaries(&self) -> &[OpenBoundary<D>] {
+        &self.fluid_domain.open_boundaries
+    }
+
+    /// What has passed through each open boundary since the start, in their order.
+    pub fn face_exchange(&self) -> &[FaceExchange<D>] {
+        &self.fluid.buffer.exchange
     }
 
     /// Where particles may be.

@@ -153,7 +153,8 @@ impl OpenBoundaryConfig {
         let along = ["x", "y"][axis];
         let all = water.iter().fold(Bounds::<D>::empty(), |all, body| all.union(&body.bounds()));
         let is_lower = at - all.min[axis] < all.max[axis] - at;
-        let end = if is_lower { all.min[axis] } else { all.max[axis] };
+        // Zero without a sign.
+        let end = 0.0 + if is_lower { all.min[axis] } else { all.max[axis] };
         if (at - end).abs() > 1e-6 * ctx.dp {
             let what = format!("the face at {along} = {at} is not where the water ends, at {along} = {end}");
             let help =
