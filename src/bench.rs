@@ -5,6 +5,12 @@
 //! any number of particles. Processor time is measured beside wall time, because other load on a shared machine changes
 //! the wall time. Cases to be compared are measured in turns within one run.
 
+#[cfg(feature = "gpu")]
+mod device;
+
+#[cfg(feature = "gpu")]
+pub use device::{DeviceTiming, adapters, time_on_device};
+
 use std::{
     path::{Path, PathBuf},
     time::Instant,

@@ -76,6 +76,10 @@ error_codes! {
     DiskFull = "disk-full",
     /// A file whose content is not of the expected format.
     InvalidFile = "invalid-file",
+    /// A device that does not exist, or a feature that the device path does not have.
+    NoDevice = "no-device",
+    /// A device or its driver failed.
+    DeviceFailed = "device-failed",
     /// A folder without a run or a checkpoint.
     CheckpointNotFound = "checkpoint-not-found",
     /// A damaged checkpoint or manifest.

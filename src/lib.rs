@@ -72,6 +72,8 @@ pub mod system;
 pub mod coupling;
 #[doc(hidden)]
 pub mod time_integration;
+#[cfg(feature = "gpu")]
+pub mod device;
 pub mod simulation;
 #[doc(hidden)]
 pub mod plan;

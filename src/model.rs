@@ -442,9 +442,22 @@ impl Model {
         interaction::compile(kernel::Wendland::new(properties.h, D), fluid, wall, &properties, units, level)
     }
 
+    /// The traces of the terms that this model names, and the units in which they compute.
+    #[cfg(feature = "gpu")]
+    pub fn pair_traces<const D: usize>(&self) -> Option<(interaction::PairTraces, Units)> {
+        let length = NeighbourLists::<D>::length_unit(self.support_radius());
+        let units = Units { length, time: self.h / self.c0 };
+        Some((self.build_pair_loop_in::<D>(units, None).traces()?, units))
+    }
+
     /// The pair loop with the terms that this model names, and no others.
     fn build_pair_loop<const D: usize>(&self) -> Box<dyn PairLoop<D>> {
         let (units, level) = self.units::<D>();
+        self.build_pair_loop_in(units, level)
+    }
+
+    /// The same in these units and with these instructions.
+    fn build_pair_loop_in<const D: usize>(&self, units: Units, level: Option<Level>) -> Box<dyn PairLoop<D>> {
         let make = PairLoopBuilder {
             model: self,
             properties: self.fluid_properties::<D>().in_units(&units),

@@ -10,6 +10,7 @@
 //! # Ok::<(), pontoon::Error>(())
 //! ```
 
+mod device;
 mod runner;
 mod energy_drift;
 pub(crate) mod run_folder;

@@ -3,6 +3,8 @@
 mod accounting;
 mod add_remove;
 mod external_bodies;
+#[cfg(feature = "gpu")]
+mod on_device;
 mod rollback;
 mod constraints;
 
@@ -51,6 +53,8 @@ pub struct Simulation<const D: usize> {
     /// Removed particles, and the times of removal, s.
     removed: Vec<(f64, RemovedParticle<D>)>,
     stepping: Duration,
+    #[cfg(feature = "gpu")]
+    device: Option<on_device::OnDevice<D>>,
 }
 
 /// Wall time by part, since the start.
@@ -140,7 +144,17 @@ impl<const D: usize> Simulation<D> {
         let bodies = Bodies::new(engine, AcousticAddedMass::find_all(&mut system), rig, moorings, external);
         let clock = Clock { time: 0.0, dt: 0.0, steps: 0 };
         let (rescue, lost, stepping) = (RollbackControl::default(), Vec::new(), Duration::ZERO);
-        let simulation = Self { system, stepper, bodies, clock, rollback: rescue, removed: lost, stepping };
+        let simulation = Self {
+            system,
+            stepper,
+            bodies,
+            clock,
+            rollback: rescue,
+            removed: lost,
+            stepping,
+            #[cfg(feature = "gpu")]
+            device: None,
+        };
         simulation.guard()?;
         Ok(simulation)
     }
@@ -164,6 +178,11 @@ impl<const D: usize> Simulation<D> {
 
     /// Advances by one step, calling `hook` when the water has moved and the bodies have not.
     fn step_with_hook(&mut self, end: f64, hook: &mut Hook<D>) -> Result<()> {
+        #[cfg(feature = "gpu")]
+        if self.device.is_some() {
+            self.device_steps((1, end), end, hook)?;
+            return self.fetch_from_device();
+        }
         let start = Instant::now();
         if self.needs_rollback_state() {
             self.rollback.drop_oldest_state();
@@ -173,6 +192,17 @@ impl<const D: usize> Simulation<D> {
         let outcome = self.advance(end, hook).or_else(|error| self.roll_back(error));
         self.stepping += start.elapsed();
         outcome
+    }
+
+    /// Advances by one step, not past time `end` (s). On a device it makes steps until time `pause` (s) is reached, and leaves the
+    /// state there: call [`Simulation::fetch_from_device`] to read the water.
+    pub(crate) fn step_to_pause(&mut self, pause: f64, end: f64) -> Result<()> {
+        #[cfg(feature = "gpu")]
+        if self.device.is_some() {
+            return self.device_steps((u64::MAX, pause), end, &mut |_| Ok(()));
+        }
+        let _ = pause;
+        self.step_to(end)
     }
 
     /// The present state: in the folder for such states, or in memory if there is none or it cannot be written to.
@@ -211,6 +241,10 @@ impl<const D: usize> Simulation<D> {
 
     /// Whether the next step first stores the state for a rollback.
     pub(crate) fn needs_rollback_state(&self) -> bool {
+        #[cfg(feature = "gpu")]
+        if let Some(own) = &self.device {
+            return self.rollback.is_on() && own.needs_state(self.clock.steps);
+        }
         self.rollback.needs_state(self.clock.steps)
     }
 
@@ -278,10 +312,16 @@ impl<const D: usize> Simulation<D> {
     pub fn step_limit(&self) -> f64 {
         let model = self.system.model();
         let water = step_size::fluid_step_limit(&self.system.step_limits(), self.system.properties(), model.cfl);
+        let factor = self.rollback.step_factor(self.clock.time);
+        (water * factor).min(self.host_step_limit())
+    }
+
+    /// The longest step (s) that all but the rates allow.
+    fn host_step_limit(&self) -> f64 {
+        let model = self.system.model();
         let events = self.bodies.constraints().next_event(self.clock.time);
         let ties = self.spring_step_limit().min(events).min(self.bodies.moorings.next_event(self.clock.time));
-        water.min(model.viscosity.step_limit(model.h)).min(model.dt_max).min(ties)
-            * self.rollback.step_factor(self.clock.time)
+        model.viscosity.step_limit(model.h).min(model.dt_max).min(ties) * self.rollback.step_factor(self.clock.time)
     }
 
     /// Stops at the first particle that has left the valid range.
@@ -488,6 +528,8 @@ impl<const D: usize> Simulation<D> {
         set_gravity_at(&mut self.system, self.clock.time);
         self.system.set_masses_at(self.clock.time);
         self.rollback.restart(kept.rollbacks.into_owned());
+        #[cfg(feature = "gpu")]
+        self.load_device()?;
         Ok(())
     }
 }

@@ -30,6 +30,12 @@ pub struct BenchArgs {
     /// Time the works in developed flow, after the water has hit the far wall: takes minutes
     #[arg(long)]
     developed: bool,
+    /// List the devices that can compute the water (feature gpu)
+    #[arg(long)]
+    devices: bool,
+    /// Time whole steps on this device: a number of --devices, gpu, or part of a name (feature gpu)
+    #[arg(long, value_name = "DEVICE")]
+    device: Option<String>,
     /// Fail if the fast sweep is not so many times the oracle's speed
     #[arg(long, value_name = "RATIO", hide = true)]
     floor: Option<f64>,
@@ -66,6 +72,9 @@ pub fn bench(args: &BenchArgs) -> Result<String> {
     }
     if args.size.iter().any(|&n| !(100..=50_000_000).contains(&n)) || args.threads == Some(0) {
         return Err(Error::new(ErrorKind::Usage, "sizes are from 100 to 50 million particles, threads from 1"));
+    }
+    if args.devices || args.device.is_some() {
+        return on_devices(args);
     }
     let machine = Machine::current();
     let threads = args.threads.unwrap_or(machine.cpus);
@@ -129,6 +138,59 @@ pub fn bench(args: &BenchArgs) -> Result<String> {
         return text.map(|t| t + "\n").map_err(|e| Error::new(ErrorKind::Usage, format!("no JSON: {e}")));
     }
     Ok(text(&tables))
+}
+
+/// Lists the devices, or times steps on one.
+#[cfg(feature = "gpu")]
+fn on_devices(args: &BenchArgs) -> Result<String> {
+    let Some(name) = &args.device else {
+        let mut rows = vec![["", "device", "interface", "kind", "largest buffer, GB", "binding, GB", "driver"].map(String::from).to_vec()];
+        let gb = |bytes: u64| format!("{:.2}", bytes as f64 / 1e9);
+        rows.extend(bench::adapters().into_iter().map(|of| {
+            let sizes = [gb(of.buffer_bytes), gb(of.binding_bytes)];
+            vec![of.number.to_string(), of.name, of.backend, of.kind, sizes[0].clone(), sizes[1].clone(), of.driver]
+        }));
+        if rows.len() == 1 {
+            return Ok("no device was found: docs/how-to/use-a-graphics-card.md says what to install\n".into());
+        }
+        return Ok(table(&rows));
+    };
+    let mut timings = Vec::new();
+    for &water in &args.size {
+        for dimension in [3, 2] {
+            timings.push(bench::time_on_device(&BenchCase::with_defaults(dimension, water), name)?);
+            timings.push(bench::time_on_device(&BenchCase::standard(dimension, water), name)?);
+        }
+    }
+    if args.json {
+        let text = serde_json::to_string_pretty(&timings);
+        return text.map(|t| t + "\n").map_err(|e| Error::new(ErrorKind::Usage, format!("no JSON: {e}")));
+    }
+    let head = ["model", "", "water", "boundary", "ms a step", "M particle-steps/s", "M particle-passes/s", "B a particle", "with lists", "set-up, s"];
+    let mut rows = vec![head.map(String::from).to_vec()];
+    rows.extend(timings.iter().map(|t| {
+        vec![
+            t.work.clone(),
+            format!("{}-D", t.dimension),
+            t.water.to_string(),
+            t.boundary.to_string(),
+            three_digits(t.step_s * 1e3),
+            three_digits(t.particle_steps_per_s / 1e6),
+            three_digits(t.particle_passes_per_s / 1e6),
+            format!("{:.0}", t.bytes[0]),
+            format!("{:.0}", t.bytes[1]),
+            format!("{:.1} + {:.1}", t.setup_s[0], t.setup_s[1]),
+        ]
+    }));
+    let device = timings.first().map_or("", |t| &t.device);
+    Ok(format!("pontoon {}, {device}\n\n{}", env!("CARGO_PKG_VERSION"), table(&rows)))
+}
+
+/// Refuses: this program has no devices.
+#[cfg(not(feature = "gpu"))]
+fn on_devices(_: &BenchArgs) -> Result<String> {
+    Err(Error::new(ErrorKind::Usage, "this program was built without devices")
+        .help("build it with the feature gpu:  cargo build --release --features gpu"))
 }
 
 fn text(tables: &BenchReport) -> String {

@@ -31,6 +31,9 @@ pub struct RunArgs {
     /// Threads [default: one for each processor]
     #[arg(long, value_name = "N")]
     threads: Option<usize>,
+    /// Device that computes the water: a number of bench --devices, gpu, or part of a name [default: the processor]
+    #[arg(long, value_name = "DEVICE")]
+    device: Option<String>,
     #[command(flatten)]
     log_args: LogArgs,
 }
@@ -41,7 +44,8 @@ type KeyValue = (String, String);
 impl RunArgs {
     /// The scene keys that the arguments change.
     fn overrides(&self) -> Vec<KeyValue> {
-        self.scene.overrides().into_iter().chain(self.frames.clone()).collect()
+        let device = self.device.iter().map(|name| ("model.device".into(), format!("{name:?}")));
+        self.scene.overrides().into_iter().chain(self.frames.clone()).chain(device).collect()
     }
 }
 

@@ -50,6 +50,12 @@ impl<const D: usize> Bodies<D> {
         self.external
     }
 
+    /// Returns the added masses of the light bodies.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn added_masses(&self) -> &[AcousticAddedMass<D>] {
+        &self.added_masses
+    }
+
     /// Returns the constraints.
     pub(crate) fn constraints(&self) -> &Assembly<D> {
         &self.constraints

@@ -24,6 +24,10 @@ pub(super) trait BoundarySums<const D: usize>: Send + Sync {
         fits: &mut [WallExtrapolation<f64, D>],
     );
 
+    /// The trace of what a water particle adds, with its velocity.
+    #[cfg(feature = "gpu")]
+    fn trace(&self) -> crate::sph::trace::Trace;
+
     /// In SIMD lanes: the sums of a slab and of the next one; with the velocity if `flow`.
     fn sum_slab(&self, level: Level, packed: &PackedParticles<D>, slab: &Slab, flow: bool, sums: &mut [LaneRow]);
 }
@@ -59,6 +63,11 @@ impl<K: Kernel, const D: usize> BoundarySums<D> for KernelSums<K> {
             }
             *out = fit;
         }
+    }
+
+    #[cfg(feature = "gpu")]
+    fn trace(&self) -> crate::sph::trace::Trace {
+        super::trace::extrapolation::<K, D>(&self.0)
     }
 
     fn sum_slab(&self, level: Level, packed: &PackedParticles<D>, slab: &Slab, flow: bool, sums: &mut [LaneRow]) {

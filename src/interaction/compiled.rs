@@ -41,6 +41,14 @@ pub(super) trait PairTerms<const D: usize>: Send + Sync {
         sums: &mut [PairSums<D>],
     );
 
+    /// The traces of pairs of water particles, and of water and boundary particles.
+    #[cfg(feature = "gpu")]
+    fn traces(&self) -> [crate::sph::trace::Trace; 2];
+
+    /// Square of the kernel's support.
+    #[cfg(feature = "gpu")]
+    fn reach2(&self) -> f64;
+
     /// In SIMD lanes: the sums of a slab and of the next one; returns the largest |v_ab·r_ab|/(r² + η²).
     fn sum_slab(&self, level: Level, packed: &PackedParticles<D>, slab: &Slab, sums: &mut [LaneRow]) -> f32;
 }
@@ -94,6 +102,17 @@ impl<K: Kernel, T: Term<D>, W: Term<D>, const D: usize> PairTerms<D> for Compile
         sums: &mut [PairSums<D>],
     ) {
         reference::sum_boundary(self, nodes, wet, lists, sums);
+    }
+
+    #[cfg(feature = "gpu")]
+    fn traces(&self) -> [crate::sph::trace::Trace; 2] {
+        let all = RequiredSums::of_terms::<(T, W), D>();
+        [super::trace::pair(self, &self.fluid, all), super::trace::pair(self, &self.wall, all)]
+    }
+
+    #[cfg(feature = "gpu")]
+    fn reach2(&self) -> f64 {
+        self.reach2
     }
 
     fn sum_slab(&self, level: Level, packed: &PackedParticles<D>, slab: &Slab, sums: &mut [LaneRow]) -> f32 {

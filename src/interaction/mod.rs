@@ -6,9 +6,15 @@
 mod accumulators;
 mod boundary_sums;
 mod compiled;
+mod pair_contribution;
 mod reference;
 mod simd;
 mod simd_layout;
+#[cfg(feature = "gpu")]
+mod trace;
+
+#[cfg(feature = "gpu")]
+pub use trace::PairTraces;
 
 use std::time::Duration;
 
@@ -97,6 +103,12 @@ pub trait PairLoop<const D: usize>: Send + Sync {
     /// Sums over all pairs; the neighbour lists must hold. Writes the sums of the boundary particles near water to `boundary`, in
     /// the order of [`NeighbourLists::boundary_near_fluid`], and keeps those of the water.
     fn rates(&mut self, input: &PairLoopInput<'_, D>, boundary: &mut [PairSums<D>]) -> StepLimits;
+
+    /// Its terms as traces; `None` of the SIMD lanes.
+    #[cfg(feature = "gpu")]
+    fn traces(&self) -> Option<PairTraces> {
+        None
+    }
 
     /// Memory of the buffers of a pass, B.
     fn memory_bytes(&self) -> usize;

@@ -10,13 +10,14 @@ use super::{
     accumulators::{Accumulators, RequiredSums},
     boundary_sums::BoundarySums,
     compiled::{CompiledTerms, PairTerms},
+    pair_contribution::PairContribution,
 };
 use crate::{
     math::{Matrix, Vector},
     neighbours::{CHUNK, NeighbourLists, PairLists, ParticleListChunk, ParticleLists},
     particles::{PARTICLES_PER_TASK, Particles},
     sph::{
-        AuxiliarySums, FluidProperties, Pair, PairSide, Term, boundary::WallExtrapolation, kernel::Kernel,
+        AuxiliarySums, FluidProperties, PairSide, Term, boundary::WallExtrapolation, kernel::Kernel,
         pressure::repulsion,
     },
 };
@@ -102,24 +103,11 @@ fn add<K: Kernel, T, W, L: Term<D>, const D: usize>(
     if r2 >= laws.reach2 {
         return 0.0;
     }
-    let factor = laws.kernel.slope(r2);
-    let ab = Pair::new(r_ab, v_ab, r2, laws.kernel.w(r2), laws.eta2, a.side, b.side);
-    let along_r = law.along_r(&ab, 0.0);
-    let along_v = if L::ALONG_V { law.along_v(&ab, 0.0) } else { 0.0 };
-    for i in 0..D {
-        sum.acceleration[i] +=
-            factor * if L::ALONG_V { along_r * r_ab[i] + along_v * v_ab[i] } else { along_r * r_ab[i] };
-    }
-    if L::VECTOR {
-        for (dv, vector) in sum.acceleration.iter_mut().zip(law.vector(&ab, [0.0; D])) {
-            *dv += factor * vector;
-        }
-    }
-    sum.compression_rate += factor * law.rate(&ab, (0.0, 0.0)).0;
-    if L::AUXILIARY {
-        law.auxiliary(&ab, factor, &mut sum.auxiliary, &mut AuxiliarySums::filled_with(0.0));
-    }
-    ab.velocity_along_r.abs() * ab.inv_r2
+    let difference = b.side.compression - a.side.compression;
+    let pair = PairContribution::new::<K, L, true>((&laws.kernel, law), (r_ab, v_ab, r2, difference), laws.eta2, a.side, b.side);
+    let approach = pair.approach_rate(laws.reach2);
+    pair.add_to(law, sum, &mut Accumulators::filled_with(0.0));
+    approach
 }
 
 pub(super) fn sum_fluid<K: Kernel, T: Term<D>, W: Term<D>, const D: usize>(
@@ -188,7 +176,6 @@ fn nodes<const D: usize>(
             let (p, s) = (input.equation_of_state.pressure(x), 1.0 / (1.0 + x));
             let side = PairSide {
                 compression: x,
-                compression_lo: 0.0,
                 p,
                 specific_volume: s,
                 repulsion: if needs.repulsion { repulsion(p, s) } else { 0.0 },
@@ -283,6 +270,20 @@ impl<const D: usize> PairLoop<D> for ReferencePairLoop<D> {
             .for_each(|((sums, wet), chunk)| laws.sum_boundary(nodes, wet, chunk, sums));
         self.spent += start.elapsed();
         StepLimits { acceleration: a2.sqrt(), approach_rate: closing }
+    }
+
+    #[cfg(feature = "gpu")]
+    fn traces(&self) -> Option<super::PairTraces> {
+        let [fluid, wall] = self.laws.traces();
+        let needs = self.laws.required_sums();
+        Some(super::PairTraces {
+            fluid,
+            wall,
+            extrapolation: self.fits.trace(),
+            moments: self.moments.as_ref().map(|moments| moments.traces()),
+            rows: [needs.input_rows(D), needs.sum_rows(D)],
+            reach2: self.laws.reach2(),
+        })
     }
 
     fn memory_bytes(&self) -> usize {

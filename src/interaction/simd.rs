@@ -8,7 +8,7 @@
 
 use std::time::{Duration, Instant};
 
-use fearless_simd::{Select, SimdBase, SimdCvtFloat, SimdFloat};
+use fearless_simd::{SimdBase, SimdCvtFloat, SimdFloat};
 use rayon::prelude::*;
 
 use super::{
@@ -16,6 +16,7 @@ use super::{
     accumulators::{Accumulators, RequiredSums, for_each_symmetric_entry},
     boundary_sums::{self, BoundarySums},
     compiled::{CompiledTerms, PairTerms},
+    pair_contribution::PairContribution,
     simd_layout::{PackedCluster, PackedParticles, clusters},
 };
 use crate::{
@@ -23,7 +24,7 @@ use crate::{
     math::{Matrix, Vector},
     neighbours::{Clusters, ListPart, NeighbourLists, Slab},
     particles::PARTICLES_PER_TASK,
-    sph::{AuxiliarySums, FluidProperties, Pair, PairSide, Term, Units, boundary::WallExtrapolation, kernel::Kernel},
+    sph::{AuxiliarySums, FluidProperties, PairSide, Term, Units, boundary::WallExtrapolation, kernel::Kernel},
 };
 
 /// The SIMD pair loop with its terms.
@@ -273,6 +274,8 @@ struct BroadcastParticle<S: Simd, const D: usize> {
     cluster: usize,
     x: [i32x8<S>; D],
     v: [f32x8<S>; D],
+    /// What single precision cuts off the compression, so that its differences keep their digits in deep water.
+    compression_lo: f32x8<S>,
     side: PairSide<f32x8<S>, D>,
 }
 
@@ -365,8 +368,8 @@ impl<S: Simd, K: Kernel, const D: usize> SlabInput<'_, S, K, D> {
                 cluster: c,
                 x: [i32x8::splat(self.simd, 0); D],
                 v: [self.zero; D],
-                side: self
-                    .pair_side::<true>(c, [all(s[0][l]), all(s[1][l]), all(s[2][l]), all(s[3][l])], |row| all(row[l])),
+                compression_lo: all(s[1][l]),
+                side: self.pair_side::<true>(c, [all(s[0][l]), all(s[2][l]), all(s[3][l])], |row| all(row[l])),
             };
         for k in 0..D {
             one.x[k] = i32x8::splat(self.simd, x[k][l]);
@@ -380,14 +383,13 @@ impl<S: Simd, K: Kernel, const D: usize> SlabInput<'_, S, K, D> {
     fn pair_side<const CORRECTED: bool>(
         &self,
         c: usize,
-        s: [f32x8<S>; 4],
+        s: [f32x8<S>; 3],
         read: impl Fn(&[f32; LANES]) -> f32x8<S>,
     ) -> PairSide<f32x8<S>, D> {
-        let [x, low, p, s] = s;
+        let [x, p, s] = s;
         let (repulsion, mark, none) = (self.zero, self.zero, [[self.zero; D]; D]);
         let mut side = PairSide {
             compression: x,
-            compression_lo: low,
             p,
             specific_volume: s,
             repulsion,
@@ -439,7 +441,7 @@ impl<S: Simd, K: Kernel, const D: usize> SlabInput<'_, S, K, D> {
             let place = base + usize::from(entry);
             let j = self.first + place;
             let PackedCluster { x, v, s } = &self.clusters[j];
-            let (mut r_ab, mut v_ab, mut force) = ([zero; D], [zero; D], [zero; D]);
+            let (mut r_ab, mut v_ab) = ([zero; D], [zero; D]);
             for k in 0..D {
                 r_ab[k] = f32x8::float_from(one.x[k] - simd::load_integers(simd, &x[k]));
                 v_ab[k] = one.v[k] - simd::load(simd, &v[k]);
@@ -449,42 +451,17 @@ impl<S: Simd, K: Kernel, const D: usize> SlabInput<'_, S, K, D> {
                 r2 = d.mul_add(*d, r2);
             }
             let load = |row: &[f32; LANES]| simd::load(simd, row);
-            let side = self.pair_side::<CORRECTED>(j, [load(&s[0]), load(&s[1]), load(&s[2]), load(&s[3])], load);
-            let factor = self.kernel.slope(r2);
-            let ab = Pair::new(r_ab, v_ab, r2, self.kernel.w(r2), self.eta2, one.side, side);
-            let along_r = factor * law.along_r(&ab, zero);
-            for (force, r) in force.iter_mut().zip(&r_ab) {
-                *force = along_r * *r;
-            }
-            if L::ALONG_V {
-                let along_v = factor * law.along_v(&ab, zero);
-                for (force, v) in force.iter_mut().zip(&v_ab) {
-                    *force = along_v.mul_add(*v, *force);
-                }
-            }
-            if L::STRESS || L::VECTOR && CORRECTED {
-                let vector = law.vector(&ab, [zero; D]);
-                for (force, vector) in force.iter_mut().zip(&vector) {
-                    *force = factor.mul_add(*vector, *force);
-                }
-            }
-            let (rate_a, rate_b) = law.rate(&ab, (zero, zero));
-            let near = r2.simd_lt(self.reach2).select(ab.velocity_along_r.abs() * ab.inv_r2, zero);
-            *closing = SimdBase::max(*closing, near);
+            let side = self.pair_side::<CORRECTED>(j, [load(&s[0]), load(&s[2]), load(&s[3])], load);
+            let difference = (side.compression - one.side.compression) + (load(&s[1]) - one.compression_lo);
+            let geometry = (r_ab, v_ab, r2, difference);
+            let pair = PairContribution::new::<K, L, CORRECTED>((&self.kernel, law), geometry, self.eta2, one.side, side);
+            *closing = SimdBase::max(*closing, pair.approach_rate(self.reach2));
 
             let at = if j == one.cluster { nowhere } else { place * rows };
             let theirs = &mut sums[at..][..rows];
             let mut b = Accumulators::filled_with(zero);
             b.for_each_row(own, self.needs, |row, b| *b = load(&theirs[row].0));
-            for (k, force) in force.into_iter().enumerate() {
-                sum.acceleration[k] += force;
-                b.acceleration[k] -= force;
-            }
-            sum.compression_rate = factor.mul_add(rate_a, sum.compression_rate);
-            b.compression_rate = factor.mul_add(rate_b, b.compression_rate);
-            if L::AUXILIARY {
-                law.auxiliary(&ab, factor, &mut sum.auxiliary, &mut b.auxiliary);
-            }
+            pair.add_to(law, sum, &mut b);
             b.for_each_row(own, self.needs, |row, b| b.store_array(&mut theirs[row].0));
         }
     }

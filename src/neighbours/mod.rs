@@ -131,6 +131,13 @@ impl<const D: usize> NeighbourLists<D> {
         };
     }
 
+    /// Takes the positions (m) of water that a device has moved, for queries at a point. The lists of pairs stay as they are.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn set_fluid_positions(&mut self, water: &[Vector<D>]) {
+        self.grids = Default::default();
+        self.positions_at_build.copy_from_slice(water);
+    }
+
     /// The positions of the water for which the lists were made, m.
     pub(crate) fn positions_at_build(&self) -> &[Vector<D>] {
         &self.positions_at_build

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Probe, ProbeConfig, ProbeDefinition, ProbeScope, axes, find_solid, require_true};
+use super::{Probe, ProbeReads, ProbeConfig, ProbeDefinition, ProbeScope, axes, find_solid, require_true};
 use crate::{error::Result, math::Vector, simulation::Simulation, solid::ContactForce, system::System};
 
 /// Example of a section with a list of contacts.
@@ -78,6 +78,10 @@ impl ContactForceProbe {
 }
 
 impl<const D: usize> Probe<D> for ContactForceProbe {
+    fn reads(&self) -> ProbeReads {
+        ProbeReads::Solids
+    }
+
     fn columns(&self) -> Vec<String> {
         columns::<D>().collect()
     }

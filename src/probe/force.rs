@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Probe, ProbeDefinition, ProbeScope, axes, find_solid};
+use super::{Probe, ProbeReads, ProbeDefinition, ProbeScope, axes, find_solid};
 use crate::{error::Result, simulation::Simulation, system::System};
 
 /// Plan of a probe of the force and torque of the water on a solid.
@@ -52,6 +52,10 @@ impl ForceProbe {
 }
 
 impl<const D: usize> Probe<D> for ForceProbe {
+    fn reads(&self) -> ProbeReads {
+        ProbeReads::Solids
+    }
+
     fn columns(&self) -> Vec<String> {
         if D == 2 {
             return ["fx_N_per_m", "fy_N_per_m", "torque_Nm_per_m"].map(String::from).to_vec();

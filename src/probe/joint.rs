@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Probe, ProbeDefinition, ProbeScope, axes};
+use super::{Probe, ProbeReads, ProbeDefinition, ProbeScope, axes};
 use crate::{
     error::Result,
     simulation::{Simulation, find_by_name},
@@ -80,6 +80,10 @@ fn coordinate_column<const D: usize>(mode: usize) -> String {
 }
 
 impl<const D: usize> Probe<D> for JointProbe {
+    fn reads(&self) -> ProbeReads {
+        ProbeReads::Solids
+    }
+
     fn columns(&self) -> Vec<String> {
         let wide = if D == 2 { "_per_m" } else { "" };
         let mut columns: Vec<String> = axes::<D>().iter().map(|a| format!("f{a}_N{wide}")).collect();

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Probe, ProbeDefinition, ProbeScope};
+use super::{Probe, ProbeReads, ProbeDefinition, ProbeScope};
 use crate::{
     error::Result,
     simulation::{Simulation, find_by_name},
@@ -97,6 +97,10 @@ impl LineProbe {
 }
 
 impl<const D: usize> Probe<D> for LineProbe {
+    fn reads(&self) -> ProbeReads {
+        ProbeReads::Solids
+    }
+
     fn columns(&self) -> Vec<String> {
         vec!["length_m".into(), if D == 2 { "tension_N_per_m" } else { "tension_N" }.into()]
     }

@@ -100,10 +100,28 @@ pub trait Probe<const D: usize>: Send {
         let _ = (before, now, dt);
     }
 
+    /// Returns the part of the simulation that the probe reads. While the water is on a device, the run fetches only the parts
+    /// that are read.
+    fn reads(&self) -> ProbeReads {
+        ProbeReads::Water
+    }
+
     /// Returns the number of cumulative columns, which are the last columns. The program takes no time mean of them.
     fn cumulative_columns(&self) -> usize {
         0
     }
+}
+
+/// The part of a simulation that a probe reads.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum ProbeReads {
+    /// Motions of the solids and the loads on them.
+    Solids,
+    /// The water too.
+    Water,
+    /// The force on each boundary particle.
+    BoundaryForces,
 }
 
 /// The plan of a probe, with defaults filled in.

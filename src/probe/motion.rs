@@ -7,7 +7,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Probe, ProbeDefinition, ProbeScope, axes, find_solid};
+use super::{Probe, ProbeReads, ProbeDefinition, ProbeScope, axes, find_solid};
 use crate::{
     error::Result,
     math::{Matrix, Vector},
@@ -91,6 +91,10 @@ const fn angles<const D: usize>() -> usize {
 }
 
 impl<const D: usize> Probe<D> for MotionProbe<D> {
+    fn reads(&self) -> ProbeReads {
+        ProbeReads::Solids
+    }
+
     fn columns(&self) -> Vec<String> {
         let spins: &[&str] = if D == 2 { &["spin_radps"] } else { &["spin_x_radps", "spin_y_radps", "spin_z_radps"] };
         let positions = axes::<D>().iter().map(|a| format!("{a}_m"));

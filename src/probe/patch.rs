@@ -6,7 +6,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Probe, ProbeDefinition, ProbeScope, axes, find_solid, pressure::pressure};
+use super::{Probe, ProbeReads, ProbeDefinition, ProbeScope, axes, find_solid, pressure::pressure};
 use crate::{
     error::{Error, Result},
     math::{Bounds, BoxConfig, Vector},
@@ -105,6 +105,10 @@ impl<const D: usize> PatchProbe<D> {
 }
 
 impl<const D: usize> Probe<D> for PatchProbe<D> {
+    fn reads(&self) -> ProbeReads {
+        ProbeReads::BoundaryForces
+    }
+
     fn columns(&self) -> Vec<String> {
         let wide = if D == 2 { "_per_m" } else { "" };
         let forces = axes::<D>().iter().map(|a| format!("f{a}_N{wide}"));

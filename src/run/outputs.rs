@@ -8,6 +8,8 @@ use std::{
     path::{Path, PathBuf},
 };
 
+#[cfg(feature = "gpu")]
+use crate::probe::ProbeReads;
 use crate::{
     error::{Error, ErrorCode, ErrorKind, Result},
     output::{CsvTable, FrameWriter, IntervalMean, OutputPositions, manifest::FrameTotals},
@@ -171,6 +173,32 @@ impl<const D: usize> Outputs<D> {
         };
         let checkpoint = plan.checkpoint_every.map(|every| OutputSchedule { every, next: next(count + 1, 1) });
         Ok(Self { probes: watched, contact_lists: contacts, frames, checkpoint })
+    }
+
+    /// Returns the earliest time (s) at which an output is due: the past, if one reads every step.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn next_due(&self) -> f64 {
+        let at = |due: &OutputSchedule| due.next as f64 * due.every;
+        let probes = self.probes.iter().map(|own| if own.mean.is_some() { 0.0 } else { at(&own.due) });
+        let lists = self.contact_lists.iter().map(|list| at(&list.due));
+        let rest = self.frames.iter().map(|(_, due)| at(due)).chain(self.checkpoint.iter().map(at));
+        probes.chain(lists).chain(rest).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Returns the parts of the simulation that the outputs read which are due at time `t` (s).
+    #[cfg(feature = "gpu")]
+    pub(crate) fn reads_at(&self, t: f64) -> Vec<ProbeReads> {
+        let is_due = |due: &OutputSchedule| t * (1.0 + 1e-12) >= due.next as f64 * due.every;
+        let probes = self.probes.iter().filter(|own| own.mean.is_some() || is_due(&own.due));
+        let rest = self.frames.iter().map(|(_, due)| due).chain(&self.checkpoint).filter(|due| is_due(due));
+        probes.map(|own| own.probe.reads()).chain(rest.map(|_| ProbeReads::Water)).collect()
+    }
+
+    /// Returns the name of the first probe that reads the force on each boundary particle.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn boundary_force_probe(&self) -> Option<String> {
+        let own = self.probes.iter().find(|own| own.probe.reads() == ProbeReads::BoundaryForces)?;
+        own.table.path().file_stem().map(|name| name.to_string_lossy().into_owned())
     }
 
     /// Writes the outputs that are due now, except for the checkpoint, and returns which events occurred.

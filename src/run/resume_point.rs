@@ -32,8 +32,8 @@ impl ResumePoint {
         if sets.is_empty() {
             return Ok(self);
         }
-        if let Some((key, _)) = sets.iter().find(|(key, _)| key.split('.').next() != Some("guard")) {
-            let what = format!("{key} cannot be changed in a run that has begun: only [guard] can");
+        if let Some((key, _)) = sets.iter().find(|(key, _)| !may_change(key)) {
+            let what = format!("{key} cannot be changed in a run that has begun: only [guard] and model.device can");
             let help =
                 format!("--set guard.escape=remove is such a change; `pontoon run` with --set {key}=… starts afresh");
             return Err(Error::new(ErrorKind::Usage, what).help(help));
@@ -45,6 +45,11 @@ impl ResumePoint {
         known.scene_hash = checkpoint::fnv1a(self.scene.to_toml()?.as_bytes());
         Ok(self)
     }
+}
+
+/// Whether a run that has begun can go on with another value of `key`.
+fn may_change(key: &str) -> bool {
+    key.split('.').next() == Some("guard") || key == "model.device"
 }
 
 /// The newest checkpoint of use in `folder`.

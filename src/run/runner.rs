@@ -4,6 +4,7 @@ use std::{path::PathBuf, time::Instant};
 
 use super::{
     FinalBodyState, Progress, RunObserver, RunOrigin, RunOutcome, RunStart,
+    device,
     energy_drift::DriftMonitor,
     lock::Lock,
     outputs::{Outputs, series_folder},
@@ -87,6 +88,7 @@ where
         }
         sim.store_rollback_states_in(&folder);
         let outputs = Outputs::new(&plan, probes, &folder, resumed.then_some(&checkpoint.outputs))?;
+        let sim = device::place_on_device(scene, sim, &outputs)?;
         if resumed {
             run_folder::remove_failure_report(&folder)?;
         }
@@ -165,7 +167,7 @@ impl<const D: usize> Runner<D> {
             }
             let (clock, passes, rescued) = (Instant::now(), self.sim.force_passes(), self.sim.rollbacks().len());
             let known_events = self.sim.events().len();
-            let stepped = self.sim.step_to(until);
+            let stepped = device::step(&mut self.sim, &self.outputs, until);
             self.checkpoint.stepping_seconds += clock.elapsed().as_secs_f64();
             // Dry boundary particles are not updated and are not counted.
             let moved = self.sim.system().fluid().len() + self.sim.system().boundary_near_fluid_count();
@@ -192,6 +194,7 @@ impl<const D: usize> Runner<D> {
             self.write_removed()?;
             return Ok(RunStatus::Interrupted);
         }
+        device::fetch(&mut self.sim)?;
         self.outputs.finish(&self.sim)?;
         self.write_removed()?;
         Ok(RunStatus::Finished)
@@ -231,6 +234,7 @@ impl<const D: usize> Runner<D> {
 
     /// Writes the checkpoint, of outputs that are on the disk.
     fn save_checkpoint(&mut self) -> Result<()> {
+        device::fetch(&mut self.sim)?;
         self.outputs.sync()?;
         self.write_checkpoint(self.sim.rollbacks().len(), self.outputs.positions())
     }

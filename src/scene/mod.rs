@@ -122,6 +122,9 @@ pub use {
     },
 };
 
+/// The value of `model.device` for the processor.
+const PROCESSOR: &str = "cpu";
+
 /// Largest size of the text of a scene, B. The longest bundled scene has 3,000 B.
 const MOST_TEXT: u64 = 1 << 20;
 
@@ -383,6 +386,11 @@ impl Scene {
         let (mut scene, origin): (Self, SceneSource) = toml_source::read(text, file, folder, sets)?;
         scene.origin = origin;
         Ok(scene)
+    }
+
+    /// Returns the name of the device that computes the water, or `None` for the processor.
+    pub(crate) fn device_name(&self) -> Option<&str> {
+        self.model.device.as_deref().filter(|name| *name != PROCESSOR)
     }
 
     /// Returns the keys and values for which the scene uses an old name.

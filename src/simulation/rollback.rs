@@ -103,6 +103,12 @@ impl RollbackControl {
         !self.off && (self.states.is_empty() || steps.is_multiple_of(EVERY))
     }
 
+    /// Whether states are stored at all.
+    #[cfg(feature = "gpu")]
+    pub(super) fn is_on(&self) -> bool {
+        !self.off
+    }
+
     /// Whether a state of `time` (s) is stored.
     pub(super) fn has_state_at(&self, time: f64) -> bool {
         self.states.iter().any(|(_, at, _)| *at == time)

@@ -14,9 +14,11 @@ mod fluid_properties;
 mod pair;
 pub mod pressure;
 pub mod particle_shifting;
+#[cfg(feature = "gpu")]
+pub mod trace;
 pub mod equation_of_state;
 pub mod viscosity;
 pub mod boundary;
 
 pub use fluid_properties::{FluidProperties, Units};
-pub use pair::{AuxiliarySums, Num, Pair, PairSide, Term};
+pub use pair::{AuxiliarySums, Num, Pair, PairGeometry, PairSide, Term};

@@ -16,6 +16,8 @@ pub trait Num:
     fn fma(self, b: Self, c: Self) -> Self;
     /// Square root.
     fn sqrt(self) -> Self;
+    /// Absolute value.
+    fn abs(self) -> Self;
     /// The larger of two.
     fn max(self, other: Self) -> Self;
     /// The smaller of two.
@@ -38,6 +40,10 @@ impl Num for f64 {
         self.sqrt()
     }
     #[inline(always)]
+    fn abs(self) -> Self {
+        self.abs()
+    }
+    #[inline(always)]
     fn max(self, other: Self) -> Self {
         if self > other { self } else { other }
     }
@@ -56,8 +62,6 @@ impl Num for f64 {
 pub struct PairSide<N, const D: usize> {
     /// Excess density x = ρ/ρ₀ − 1, –.
     pub compression: N,
-    /// What single precision cuts off x, so that differences of x keep their digits in deep water; 0 in f64.
-    pub compression_lo: N,
     /// Pressure P/ρ₀, m²/s².
     pub p: N,
     /// Specific volume ρ₀/ρ, –.
@@ -72,6 +76,9 @@ pub struct PairSide<N, const D: usize> {
     /// B − 1 of the corrected gradient, –; symmetric, as above (read by laws with [`Term::GRADIENT_CORRECTION`]).
     pub gradient_correction: [[N; D]; D],
 }
+
+/// r_ab (m), v_ab (m/s), |r_ab|² (m²) and x_b − x_a (–) of a pair.
+pub type PairGeometry<N, const D: usize> = ([N; D], [N; D], N, N);
 
 /// Two particles a and b, and what their places give.
 #[derive(Clone, Copy, Debug)]
@@ -99,9 +106,16 @@ pub struct Pair<N, const D: usize> {
 }
 
 impl<N: Num, const D: usize> Pair<N, D> {
-    /// The pair of `a` and `b` with r_ab, v_ab, |r_ab|² and kernel value as given; η² in m².
+    /// The pair of `a` and `b` with r_ab, v_ab, |r_ab|², x_b − x_a and kernel value as given; η² in m². In single precision the
+    /// difference of x has more digits than x, so that it is right in deep water.
     #[inline(always)]
-    pub fn new(r_ab: [N; D], v_ab: [N; D], r2: N, w: N, eta2: N, a: PairSide<N, D>, b: PairSide<N, D>) -> Self {
+    pub fn new(
+        (r_ab, v_ab, r2, compression_difference): PairGeometry<N, D>,
+        w: N,
+        eta2: N,
+        a: PairSide<N, D>,
+        b: PairSide<N, D>,
+    ) -> Self {
         let mut vr = r_ab[0] * v_ab[0];
         for i in 1..D {
             vr = r_ab[i].fma(v_ab[i], vr);
@@ -109,13 +123,12 @@ impl<N: Num, const D: usize> Pair<N, D> {
         // One division gives both reciprocals.
         let (away, twice_rho) = (r2 + eta2, (a.compression + b.compression) + r2.constant(2.0));
         let both = r2.constant(1.0) / (away * twice_rho);
-        let x_ba = (b.compression - a.compression) + (b.compression_lo - a.compression_lo);
         Self {
             r_ab,
             v_ab,
             r2,
             velocity_along_r: vr,
-            compression_difference: x_ba,
+            compression_difference,
             inv_r2: both * twice_rho,
             viscous_factor: both + both,
             w,

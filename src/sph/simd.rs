@@ -19,6 +19,10 @@ impl<S: Simd> Num for f32x8<S> {
         SimdFloat::sqrt(self)
     }
     #[inline(always)]
+    fn abs(self) -> Self {
+        SimdBase::abs(self)
+    }
+    #[inline(always)]
     fn max(self, other: Self) -> Self {
         SimdBase::max(self, other)
     }

@@ -18,18 +18,18 @@ use crate::{
     model::{Model, Walls},
     particles::{PARTICLES_PER_TASK, Particles, optional_bytes},
     solid::{Kinematics, Role, Solid, SolidDivision, SolidSpec, boundary_motion},
-    sph::boundary::{DynamicBoundary, Slip, SupportCoverage, WallExtrapolation, WallTarget, no_slip_velocity},
+    sph::boundary::{DynamicBoundary, Slip, SupportCoverage, WallExtrapolation, WallTarget, no_slip_velocity, promptness},
 };
 
 /// The boundary particles of all solids, one solid after the other.
 pub(crate) struct Boundary<const D: usize> {
     pub(crate) particles: Particles<D>,
     /// Positions in the frame of each solid, m; none of a fixed solid, whose particles stay where they are.
-    local_positions: Vec<Vec<Vector<D>>>,
+    pub(super) local_positions: Vec<Vec<Vector<D>>>,
     /// Share of the kernel's support that water fills, Σ V_f W, of each one near water, –; `None` unless a body needs it.
     pub(crate) wetness: Option<Vec<f64>>,
     /// Depths below the face, m; `None` unless the density relaxes to the water's pressure or water sticks to the face.
-    depths: Option<Vec<f64>>,
+    pub(super) depths: Option<Vec<f64>>,
     /// Outward normals in the frames of their solids; `None` unless water sticks to the face.
     normals: Option<Vec<Vector<D>>>,
     /// Target densities of those that had water near them in the last pass, in ascending order; `None` unless walls relax.
@@ -38,13 +38,15 @@ pub(crate) struct Boundary<const D: usize> {
     pub(super) extrapolated_velocity: Option<Vec<Vector<D>>>,
     /// Beside which of them water is not shifted; `None` unless water is shifted.
     pub(super) shifting_suppressed: Option<Vec<bool>>,
-    coverage: SupportCoverage,
+    pub(super) coverage: SupportCoverage,
     /// The box around the boundary particles of each solid, in its frame, m.
     pub(super) local_bounds: Vec<Bounds<D>>,
     /// The mirror images of the boundary particles of each solid, in their order in the arrays; empty without a symmetry plane.
     mirrored: Vec<Vec<MirroredParticle>>,
     /// Poses of the solids when the neighbour lists were built; `None` if they must be built anew.
     pub(super) poses_at_rebuild: Option<Vec<Pose<D>>>,
+    /// Whether a device has the particles: the host places none.
+    pub(super) on_device: bool,
 }
 
 /// The density to which a boundary particle relaxes.
@@ -52,7 +54,7 @@ pub(crate) struct Boundary<const D: usize> {
 struct TargetDensity {
     /// Index of the boundary particle.
     particle: u32,
-    target: WallTarget,
+    target: WallTarget<f64>,
 }
 
 impl<const D: usize> Boundary<D> {
@@ -78,6 +80,7 @@ impl<const D: usize> Boundary<D> {
             local_bounds: Vec::new(),
             mirrored: Vec::new(),
             poses_at_rebuild: None,
+            on_device: false,
         }
     }
 
@@ -264,6 +267,9 @@ impl<const D: usize> Boundary<D> {
 impl<const D: usize> System<D> {
     /// Puts the boundary particles of solid `i` where its kinematics say.
     pub(crate) fn place_boundary(&mut self, i: usize) {
+        if self.boundary.on_device {
+            return;
+        }
         self.boundary.place(i, &self.solids[i], &self.fluid.images);
     }
 
@@ -322,7 +328,7 @@ impl<const D: usize> System<D> {
                 None => DynamicBoundary.limited_density(bare, rho0),
                 Some(TargetDensity { target, .. }) => {
                     let own = DynamicBoundary.limited_density(bare, target.density.min(rho0));
-                    relaxation.map_or(own, |relaxation| target.relaxed(own, relaxation))
+                    relaxation.map_or(own, |relaxation| own + target.change(own, relaxation))
                 }
             };
         }
@@ -362,17 +368,22 @@ impl<const D: usize> System<D> {
             let place = self.place_on_solid(owner, i);
             let owner = &self.solids[owner];
             let pull = medium.gravity - owner.acceleration_at(&place);
-            let pressure = fit.pressure(&pull, &medium.gravity, depths[i]);
+            let pressure = fit.pressure(&pull.into(), &medium.gravity.into(), depths[i]);
             let density = medium.rho0 * (1.0 + self.equation_of_state.compression(pressure));
-            let (approach, cover) = (fit.approach(&particles.v[i]), coverage.cover(fit.weight_sum, depths[i]));
-            let water_in_place = self.particle_mass() * owner.division.whole as f64;
-            let heaviness = owner.body.as_ref().map_or(f64::INFINITY, |body| body.mass / water_in_place);
-            let (own, rho0, c0) = (particles.rho[i], medium.rho0, medium.c0);
-            TargetDensity { particle, target: WallTarget::new(density, own, approach, cover, heaviness, rho0, c0) }
+            let (approach, cover) = (fit.approach(&particles.v[i].into()), coverage.cover(fit.weight_sum, depths[i]));
+            let (own, constants) = (particles.rho[i], [medium.rho0, medium.c0]);
+            let promptness = self.wall_promptness(owner);
+            TargetDensity { particle, target: WallTarget::new(density, own, approach, cover, promptness, constants) }
         };
         let wet = self.neighbours.boundary_near_fluid();
         let targets = wet.par_iter().zip(fits).with_min_len(PARTICLES_PER_TASK).map(target).collect();
         self.boundary.target_density = Some(targets);
+    }
+
+    /// Share (–) of a prompt change of density at the walls of `solid`.
+    pub(crate) fn wall_promptness(&self, solid: &Solid<D>) -> f64 {
+        let water_in_place = self.particle_mass() * solid.division.whole as f64;
+        promptness(solid.body.as_ref().map_or(f64::INFINITY, |body| body.mass / water_in_place))
     }
 
     /// Makes the velocities with which boundary particles act of `fits`, one for each boundary particle near water.

@@ -50,7 +50,7 @@ impl<const D: usize> GapPressure<D> {
     /// Reads from `fits`, one for each boundary particle near water, where the water is.
     pub(super) fn update_directions(&mut self, fits: &[WallExtrapolation<f64, D>]) {
         for particle in &mut self.particles {
-            particle.away = fits[particle.place].direction().unwrap_or_else(Vector::zeros);
+            particle.away = fits[particle.place].direction().into();
         }
     }
 

@@ -6,6 +6,8 @@ mod boundary;
 mod boundary_extension;
 mod change;
 mod checkpoint;
+#[cfg(feature = "gpu")]
+mod device_state;
 mod driving;
 mod fluid;
 mod free_surface;

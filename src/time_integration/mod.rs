@@ -7,6 +7,8 @@ mod verlet;
 
 pub(crate) use symplectic::Symplectic;
 pub(crate) use verlet::Verlet;
+#[cfg(feature = "gpu")]
+pub(crate) use verlet::{FOLDINGS, VerletHistory};
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};

@@ -26,7 +26,7 @@ use crate::{
 
 /// How many e-foldings of the difference of even and odd steps are let grow. A still tank (2-D, 10 dp deep, h = √3 dp)
 /// stands with 3.5 between Euler steps and is lost with 7.
-const FOLDINGS: f64 = 3.5;
+pub(crate) const FOLDINGS: f64 = 3.5;
 
 /// The scheme @verlet1967, eqs. (12), (13) of @pirkhalili2023, and the step before.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -43,6 +43,22 @@ pub(crate) struct Verlet<const D: usize> {
     skin_rho_before: Vec<f64>,
 }
 
+/// The step before: what a device takes and gives back.
+#[cfg(feature = "gpu")]
+pub(crate) struct VerletHistory<const D: usize> {
+    /// Velocities of the water, m/s; empty before the first step.
+    pub(crate) velocity: Vec<Vector<D>>,
+    /// Its densities, kg/m³.
+    pub(crate) density: Vec<f64>,
+    /// Densities of the boundary particles, kg/m³.
+    pub(crate) boundary_density: Vec<f64>,
+    /// Length of the step, s.
+    pub(crate) dt: f64,
+    /// Steps since the last Euler step, and e-foldings since.
+    pub(crate) steps: u32,
+    pub(crate) foldings: f64,
+}
+
 impl<const D: usize> Verlet<D> {
     /// At the start of a run with this model; the first step is Euler's.
     pub(crate) fn new(euler_every: u32, model: &Model) -> Self {
@@ -56,6 +72,27 @@ impl<const D: usize> Verlet<D> {
             rho_before: Vec::new(),
             skin_rho_before: Vec::new(),
         }
+    }
+
+    /// The step before, for a device.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn history(&self) -> VerletHistory<D> {
+        VerletHistory {
+            velocity: self.v_before.clone(),
+            density: self.rho_before.clone(),
+            boundary_density: self.skin_rho_before.clone(),
+            dt: self.dt_before,
+            steps: self.steps,
+            foldings: self.foldings,
+        }
+    }
+
+    /// Takes the step before from a device.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn set_history(&mut self, history: VerletHistory<D>) {
+        (self.v_before, self.rho_before) = (history.velocity, history.density);
+        self.skin_rho_before = history.boundary_density;
+        (self.dt_before, self.steps, self.foldings) = (history.dt, history.steps, history.foldings);
     }
 
     /// The velocities (m/s) from which the next step goes on.

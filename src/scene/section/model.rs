@@ -53,6 +53,9 @@ pub struct ModelConfig {
     pub slip: Option<Slip>,
     /// The pair loop.
     pub sweep: Option<PairLoopKind>,
+    /// The device that computes the water: `cpu`, `gpu`, the number of an adapter or part of its name.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub device: Option<String>,
     /// Speed of sound, m/s.
     pub c0: Option<f64>,
     /// Speed of sound over √(g · depth), –.

@@ -7,7 +7,7 @@ mod slip;
 
 pub(crate) use dynamic::DynamicBoundary;
 #[doc(hidden)]
-pub use relaxed_adami::{Cover, SupportCoverage, WallExtrapolation, WallTarget, relaxation};
+pub use relaxed_adami::{Cover, SupportCoverage, WallExtrapolation, WallTarget, promptness, relaxation};
 pub use repulsion::Repulsion;
 pub use slip::Slip;
 #[doc(hidden)]

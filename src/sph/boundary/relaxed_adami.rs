@@ -14,7 +14,7 @@
 //! water. Pressure may always decrease; an increase is scaled by the
 //! [`SupportCoverage`], since spray and thin films would otherwise gain energy.
 
-use crate::{math::Vector, sph::Num};
+use crate::sph::Num;
 
 /// τ over h/c₀, –: at 40 a gap of 0.05 to 0.07 dp stays, at 0 water strays into the faces.
 const RELAXATION_TIME: f64 = 10.0;
@@ -89,61 +89,95 @@ impl<N: Num, const D: usize> WallExtrapolation<N, D> {
     }
 }
 
-impl<const D: usize> WallExtrapolation<f64, D> {
-    /// The pressure P_w/ρ₀ (m²/s²) of a boundary particle that feels `pull` = g − a_w (m/s²), of which `g` is the weight, and lies
-    /// `depth` (m) below the face.
-    pub fn pressure(&self, pull: &Vector<D>, g: &Vector<D>, depth: f64) -> f64 {
-        // At the rim of the support the weight is the square of a rounding: no water.
-        if self.weight_sum < 1e-9 {
-            return 0.0;
-        }
-        let arm = Vector::from(self.offset_sum);
-        // The face is where the water is: a thin plate has two.
-        let least = arm.try_normalize(0.0).map_or(0.0, |away| (g.dot(&away) * depth).min(0.0));
-        ((self.pressure_sum + pull.dot(&arm)) / self.weight_sum).max(least)
+/// Σ a_k b_k.
+#[inline(always)]
+fn dot<N: Num, const D: usize>(a: &[N; D], b: &[N; D]) -> N {
+    (1..D).fold(a[0] * b[0], |sum, k| a[k].fma(b[k], sum))
+}
+
+/// Least weight of a boundary particle with water: at the rim of the support the weight is the square of a rounding.
+const LEAST_WEIGHT: f64 = 1e-9;
+
+impl<N: Num, const D: usize> WallExtrapolation<N, D> {
+    /// The unit vector from the water to the boundary particle; zero without water.
+    #[inline(always)]
+    pub fn direction(&self) -> [N; D] {
+        let square = dot(&self.offset_sum, &self.offset_sum);
+        let (zero, one) = (square.constant(0.0), square.constant(1.0));
+        let norm = zero.select_below(square, square, one).sqrt();
+        self.offset_sum.map(|x| x / norm)
     }
 
-    /// The unit vector from the water to the boundary particle; `None` without water.
-    pub fn direction(&self) -> Option<Vector<D>> {
-        Vector::from(self.offset_sum).try_normalize(0.0)
+    /// The weight, or 1 without water.
+    #[inline(always)]
+    fn divisor(&self) -> N {
+        let one = self.weight_sum.constant(1.0);
+        self.weight_sum.select_below(one.constant(LEAST_WEIGHT), one, self.weight_sum)
+    }
+
+    /// `x` where there is water, else 0.
+    #[inline(always)]
+    fn with_water(&self, x: N) -> N {
+        self.weight_sum.select_below(x.constant(LEAST_WEIGHT), x.constant(0.0), x)
+    }
+
+    /// The pressure P_w/ρ₀ (m²/s²) of a boundary particle that feels `pull` = g − a_w (m/s²), of which `g` is the weight, and lies
+    /// `depth` (m) below the face.
+    #[inline(always)]
+    pub fn pressure(&self, pull: &[N; D], g: &[N; D], depth: N) -> N {
+        // The face is where the water is: a thin plate has two.
+        let least = (dot(g, &self.direction()) * depth).min(depth.constant(0.0));
+        self.with_water(((self.pressure_sum + dot(pull, &self.offset_sum)) / self.divisor()).max(least))
     }
 
     /// The speed (m/s) at which the water comes towards a boundary particle of velocity `v` (m/s), at least 0.
-    pub fn approach(&self, v: &Vector<D>) -> f64 {
-        let towards = |direction: Vector<D>| direction.dot(&(Vector::from(self.velocity_sum) / self.weight_sum - v));
-        if self.weight_sum < 1e-9 { 0.0 } else { self.direction().map_or(0.0, towards).max(0.0) }
+    #[inline(always)]
+    pub fn approach(&self, v: &[N; D]) -> N {
+        let divisor = self.divisor();
+        let past = std::array::from_fn(|k| self.velocity_sum[k] / divisor - v[k]);
+        self.with_water(dot(&self.direction(), &past).max(divisor.constant(0.0)))
     }
 }
 
 /// The density that a boundary particle takes, and the shares of a step's change that it takes at once.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WallTarget {
+pub struct WallTarget<N> {
     /// ρ(P_w), kg/m³.
-    pub density: f64,
+    pub density: N,
     /// Share of an increase that is applied at all, –: [`Cover::fraction`].
-    pub increase: f64,
+    pub increase: N,
     /// Share of a decrease that is applied at once, –; the rest within τ.
-    pub prompt_decrease: f64,
+    pub prompt_decrease: N,
     /// Share of an increase that is applied at once, –; the rest within τ.
-    pub prompt_increase: f64,
+    pub prompt_increase: N,
 }
 
-impl WallTarget {
+/// Share (–) of a prompt change at the walls of a solid with this `heaviness`, the mass of the body over that of the water in its
+/// place, –.
+pub fn promptness(heaviness: f64) -> f64 {
+    (heaviness / LIGHT - 1.0).clamp(0.0, 1.0)
+}
+
+impl<N: Num> WallTarget<N> {
     /// The target `density` (kg/m³) of a boundary particle of density `own`, which the water approaches with `approach` (m/s).
-    /// `cover` is its place in the [`SupportCoverage`], `heaviness` the mass of its body over that of the water in its place, –.
-    pub fn new(density: f64, own: f64, approach: f64, cover: Cover, heaviness: f64, rho0: f64, c0: f64) -> Self {
-        let below = |x: f64, limit: f64| (2.0 - x / limit).clamp(0.0, 1.0);
-        let slow = if cover.share > TWO_FACES { 0.0 } else { below(approach / c0, SLOW_APPROACH) };
-        let slow = slow * (heaviness / LIGHT - 1.0).clamp(0.0, 1.0);
-        let gentle = below((density - own).max(0.0) / rho0, SLOW_INCREASE);
+    /// `cover` is its place in the [`SupportCoverage`], `promptness` that of its solid, –. ρ₀ in kg/m³, c₀ in m/s.
+    #[inline(always)]
+    pub fn new(density: N, own: N, approach: N, cover: Cover<N>, promptness: N, [rho0, c0]: [f64; 2]) -> Self {
+        let (zero, one) = (own.constant(0.0), own.constant(1.0));
+        let below = |x: N, limit: f64| (x.constant(2.0) - x / x.constant(limit)).max(zero).min(one);
+        let slow = below(approach / own.constant(c0), SLOW_APPROACH);
+        let slow = own.constant(TWO_FACES).select_below(cover.share, zero, slow) * promptness;
+        let gentle = below((density - own).max(zero) / own.constant(rho0), SLOW_INCREASE);
         Self { density, increase: cover.fraction(), prompt_decrease: slow, prompt_increase: slow * gentle }
     }
 
-    /// The density (kg/m³) after a step in which the share `relaxation` (–) of a difference relaxes, from `own`.
-    pub(crate) fn relaxed(&self, own: f64, relaxation: f64) -> f64 {
-        let (share, prompt) =
-            if self.density > own { (self.increase, self.prompt_increase) } else { (1.0, self.prompt_decrease) };
-        own + (self.density - own) * share * (relaxation + (1.0 - relaxation) * prompt)
+    /// The change of density (kg/m³) in a step in which the share `relaxation` (–) of a difference relaxes, from `own`.
+    #[inline(always)]
+    pub(crate) fn change(&self, own: N, relaxation: N) -> N {
+        let one = own.constant(1.0);
+        let share = own.select_below(self.density, self.increase, one);
+        let prompt = own.select_below(self.density, self.prompt_increase, self.prompt_decrease);
+        (self.density - own) * share * (one - relaxation).fma(prompt, relaxation)
     }
 }
 
@@ -177,26 +211,32 @@ impl SupportCoverage {
         Self { full: full.collect(), step }
     }
 
-    /// The cover of a boundary particle `depth` (m) below the face whose extrapolation has `weight`.
-    pub fn cover(&self, weight: f64, depth: f64) -> Cover {
+    /// The weight of a boundary particle `depth` (m) behind a flat face under water, –; above zero.
+    pub(crate) fn full_weight(&self, depth: f64) -> f64 {
         let place = (depth / self.step).clamp(0.0, DEPTHS as f64 - 1e-9);
         let (k, rest) = (place as usize, place.fract());
-        let full = self.full[k] + (self.full[k + 1] - self.full[k]) * rest;
-        Cover { share: weight / full.max(1e-6) }
+        (self.full[k] + (self.full[k + 1] - self.full[k]) * rest).max(1e-6)
+    }
+
+    /// The cover of a boundary particle `depth` (m) below the face whose extrapolation has `weight`.
+    pub fn cover(&self, weight: f64, depth: f64) -> Cover<f64> {
+        Cover { share: weight / self.full_weight(depth) }
     }
 }
 
 /// How much of a boundary particle's support before the face is water.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Cover {
+pub struct Cover<N> {
     /// Its weight over that behind a flat face under water, –.
-    pub share: f64,
+    pub share: N,
 }
 
-impl Cover {
+impl<N: Num> Cover<N> {
     /// The factor (0 to 1) of an increase of pressure: 0 beside spray, a fifth in a film of one row, 1 where water is all around.
-    pub fn fraction(self) -> f64 {
-        let t = ((self.share - COVERAGE_MIN) / (COVERAGE_FULL - COVERAGE_MIN)).clamp(0.0, 1.0);
-        t * t * (3.0 - 2.0 * t)
+    #[inline(always)]
+    pub fn fraction(self) -> N {
+        let of = |x: f64| self.share.constant(x);
+        let t = ((self.share - of(COVERAGE_MIN)) / of(COVERAGE_FULL - COVERAGE_MIN)).max(of(0.0)).min(of(1.0));
+        t * t * (of(3.0) - of(2.0) * t)
     }
 }

@@ -27,7 +27,6 @@ fn the_corrected_gradient_of_a_linear_field_is_exact_on_disordered_particles() {
     let none = [[0.0; 3]; 3];
     let side = PairSide {
         compression: 0.0,
-        compression_lo: 0.0,
         p: 0.0,
         specific_volume: 1.0,
         repulsion: 0.0,
@@ -42,7 +41,7 @@ fn the_corrected_gradient_of_a_linear_field_is_exact_on_disordered_particles() {
     for b in &near {
         let r = centre - *b;
         let factor: f64 = kernel.slope(r.norm_squared()) * volume;
-        let pair = Pair::new(r.into(), [0.0; 3], r.norm_squared(), 0.0, 0.0, side, side);
+        let pair = Pair::new((r.into(), [0.0; 3], r.norm_squared(), 0.0), 0.0, 0.0, side, side);
         RenormalizationTerm.auxiliary(&pair, factor, &mut sums, &mut other);
     }
     let form = gradient_correction::correction(&sums.renormalization);

@@ -1,0 +1,304 @@
+//! The arrays on a device, the passes over them, and the words by which a device and the host talk.
+
+use super::{
+    gpu::{Adapter, Gpu},
+    layout::Layout,
+    shaders::GROUP,
+    solids::{SOLID_WORDS, SolidChunks},
+};
+use crate::{
+    error::{Error, ErrorCode, ErrorKind, Result},
+    system::System,
+};
+
+/// Control words.
+pub(super) const WORDS: usize = 32;
+
+/// The control words: `Control` of `shaders/common.wgsl`.
+pub(super) struct Control(pub(super) [u32; WORDS]);
+
+impl Control {
+    pub(super) const HALT: usize = 0;
+    const DT: usize = 2;
+    const TIME: usize = 6;
+    pub(super) const END: usize = 8;
+    const EULER: usize = 5;
+    const SPAN: usize = 3;
+    const STEPS: usize = 13;
+    const FORCE: usize = 21;
+    const APPROACH: usize = 22;
+    const SINCE_EULER: usize = 15;
+    const FOLDINGS: usize = 16;
+    const DT_BEFORE: usize = 17;
+    pub(super) const PASSES: usize = 18;
+    const STARTED: usize = 19;
+    pub(super) const MOVED: usize = 20;
+    pub(super) const FAULT: usize = 23;
+    pub(super) const LONGEST: usize = 24;
+
+    /// A displacement that asks for new lists.
+    pub(super) const FAR: u32 = 0x7f00_0000;
+
+    /// At tick 0, halted, without lists.
+    pub(super) fn start() -> Self {
+        let mut words = [0; WORDS];
+        (words[Self::HALT], words[Self::MOVED], words[Self::FAULT]) = (1, Self::FAR, u32::MAX);
+        Self(words)
+    }
+
+    pub(super) fn from_words(words: &[u32]) -> Self {
+        Self(std::array::from_fn(|i| words[i]))
+    }
+
+    /// Sets the step before of a Verlet step.
+    pub(super) fn set_history(&mut self, since_euler: u32, foldings: f64, dt: f64) {
+        self.0[Self::SINCE_EULER] = since_euler;
+        self.0[Self::FOLDINGS] = (foldings as f32).to_bits();
+        self.0[Self::DT_BEFORE] = (dt as f32).to_bits();
+        self.0[Self::STARTED] = 1;
+    }
+
+    pub(super) fn halt(&self) -> u32 {
+        self.0[Self::HALT]
+    }
+
+    pub(super) fn dt(&self) -> f32 {
+        f32::from_bits(self.0[Self::DT])
+    }
+
+    pub(super) fn time(&self) -> u64 {
+        u64::from(self.0[Self::TIME]) | (u64::from(self.0[Self::TIME + 1]) << 32)
+    }
+
+    pub(super) fn steps(&self) -> u32 {
+        self.0[Self::STEPS]
+    }
+
+    pub(super) fn passes(&self) -> u32 {
+        self.0[Self::PASSES]
+    }
+
+    pub(super) fn fault(&self) -> u32 {
+        self.0[Self::FAULT]
+    }
+
+    pub(super) fn longest(&self) -> u32 {
+        self.0[Self::LONGEST]
+    }
+
+    /// Factor of the loads on bodies: an Euler step gives the whole force, a Verlet step that over half of two steps.
+    pub(super) fn weight(&self, verlet: bool) -> f64 {
+        if !verlet || self.0[Self::EULER] != 0 {
+            return 1.0;
+        }
+        0.5 * f64::from(f32::from_bits(self.0[Self::SPAN])) / f64::from(self.dt())
+    }
+
+    /// The largest acceleration, and the largest rate of approach.
+    pub(super) fn force(&self) -> f32 {
+        f32::from_bits(self.0[Self::FORCE]).sqrt()
+    }
+
+    pub(super) fn approach(&self) -> f32 {
+        f32::from_bits(self.0[Self::APPROACH])
+    }
+
+    pub(super) fn has_history(&self) -> bool {
+        self.0[Self::STARTED] != 0
+    }
+
+    pub(super) fn since_euler(&self) -> u32 {
+        self.0[Self::SINCE_EULER]
+    }
+
+    pub(super) fn foldings(&self) -> f32 {
+        f32::from_bits(self.0[Self::FOLDINGS])
+    }
+
+    pub(super) fn dt_before(&self) -> f32 {
+        f32::from_bits(self.0[Self::DT_BEFORE])
+    }
+}
+
+/// Numbers of particles, cells and list entries.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Counts {
+    pub(super) n: usize,
+    pub(super) water: usize,
+    /// Cells of one kind of particles, along each axis and in all.
+    size: [i32; 4],
+    origin: [i32; 4],
+    pub(super) cells: usize,
+    /// Entries of a list.
+    pub(super) most: usize,
+    /// Particles whose lists share a buffer.
+    pub(super) part: usize,
+}
+
+impl Counts {
+    /// Those of `system`, for lists that reach `margin` beyond the support.
+    pub(super) fn new<const D: usize>(system: &System<D>, layout: &Layout, adapter: &Adapter, margin: f64) -> Result<Self> {
+        let (water, model) = (system.fluid().len(), system.model());
+        let n = water + system.boundary().len();
+        let (mut low, mut high) = ([0; D], [0; D]);
+        for (i, r) in system.fluid().r.iter().chain(system.boundary().r).enumerate() {
+            for k in 0..D {
+                let c = layout.coarse(r[k], f64::floor) >> 8;
+                (low[k], high[k]) = if i == 0 { (c, c) } else { (c.min(low[k]), c.max(high[k])) };
+            }
+        }
+        // An empty cell around all.
+        let (mut origin, mut size) = ([0; 4], [1; 4]);
+        for k in 0..D {
+            (origin[k], size[k]) = (low[k] - 1, high[k] - low[k] + 3);
+        }
+        let cells: f64 = size.iter().map(|&x| f64::from(x)).product();
+        if cells > 2e8 {
+            return Err(Error::new(ErrorKind::Usage, format!("the particles are spread over {cells:.1e} kernel supports"))
+                .with_code(ErrorCode::NoDevice)
+                .help("start the solids nearer to the water, or leave --device out"));
+        }
+        let ratio = model.support_radius() * (1.0 + margin) / model.dp;
+        let volume = if D == 2 { std::f64::consts::PI * ratio.powi(2) } else { 4.19 * ratio.powi(3) };
+        let mut counts = Self { n, water, size, origin, cells: cells as usize, most: 0, part: 0 };
+        counts.set_list_length((1.25 * volume) as usize + 8, adapter);
+        Ok(counts)
+    }
+
+    /// Sets the length of a list, and so the particles whose lists fit a buffer.
+    pub(super) fn set_list_length(&mut self, most: usize, adapter: &Adapter) {
+        let bytes = adapter.binding_bytes.min(adapter.buffer_bytes) as usize;
+        let fit = (bytes / (4 * most)) / GROUP * GROUP;
+        (self.most, self.part) = (most, fit.max(GROUP).min(self.n.next_multiple_of(GROUP)));
+    }
+
+    fn parts(&self) -> usize {
+        self.n.div_ceil(self.part).max(1)
+    }
+
+    pub(super) fn words(&self) -> [u32; 12] {
+        let mut words = [0; 12];
+        words[..4].copy_from_slice(&[self.n, self.water, self.cells, self.most].map(|x| x as u32));
+        for k in 0..4 {
+            (words[4 + k], words[8 + k]) = (self.size[k] as u32, self.origin[k] as u32);
+        }
+        words
+    }
+}
+
+/// The arrays.
+pub(super) struct Buffers {
+    pub(super) control: wgpu::Buffer,
+    pub(super) places: wgpu::Buffer,
+    pub(super) motion: wgpu::Buffer,
+    pub(super) before: wgpu::Buffer,
+    pub(super) slot: wgpu::Buffer,
+    pub(super) solids: wgpu::Buffer,
+    pub(super) depths: wgpu::Buffer,
+    pub(super) loads: wgpu::Buffer,
+    pub(super) lists: Vec<wgpu::Buffer>,
+    /// What only the passes use.
+    pub(super) inner: Inner,
+    /// Copies of control, places, motion and the step before.
+    backup: [wgpu::Buffer; 4],
+}
+
+/// The arrays that only the passes use.
+pub(super) struct Inner {
+    pub(super) positions: wgpu::Buffer,
+    pub(super) velocities: wgpu::Buffer,
+    pub(super) built: wgpu::Buffer,
+    pub(super) sums: wgpu::Buffer,
+    pub(super) walls: wgpu::Buffer,
+    pub(super) spans: wgpu::Buffer,
+    pub(super) order: wgpu::Buffer,
+    pub(super) count: wgpu::Buffer,
+    pub(super) start: wgpu::Buffer,
+    pub(super) blocks: wgpu::Buffer,
+    pub(super) spare_places: wgpu::Buffer,
+    pub(super) spare: wgpu::Buffer,
+    pub(super) local: wgpu::Buffer,
+    pub(super) chunks: wgpu::Buffer,
+}
+
+impl Buffers {
+    /// Arrays for `counts` particles and sums of so many `rows`; with the step before if `verlet`.
+    pub(super) fn new(gpu: &Gpu, counts: &Counts, chunks: &SolidChunks, rows: usize, verlet: bool) -> Result<Self> {
+        let (n, boundary) = (counts.n, counts.n - counts.water);
+        let history = if verlet { 16 * n } else { 16 };
+        let solids = chunks.owners.iter().max().map_or(1, |most| most + 1);
+        let total = 2 * counts.cells + 1;
+        let inner = Inner {
+            positions: gpu.buffer(16 * n)?,
+            velocities: gpu.buffer(16 * n)?,
+            built: gpu.buffer(16 * n)?,
+            sums: gpu.buffer(4 * rows * n)?,
+            walls: gpu.buffer(16 * boundary)?,
+            spans: gpu.buffer(8 * n)?,
+            order: gpu.buffer(4 * n)?,
+            count: gpu.buffer(4 * total)?,
+            start: gpu.buffer(4 * total)?,
+            blocks: gpu.buffer(4 * total.div_ceil(1024))?,
+            spare_places: gpu.buffer(32 * n)?,
+            spare: gpu.buffer((if verlet { 64 } else { 48 }) * n)?,
+            local: gpu.buffer(16 * boundary)?,
+            chunks: gpu.buffer(4 * chunks.members.len())?,
+        };
+        gpu.write(&inner.local, 0, &chunks.local);
+        gpu.write(&inner.chunks, 0, &chunks.members);
+        let mut buffers = Self {
+            control: gpu.buffer(4 * WORDS)?,
+            places: gpu.buffer(32 * n)?,
+            motion: gpu.buffer(16 * n)?,
+            before: gpu.buffer(history)?,
+            slot: gpu.buffer(4 * n)?,
+            solids: gpu.buffer(4 * SOLID_WORDS * solids)?,
+            depths: gpu.buffer(8 * boundary)?,
+            loads: gpu.buffer(32 * chunks.owners.len())?,
+            lists: Vec::new(),
+            inner,
+            backup: [gpu.buffer(4 * WORDS)?, gpu.buffer(32 * n)?, gpu.buffer(16 * n)?, gpu.buffer(history)?],
+        };
+        buffers.make_lists(gpu, counts)?;
+        Ok(buffers)
+    }
+
+    /// Makes room for the lists.
+    pub(super) fn make_lists(&mut self, gpu: &Gpu, counts: &Counts) -> Result<()> {
+        self.lists.clear();
+        for _ in 0..counts.parts() {
+            self.lists.push(gpu.buffer(4 * counts.most * counts.part)?);
+        }
+        Ok(())
+    }
+
+    /// The state, in the order of its copies.
+    fn state(&self) -> [&wgpu::Buffer; 4] {
+        [&self.control, &self.places, &self.motion, &self.before]
+    }
+
+    /// What to copy to keep the state.
+    pub(super) fn backups(&self) -> [(&wgpu::Buffer, &wgpu::Buffer); 4] {
+        std::array::from_fn(|i| (self.state()[i], &self.backup[i]))
+    }
+
+    /// What to copy to go back to the state kept.
+    pub(super) fn restores(&self) -> [(&wgpu::Buffer, &wgpu::Buffer); 4] {
+        std::array::from_fn(|i| (&self.backup[i], self.state()[i]))
+    }
+
+    /// Memory, B.
+    pub(super) fn bytes(&self) -> u64 {
+        let Inner { positions, velocities, built, sums, walls, spans, order, count, start, blocks, spare_places, .. } =
+            &self.inner;
+        let inner = [positions, velocities, built, sums, walls, spans, order, count, start, blocks, spare_places];
+        let more = [&self.inner.spare, &self.inner.local, &self.inner.chunks, &self.slot, &self.solids, &self.depths, &self.loads];
+        let all = inner.into_iter().chain(more).chain(self.state()).chain(&self.backup).chain(&self.lists);
+        all.map(wgpu::Buffer::size).sum()
+    }
+
+    /// Memory of the lists, B.
+    pub(super) fn list_bytes(&self) -> u64 {
+        self.lists.iter().map(wgpu::Buffer::size).sum()
+    }
+}

@@ -1,0 +1,273 @@
+//! Adapters, buffers and passes: what this program asks of `wgpu`.
+
+use std::sync::{Arc, Mutex};
+
+use bytemuck::Pod;
+use wgpu::util::DeviceExt as _;
+
+use super::shaders::{GROUP, ROW};
+use crate::error::{Error, ErrorCode, ErrorKind, Result};
+
+/// A graphics card or a software driver.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Adapter {
+    /// Its number, from 0.
+    pub number: usize,
+    /// Name.
+    pub name: String,
+    /// Interface: Vulkan, Metal or Dx12.
+    pub backend: String,
+    /// Kind: a discrete, integrated, virtual or other card, or the processor.
+    pub kind: String,
+    /// Driver and its version.
+    pub driver: String,
+    /// Largest part of a buffer that a shader reads, B.
+    pub binding_bytes: u64,
+    /// Largest buffer, B.
+    pub buffer_bytes: u64,
+    /// Whether the processor does the work.
+    pub is_software: bool,
+}
+
+/// A remedy where no card can be used.
+const DRIVERS: &str = "install the driver of the card: on Linux its Vulkan driver and the loader (libvulkan1); `pontoon bench \
+    --devices` lists what is found. Without --device the processor computes";
+
+fn instance() -> wgpu::Instance {
+    let backends = wgpu::Backends::VULKAN | wgpu::Backends::METAL | wgpu::Backends::DX12;
+    wgpu::Instance::new(wgpu::InstanceDescriptor { backends, ..wgpu::InstanceDescriptor::new_without_display_handle() })
+}
+
+fn all_adapters(instance: &wgpu::Instance) -> Vec<(wgpu::Adapter, Adapter)> {
+    let found = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()));
+    let describe = |(number, adapter): (usize, wgpu::Adapter)| {
+        let (info, limits) = (adapter.get_info(), adapter.limits());
+        let summary = Adapter {
+            number,
+            name: info.name,
+            backend: format!("{:?}", info.backend),
+            kind: format!("{:?}", info.device_type),
+            driver: format!("{} {}", info.driver, info.driver_info).trim().into(),
+            binding_bytes: limits.max_storage_buffer_binding_size,
+            buffer_bytes: limits.max_buffer_size,
+            is_software: info.device_type == wgpu::DeviceType::Cpu,
+        };
+        (adapter, summary)
+    };
+    found.into_iter().enumerate().map(describe).collect()
+}
+
+/// The adapters of this machine.
+pub fn adapters() -> Vec<Adapter> {
+    all_adapters(&instance()).into_iter().map(|(_, summary)| summary).collect()
+}
+
+/// An opened adapter.
+pub(super) struct Gpu {
+    pub(super) adapter: Adapter,
+    device: wgpu::Device,
+    queue: wgpu::Queue,
+    /// The first error that the driver reported.
+    failure: Arc<Mutex<Option<String>>>,
+}
+
+/// A pipeline with its buffers, and its number of workgroups.
+pub(super) struct Pass {
+    pipeline: wgpu::ComputePipeline,
+    group: wgpu::BindGroup,
+    groups: usize,
+}
+
+/// A shader, compiled.
+pub(super) struct Module(wgpu::ShaderModule);
+
+impl Gpu {
+    /// Opens the adapter that `name` says: a number, `gpu` for the first graphics card, or part of a name. A software driver is
+    /// opened only by its number or name.
+    pub(super) fn open(name: &str) -> Result<Self> {
+        let unavailable = |what: String, help: String| {
+            Err(Error::new(ErrorKind::Usage, what).with_code(ErrorCode::NoDevice).help(help))
+        };
+        let instance = instance();
+        let found = all_adapters(&instance);
+        let list = || {
+            let lines = found.iter().map(|(_, adapter)| format!("{}: {}", adapter.number, adapter.name));
+            lines.collect::<Vec<_>>().join(", ")
+        };
+        let lower = name.to_lowercase();
+        let chosen = found.iter().find(|(_, adapter)| match (name.parse::<usize>(), name) {
+            (Ok(number), _) => adapter.number == number,
+            (_, "gpu") => !adapter.is_software,
+            _ => adapter.name.to_lowercase().contains(&lower),
+        });
+        let Some((raw, adapter)) = chosen else {
+            if found.is_empty() {
+                return unavailable("no graphics card was found".into(), DRIVERS.into());
+            }
+            let help = format!("there are {}. {DRIVERS}", list());
+            return unavailable(format!("there is no device {name:?}"), help);
+        };
+        let limits = raw.limits();
+        let descriptor = wgpu::DeviceDescriptor { required_limits: limits, ..Default::default() };
+        let (device, queue) = match pollster::block_on(raw.request_device(&descriptor)) {
+            Ok(opened) => opened,
+            Err(why) => return unavailable(format!("{} cannot be opened: {why}", adapter.name), DRIVERS.into()),
+        };
+        let failure = Arc::new(Mutex::new(None));
+        let note = |failure: &Arc<Mutex<Option<String>>>, what: String| {
+            if let Ok(mut first) = failure.lock() {
+                first.get_or_insert(what);
+            }
+        };
+        let (of_error, of_loss) = (failure.clone(), failure.clone());
+        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| note(&of_error, error.to_string())));
+        device.set_device_lost_callback(move |reason, text| {
+            if reason != wgpu::DeviceLostReason::Destroyed {
+                note(&of_loss, format!("the device was lost: {text}"));
+            }
+        });
+        Ok(Self { adapter: adapter.clone(), device, queue, failure })
+    }
+
+    /// The error that the driver reported, if any.
+    pub(super) fn check(&self) -> Result<()> {
+        let what = self.failure.lock().ok().and_then(|first| first.clone());
+        match what {
+            None => Ok(()),
+            Some(what) => Err(self.failed(&what)),
+        }
+    }
+
+    fn failed(&self, what: &str) -> Error {
+        Error::new(ErrorKind::Usage, format!("{} failed: {what}", self.adapter.name))
+            .with_code(ErrorCode::DeviceFailed)
+            .help("where memory ran out, use fewer particles or another device; without --device the processor computes")
+    }
+
+    /// A buffer of `bytes`, zeros.
+    pub(super) fn buffer(&self, bytes: usize) -> Result<wgpu::Buffer> {
+        let size = bytes.next_multiple_of(16).max(16) as u64;
+        let most = self.adapter.binding_bytes.min(self.adapter.buffer_bytes);
+        if size > most {
+            let what = format!("an array takes {:.1} GB, and {} allows {:.1}", gb(size), self.adapter.name, gb(most));
+            return Err(Error::new(ErrorKind::Usage, what)
+                .with_code(ErrorCode::DeviceFailed)
+                .help("use fewer particles, or leave --device out"));
+        }
+        let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST;
+        let descriptor = wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false };
+        let buffer = self.device.create_buffer(&descriptor);
+        self.check()?;
+        Ok(buffer)
+    }
+
+    /// A uniform with `data`.
+    pub(super) fn uniform<T: Pod>(&self, data: &[T]) -> wgpu::Buffer {
+        let usage = wgpu::BufferUsages::UNIFORM;
+        let contents = bytemuck::cast_slice(data);
+        self.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: None, contents, usage })
+    }
+
+    /// Writes `data` to `buffer` from its byte `at` on, before the next passes run.
+    pub(super) fn write<T: Pod>(&self, buffer: &wgpu::Buffer, at: usize, data: &[T]) {
+        if !data.is_empty() {
+            self.queue.write_buffer(buffer, at as u64, bytemuck::cast_slice(data));
+        }
+    }
+
+    /// Compiles a shader.
+    pub(super) fn module(&self, text: &str) -> Result<Module> {
+        let source = wgpu::ShaderSource::Wgsl(text.into());
+        let module = self.device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source });
+        self.check()?;
+        Ok(Module(module))
+    }
+
+    /// A pass by the function `entry` over `threads`, with its buffers by their bindings.
+    pub(super) fn pass(
+        &self,
+        module: &Module,
+        entry: &str,
+        threads: usize,
+        buffers: &[(u32, &wgpu::Buffer)],
+    ) -> Result<Pass> {
+        let pipeline = self.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some(entry),
+            layout: None,
+            module: &module.0,
+            entry_point: Some(entry),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            cache: None,
+        });
+        let entries: Vec<_> = buffers
+            .iter()
+            .map(|(binding, buffer)| wgpu::BindGroupEntry { binding: *binding, resource: buffer.as_entire_binding() })
+            .collect();
+        let layout = pipeline.get_bind_group_layout(0);
+        let group = self.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout: &layout, entries: &entries });
+        self.check()?;
+        Ok(Pass { pipeline, group, groups: threads.div_ceil(GROUP).max(1) })
+    }
+
+    /// Runs `passes` in their order after the `copies` of whole buffers.
+    pub(super) fn run<'a>(
+        &self,
+        copies: &[(&wgpu::Buffer, &wgpu::Buffer)],
+        passes: impl IntoIterator<Item = &'a Pass>,
+    ) {
+        let mut encoder = self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        for (from, to) in copies {
+            encoder.copy_buffer_to_buffer(from, 0, to, 0, from.size());
+        }
+        {
+            let mut compute = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+            for pass in passes {
+                compute.set_pipeline(&pass.pipeline);
+                compute.set_bind_group(0, &pass.group, &[]);
+                compute.dispatch_workgroups(pass.groups.min(ROW) as u32, pass.groups.div_ceil(ROW) as u32, 1);
+            }
+        }
+        self.queue.submit([encoder.finish()]);
+    }
+
+    /// The first `counts` numbers of each of the `buffers`, after all passes have run.
+    pub(super) fn read<T: Pod, const N: usize>(&self, buffers: [(&wgpu::Buffer, usize); N]) -> Result<[Vec<T>; N]> {
+        let mut encoder = self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let copied = buffers.map(|(buffer, count)| {
+            let size = (count * size_of::<T>()) as u64;
+            let usage = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
+            let copy = self.device.create_buffer(&wgpu::BufferDescriptor {
+                label: None,
+                size: size.max(4),
+                usage,
+                mapped_at_creation: false,
+            });
+            if size > 0 {
+                encoder.copy_buffer_to_buffer(buffer, 0, &copy, 0, size);
+            }
+            copy
+        });
+        self.queue.submit([encoder.finish()]);
+        let failure = self.failure.clone();
+        for copy in &copied {
+            let failure = failure.clone();
+            copy.slice(..).map_async(wgpu::MapMode::Read, move |result| {
+                if let (Err(why), Ok(mut first)) = (result, failure.lock()) {
+                    first.get_or_insert(why.to_string());
+                }
+            });
+        }
+        self.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|why| self.failed(&why.to_string()))?;
+        self.check()?;
+        let mut out: [Vec<T>; N] = std::array::from_fn(|_| Vec::new());
+        for ((out, copy), (_, count)) in out.iter_mut().zip(&copied).zip(buffers) {
+            let range = copy.slice(..).get_mapped_range().map_err(|why| self.failed(&why.to_string()))?;
+            *out = bytemuck::pod_collect_to_vec(&range[..count * size_of::<T>()]);
+        }
+        Ok(out)
+    }
+}
+
+fn gb(bytes: u64) -> f64 {
+    bytes as f64 / 1e9
+}

@@ -1,0 +1,400 @@
+//! Whole steps on a graphics card (feature `gpu`): the state stays there, and the host gets it back where something is due.
+//!
+//! The pair loop's terms are traced ([`crate::sph::trace`]) and written as WGSL between hand-written shaders: sorting into cells,
+//! neighbour lists, time step, schemes, boundary particles and loads. Places are whole numbers of 64 bits, excess densities of 32;
+//! velocities are in single precision. Sums over particles of one body are added in a fixed tree, everything else that particles
+//! share is a largest or smallest whole number, and the order in a cell is that of the host: the same device and driver give the
+//! same bits.
+//!
+//! Solids stay with the host, in double precision. In a scene whose solids are fixed the device makes many steps on its own.
+
+mod buffers;
+mod gpu;
+mod layout;
+mod passes;
+mod shaders;
+mod solids;
+mod text;
+
+pub use gpu::{Adapter, adapters};
+pub use shaders::ShaderTexts;
+
+use buffers::{Buffers, Control, Counts, WORDS};
+use gpu::Gpu;
+use layout::Layout;
+use passes::Passes;
+use shaders::{ShaderInput, TICKS};
+use solids::SolidChunks;
+
+use crate::{
+    error::{Error, ErrorCode, ErrorKind, Result},
+    interaction::{PairSums, StepLimits},
+    math::Vector,
+    model::TimeScheme,
+    solid::Load,
+    sph::Units,
+    system::System,
+    time_integration::{Stepper, VerletHistory},
+};
+
+/// How far the lists reach beyond the kernel's support, over the support.
+const MARGIN: f64 = 0.1;
+
+/// Steps of a submission, at first and at most.
+const FIRST_STEPS: usize = 4;
+const MOST_STEPS: usize = 64;
+
+/// How long a submission should take, s: the run can be stopped between two.
+const SUBMISSION: f64 = 0.1;
+
+/// The water and the boundary particles of a simulation on a device.
+pub(crate) struct Device<const D: usize> {
+    gpu: Gpu,
+    layout: Layout,
+    units: Units,
+    texts: ShaderTexts,
+    counts: Counts,
+    chunks: SolidChunks,
+    buffers: Buffers,
+    passes: Passes,
+    /// Time (s) at tick 0, and the ticks since.
+    start: f64,
+    ticks: u64,
+    /// Steps of the next submission.
+    steps: usize,
+    /// Whether steps are Verlet's, and not symplectic.
+    verlet: bool,
+}
+
+/// What a device has done.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct DeviceSteps {
+    /// Steps made.
+    pub(crate) steps: u64,
+    /// Force passes made.
+    pub(crate) passes: u64,
+    /// Time at the end, s.
+    pub(crate) time: f64,
+    /// Length of the last step, s.
+    pub(crate) dt: f64,
+    /// Factor of the loads of the last force pass on bodies, –.
+    pub(crate) weight: f64,
+    /// Why it stopped.
+    pub(crate) end: StepsEnd,
+}
+
+/// Why a device stopped.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum StepsEnd {
+    /// It made all steps that it was asked for.
+    Steps,
+    /// It reached the time at which it was to pause, or the end.
+    Time,
+    /// The water particle of this index left the valid range.
+    Fault(usize),
+    /// There is no time step.
+    NoStep,
+}
+
+/// The refusal of `what` on a device.
+fn refused(what: &str) -> Error {
+    Error::new(ErrorKind::Usage, format!("a device does not compute {what} yet"))
+        .with_code(ErrorCode::NoDevice)
+        .help("leave --device (model.device) out: the processor computes all of this scene")
+}
+
+/// The texts of the shaders for the present state of `system`.
+fn shader_texts<const D: usize>(
+    system: &System<D>,
+    layout: &Layout,
+    chunks: &SolidChunks,
+) -> Result<(ShaderTexts, Units)> {
+    let model = system.model();
+    let (traces, units) = model.pair_traces::<D>().ok_or_else(|| refused("this pair loop"))?;
+    let domain = system.domain();
+    let input = ShaderInput::<D> {
+        model,
+        traces: &traces,
+        units,
+        limits: system.particle_limits(),
+        domain: [
+            std::array::from_fn(|k| layout.coarse(domain.min[k], f64::floor)),
+            std::array::from_fn(|k| layout.coarse(domain.max[k], f64::ceil)),
+        ],
+        margin: MARGIN,
+        chunks: [chunks.moving, chunks.owners.len()],
+    };
+    let texts = input.texts().ok_or_else(|| refused("numbers of this size in single precision"))?;
+    Ok((texts, units))
+}
+
+impl<const D: usize> Device<D> {
+    /// Puts the particles of `system` on the device `name`, at `time` (s).
+    pub(crate) fn new(name: &str, system: &System<D>, stepper: &Stepper<D>, time: f64) -> Result<Self> {
+        if let Some(what) = system.unsupported_on_device() {
+            return Err(refused(what));
+        }
+        let gpu = Gpu::open(name)?;
+        let model = system.model();
+        let (_, units) = model.pair_traces::<D>().ok_or_else(|| refused("this pair loop"))?;
+        let layout = Layout::new(model.support_radius(), &units, model.rho0);
+        let everything = system.fluid().r.iter().chain(system.boundary().r);
+        if !everything.clone().all(|r| layout.reaches(r)) {
+            return Err(refused("places a million kernel supports from the origin"));
+        }
+        let chunks = SolidChunks::new(system);
+        let counts = Counts::new(system, &layout, &gpu.adapter, MARGIN)?;
+        let (texts, units) = shader_texts(system, &layout, &chunks)?;
+        let rows = texts.rows;
+        let verlet = matches!(model.scheme, TimeScheme::Verlet { .. });
+        let buffers = Buffers::new(&gpu, &counts, &chunks, rows, verlet)?;
+        let passes = Passes::new(&gpu, &texts, &counts, &chunks, &buffers, verlet)?;
+        let mut device =
+            Self { gpu, layout, units, texts, counts, chunks, buffers, passes, start: time, ticks: 0, steps: FIRST_STEPS, verlet };
+        device.load(system, stepper, time)?;
+        Ok(device)
+    }
+
+    /// What computes, for a message.
+    pub(crate) fn adapter(&self) -> &Adapter {
+        &self.gpu.adapter
+    }
+
+    /// Memory of the arrays, B: all, and of these the neighbour lists.
+    pub(crate) fn memory_bytes(&self) -> [u64; 2] {
+        [self.buffers.bytes(), self.buffers.list_bytes()]
+    }
+
+    /// Takes the state of `system` at `time` (s).
+    pub(crate) fn load(&mut self, system: &System<D>, stepper: &Stepper<D>, time: f64) -> Result<()> {
+        let (gpu, layout, buffers) = (&self.gpu, self.layout, &self.buffers);
+        let (water, boundary) = (system.fluid(), system.boundary());
+        let count = water.len();
+        let of_water = (0..count).map(|i| (water.r[i], water.v[i], water.rho[i], u32::MAX));
+        let of_boundary = (0..boundary.len())
+            .map(|i| (boundary.r[i], boundary.v[i], boundary.rho[i], system.solid_of_boundary(i) as u32));
+        let all: Vec<_> = of_water.chain(of_boundary).collect();
+        let places: Vec<_> =
+            all.iter().enumerate().map(|(i, (r, _, _, solid))| layout.place(r, i as u32, *solid)).collect();
+        let motion: Vec<_> = all.iter().map(|(_, v, rho, _)| layout.motion(v, *rho)).collect();
+        gpu.write(&buffers.places, 0, &places);
+        gpu.write(&buffers.motion, 0, &motion);
+        let slots: Vec<u32> = (0..all.len() as u32).collect();
+        gpu.write(&buffers.slot, 0, &slots);
+        let mut control = Control::start();
+        if let Stepper::Verlet(verlet) = stepper {
+            let history = verlet.history();
+            if !history.velocity.is_empty() || !history.boundary_density.is_empty() {
+                let rho = history.density.iter().chain(&history.boundary_density);
+                let v = history.velocity.iter().copied().chain(boundary.v.iter().copied());
+                let before: Vec<_> = v.zip(rho).map(|(v, rho)| layout.motion(&v, *rho)).collect();
+                gpu.write(&buffers.before, 0, &before);
+                control.set_history(history.steps, history.foldings, history.dt / self.units.time);
+            }
+        }
+        gpu.write(&buffers.control, 0, &control.0);
+        (self.start, self.ticks) = (time, 0);
+        self.write_solids(system);
+        let constants: Vec<[f32; 2]> = system
+            .wall_constants()
+            .into_iter()
+            .map(|[depth, weight]| [(depth / self.units.length) as f32, weight as f32])
+            .collect();
+        self.gpu.write(&self.buffers.depths, 0, &constants);
+        self.gpu.run(&[], [self.passes.derive.as_ref()]);
+        self.gpu.check()
+    }
+
+    /// Gives the device the kinematics of the solids.
+    fn write_solids(&mut self, system: &System<D>) {
+        let solids = self.chunks.solids(system, &self.layout, &self.units);
+        self.gpu.write(&self.buffers.solids, 0, &solids);
+    }
+
+    /// The ticks from tick 0 to `time` (s).
+    fn ticks_at(&self, time: f64) -> u64 {
+        let ticks = (time - self.start) / self.units.time * TICKS;
+        if ticks < 9e18 { ticks.round().max(0.0) as u64 } else { u64::MAX / 2 }
+    }
+
+    /// The ticks of a longest step `dt` (s).
+    fn limit(&self, dt: f64) -> u32 {
+        (dt / self.units.time * TICKS).min(1e9) as u32
+    }
+
+    /// Makes up to `most` steps, none longer than `longest` (s), until the water has reached time `pause` (s), and not past time `end`
+    /// (s); of a system whose solids are fixed.
+    pub(crate) fn run(&mut self, most: u64, longest: f64, pause: f64, end: f64) -> Result<DeviceSteps> {
+        let started = std::time::Instant::now();
+        let count = most.min(self.steps as u64) as usize;
+        loop {
+            self.begin(longest, pause, end);
+            let saved = self.buffers.backups();
+            let steps = std::iter::repeat_n(&self.passes.step, count).flatten();
+            self.gpu.run(&saved, steps.map(AsRef::as_ref));
+            let control = self.control()?;
+            if !self.grow_lists(&control)? {
+                let taken = started.elapsed().as_secs_f64();
+                let wanted = count as f64 * SUBMISSION / taken.max(1e-6);
+                self.steps = (wanted as usize).clamp(1, MOST_STEPS).min(4 * self.steps);
+                return Ok(self.outcome(&control, end));
+            }
+        }
+    }
+
+    /// Lets the device go on, from where it halted.
+    fn begin(&self, longest: f64, pause: f64, end: f64) {
+        let two = |ticks: u64| [ticks as u32, (ticks >> 32) as u32];
+        let ([e0, e1], [p0, p1]) = (two(self.ticks_at(end)), two(self.ticks_at(pause)));
+        self.gpu.write(&self.buffers.control, Control::HALT * 4, &[0u32]);
+        self.gpu.write(&self.buffers.control, Control::END * 4, &[e0, e1, p0, p1, self.limit(longest), 0]);
+        self.gpu.write(&self.buffers.control, Control::PASSES * 4, &[0u32]);
+        self.gpu.write(&self.buffers.control, Control::FAULT * 4, &[u32::MAX]);
+    }
+
+    /// The control words, after all passes.
+    fn control(&self) -> Result<Control> {
+        let [words] = self.gpu.read([(&self.buffers.control, WORDS)])?;
+        Ok(Control::from_words(&words))
+    }
+
+    /// Makes longer lists, and goes back to the state before the submission, if one was too short.
+    fn grow_lists(&mut self, control: &Control) -> Result<bool> {
+        let longest = control.longest() as usize;
+        if longest <= self.counts.most {
+            return Ok(false);
+        }
+        self.counts.set_list_length(longest + longest / 8, &self.gpu.adapter);
+        self.buffers.make_lists(&self.gpu, &self.counts)?;
+        self.passes = Passes::new(&self.gpu, &self.texts, &self.counts, &self.chunks, &self.buffers, self.verlet)?;
+        let copies = self.buffers.restores();
+        self.gpu.run(&copies, [self.passes.derive.as_ref()]);
+        self.gpu.write(&self.buffers.control, Control::MOVED * 4, &[Control::FAR]);
+        self.gpu.write(&self.buffers.control, Control::LONGEST * 4, &[0u32]);
+        self.gpu.write(&self.buffers.control, Control::HALT * 4, &[1u32]);
+        self.gpu.run(&[], [self.passes.derive.as_ref()]);
+        Ok(true)
+    }
+
+    /// What the control words say of the steps since the last call.
+    fn outcome(&mut self, control: &Control, end: f64) -> DeviceSteps {
+        self.ticks = control.time();
+        let time = if self.ticks >= self.ticks_at(end) {
+            end
+        } else {
+            self.start + self.ticks as f64 / TICKS * self.units.time
+        };
+        let end = match control.halt() {
+            0 => StepsEnd::Steps,
+            2 => StepsEnd::Fault(control.fault() as usize),
+            3 => StepsEnd::NoStep,
+            _ => StepsEnd::Time,
+        };
+        let dt = f64::from(control.dt()) * self.units.time;
+        let weight = control.weight(self.verlet);
+        DeviceSteps { steps: u64::from(control.steps()), passes: u64::from(control.passes()), time, dt, weight, end }
+    }
+
+    /// Makes the first half of a step: the rates, the step's length and, of the symplectic scheme, the way of half a step. Returns
+    /// the length (s), or why there is none.
+    pub(crate) fn first_half(&mut self, longest: f64, end: f64) -> Result<std::result::Result<f64, DeviceSteps>> {
+        loop {
+            self.begin(longest, f64::INFINITY, end);
+            let saved = self.buffers.backups();
+            self.gpu.run(&saved, self.passes.first.iter().map(AsRef::as_ref));
+            let control = self.control()?;
+            if !self.grow_lists(&control)? {
+                return Ok(match control.halt() {
+                    0 => Ok(f64::from(control.dt()) * self.units.time),
+                    _ => Err(self.outcome(&control, end)),
+                });
+            }
+        }
+    }
+
+    /// Completes the step with the solids of `system` where they are halfway, and returns the loads on them.
+    pub(crate) fn second_half(&mut self, system: &System<D>, end: f64) -> Result<(DeviceSteps, Vec<Load<D>>)> {
+        self.write_solids(system);
+        self.gpu.run(&[], self.passes.second.iter().map(AsRef::as_ref));
+        let counts = [(&self.buffers.control, WORDS), (&self.buffers.loads, 8 * self.chunks.owners.len())];
+        let [control, loads] = self.gpu.read(counts)?;
+        let control = Control::from_words(&control);
+        if control.longest() as usize > self.counts.most {
+            let what = format!("{} neighbours of one particle", control.longest());
+            return Err(refused(&what));
+        }
+        let outcome = self.outcome(&control, end);
+        Ok((outcome, self.chunks.loads(&loads, system, &self.units)))
+    }
+
+    /// Gives the device the solids of `system` at the end of a step.
+    pub(crate) fn move_solids(&mut self, system: &System<D>) {
+        self.write_solids(system);
+        self.gpu.run(&[], [self.passes.place.as_ref()]);
+    }
+
+    /// Makes a force pass at the present state; returns acceleration (m/s²) and rate of the excess density (1/s) of each water
+    /// particle, in the order of the host, and the largest values that limit a step.
+    pub(crate) fn rates(&mut self, system: &System<D>) -> Result<(Vec<PairSums<D>>, StepLimits)> {
+        self.begin(f64::INFINITY, f64::INFINITY, f64::INFINITY);
+        self.gpu.run(&[], self.passes.rates.iter().map(AsRef::as_ref));
+        let (n, water) = (self.counts.n, self.counts.water);
+        let control = self.control()?;
+        let [sums] = self.gpu.read::<f32, 1>([(&self.buffers.inner.sums, (D + 1) * n)])?;
+        let [slot] = self.gpu.read::<u32, 1>([(&self.buffers.slot, n)])?;
+        let Units { length, time } = self.units;
+        let of = |i: usize| {
+            let sum = |row: usize| f64::from(sums[row * n + slot[i] as usize]);
+            let acceleration = Vector::from_fn(|k, _| sum(k) * length / (time * time)) + system.gravity();
+            PairSums { acceleration, compression_rate: sum(D) / time }
+        };
+        let limits = StepLimits {
+            acceleration: f64::from(control.force()) * length / (time * time),
+            approach_rate: f64::from(control.approach()) / time,
+        };
+        Ok(((0..water).map(of).collect(), limits))
+    }
+
+    /// The texts of the shaders.
+    pub(crate) fn texts(&self) -> &ShaderTexts {
+        &self.texts
+    }
+
+    /// The loads on the solids by the last force pass.
+    pub(crate) fn loads(&mut self, system: &System<D>) -> Result<Vec<Load<D>>> {
+        self.gpu.run(&[], [self.passes.loads.as_ref()]);
+        let [loads] = self.gpu.read([(&self.buffers.loads, 8 * self.chunks.owners.len())])?;
+        Ok(self.chunks.loads(&loads, system, &self.units))
+    }
+
+    /// Gives the state back to `system` and `stepper`.
+    pub(crate) fn fetch(&mut self, system: &mut System<D>, stepper: &mut Stepper<D>) -> Result<()> {
+        let (n, water) = (self.counts.n, self.counts.water);
+        let [places, motion] = self.gpu.read::<u32, 2>([(&self.buffers.places, 8 * n), (&self.buffers.motion, 4 * n)])?;
+        let mut slot = vec![0; n];
+        places.chunks_exact(8).enumerate().for_each(|(k, place)| slot[place[3] as usize] = k);
+        let layout = self.layout;
+        let of = |i: usize| (&places[8 * slot[i]..][..8], &motion[4 * slot[i]..][..4]);
+        let of_water = |i: usize| {
+            let (place, motion) = of(i);
+            (layout.position(place), layout.velocity(motion), layout.density(motion))
+        };
+        system.take_from_device(of_water, |i| layout.density(of(water + i).1));
+        if let Stepper::Verlet(verlet) = stepper {
+            let [before] = self.gpu.read::<u32, 1>([(&self.buffers.before, 4 * n)])?;
+            let control = self.control()?;
+            let of = |i: usize| &before[4 * slot[i]..][..4];
+            if control.has_history() {
+                verlet.set_history(VerletHistory {
+                    velocity: (0..water).map(|i| layout.velocity(of(i))).collect(),
+                    density: (0..water).map(|i| layout.density(of(i))).collect(),
+                    boundary_density: (water..n).map(|i| layout.density(of(i))).collect(),
+                    dt: f64::from(control.dt_before()) * self.units.time,
+                    steps: control.since_euler(),
+                    foldings: f64::from(control.foldings()),
+                });
+            }
+        }
+        Ok(())
+    }
+}

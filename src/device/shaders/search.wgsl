@@ -1,0 +1,172 @@
+// Sorts the particles into cells as wide as the support, water first; within a cell by their index on the host, so that no race
+// decides the order.
+@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(1) var<storage, read_write> control: Control;
+@group(0) @binding(2) var<storage, read_write> places: array<Place>;
+@group(0) @binding(3) var<storage, read_write> motion: array<vec4<f32>>;
+@group(0) @binding(4) var<storage, read_write> before: array<vec4<f32>>;
+@group(0) @binding(5) var<storage, read_write> positions: array<vec4<i32>>;
+@group(0) @binding(6) var<storage, read_write> velocities: array<vec4<f32>>;
+@group(0) @binding(7) var<storage, read_write> count: array<atomic<u32>>;
+@group(0) @binding(8) var<storage, read_write> start: array<u32>;
+@group(0) @binding(9) var<storage, read_write> blocks: array<u32>;
+@group(0) @binding(10) var<storage, read_write> order: array<u32>;
+@group(0) @binding(11) var<storage, read_write> slot: array<u32>;
+@group(0) @binding(12) var<storage, read_write> spare_places: array<Place>;
+@group(0) @binding(13) var<storage, read_write> spare: array<vec4<f32>>;
+@group(0) @binding(14) var<storage, read_write> built: array<vec4<i32>>;
+
+// The cells at the rim stay empty: what lies outside counts to the last cells before them.
+fn cell(i: u32) -> u32 {
+    let c = clamp((places[i].hi >> vec4<u32>(8u)) - params.origin, vec4<i32>(1), params.size - 2);
+    let at = select(u32((c.z * params.size.y + c.y) * params.size.x + c.x), u32(c.y * params.size.x + c.x), params.size.z == 1);
+    return at + select(0u, params.cells, i >= params.water);
+}
+
+// Once before each pass: whether something has moved so far that the lists may miss a pair.
+@compute @workgroup_size(1)
+fn decide() {
+    control.rebuild = select(0u, 1u, control.halt == 0u && atomicLoad(&control.moved2) >= MARGIN2);
+    if (control.halt == 0u) {
+        control.rebuilds += control.rebuild;
+        control.passes += 1u;
+        atomicStore(&control.moved2, 0u);
+        atomicStore(&control.force2, 0u);
+        atomicStore(&control.approach, 0u);
+    }
+}
+
+@compute @workgroup_size(128)
+fn clear(@builtin(global_invocation_id) id: vec3<u32>) {
+    if (control.rebuild == 0u) { return; }
+    let i = index(id);
+    if (i <= 2u * params.cells) { atomicStore(&count[i], 0u); }
+}
+
+@compute @workgroup_size(128)
+fn tally(@builtin(global_invocation_id) id: vec3<u32>) {
+    if (control.rebuild == 0u) { return; }
+    let i = index(id);
+    if (i < params.n) { atomicAdd(&count[cell(i)], 1u); }
+}
+
+const BLOCK: u32 = 1024u;
+var<workgroup> part: array<u32, 128>;
+
+// Exclusive sums within blocks of 1024, and the sums of the blocks.
+@compute @workgroup_size(128)
+fn scan(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) l: u32) {
+    let total = select(0u, 2u * params.cells + 1u, control.rebuild != 0u);
+    let block = group_index(group);
+    let first = block * BLOCK + l * 8u;
+    var own = 0u;
+    for (var k = 0u; k < 8u; k++) {
+        if (first + k < total) { own += atomicLoad(&count[first + k]); }
+    }
+    part[l] = own;
+    workgroupBarrier();
+    for (var step = 1u; step < 128u; step *= 2u) {
+        var add = 0u;
+        if (l >= step) { add = part[l - step]; }
+        workgroupBarrier();
+        part[l] += add;
+        workgroupBarrier();
+    }
+    var sum = part[l] - own;
+    for (var k = 0u; k < 8u; k++) {
+        if (first + k < total) {
+            let c = atomicLoad(&count[first + k]);
+            start[first + k] = sum;
+            sum += c;
+            atomicStore(&count[first + k], 0u);
+        }
+    }
+    if (l == 127u && block * BLOCK < total) { blocks[block] = part[127]; }
+}
+
+// Exclusive sums of the blocks, by one workgroup.
+@compute @workgroup_size(128)
+fn scan_blocks(@builtin(local_invocation_index) l: u32) {
+    let total = (2u * params.cells + BLOCK) / BLOCK;
+    var sums_before = 0u;
+    for (var first = 0u; first < total; first += 128u) {
+        var own = 0u;
+        if (first + l < total) { own = blocks[first + l]; }
+        part[l] = own;
+        workgroupBarrier();
+        for (var step = 1u; step < 128u; step *= 2u) {
+            var add = 0u;
+            if (l >= step) { add = part[l - step]; }
+            workgroupBarrier();
+            part[l] += add;
+            workgroupBarrier();
+        }
+        if (control.rebuild != 0u && first + l < total) { blocks[first + l] = sums_before + part[l] - own; }
+        sums_before += part[127];
+        workgroupBarrier();
+    }
+}
+
+@compute @workgroup_size(128)
+fn scan_add(@builtin(global_invocation_id) id: vec3<u32>) {
+    if (control.rebuild == 0u) { return; }
+    let i = index(id);
+    if (i <= 2u * params.cells) { start[i] += blocks[i / BLOCK]; }
+}
+
+@compute @workgroup_size(128)
+fn scatter(@builtin(global_invocation_id) id: vec3<u32>) {
+    if (control.rebuild == 0u) { return; }
+    let i = index(id);
+    if (i >= params.n) { return; }
+    let c = cell(i);
+    order[start[c] + atomicAdd(&count[c], 1u)] = i;
+}
+
+// The atomics of before decided the order within a cell; now the index on the host does.
+@compute @workgroup_size(128)
+fn settle(@builtin(global_invocation_id) id: vec3<u32>) {
+    if (control.rebuild == 0u) { return; }
+    let c = index(id);
+    if (c >= 2u * params.cells) { return; }
+    let first = start[c];
+    for (var k = first + 1u; k < start[c + 1u]; k++) {
+        let mine = order[k];
+        let key = places[mine].hi.w;
+        var m = k;
+        while (m > first && places[order[m - 1u]].hi.w > key) {
+            order[m] = order[m - 1u];
+            m -= 1u;
+        }
+        order[m] = mine;
+    }
+}
+
+@compute @workgroup_size(128)
+fn gather(@builtin(global_invocation_id) id: vec3<u32>) {
+    if (control.rebuild == 0u) { return; }
+    let k = index(id);
+    if (k >= params.n) { return; }
+    let i = order[k];
+    spare_places[k] = places[i];
+    spare[k] = motion[i];
+    spare[params.n + k] = velocities[i];
+    spare[2u * params.n + k] = bitcast<vec4<f32>>(positions[i]);
+    if (VERLET) { spare[3u * params.n + k] = before[i]; }
+}
+
+@compute @workgroup_size(128)
+fn put_back(@builtin(global_invocation_id) id: vec3<u32>) {
+    if (control.rebuild == 0u) { return; }
+    let k = index(id);
+    if (k >= params.n) { return; }
+    let place = spare_places[k];
+    let position = bitcast<vec4<i32>>(spare[2u * params.n + k]);
+    places[k] = place;
+    motion[k] = spare[k];
+    velocities[k] = spare[params.n + k];
+    positions[k] = position;
+    built[k] = position;
+    slot[u32(place.hi.w)] = k;
+    if (VERLET) { before[k] = spare[3u * params.n + k]; }
+}

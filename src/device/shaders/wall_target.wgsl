@@ -1,0 +1,9 @@
+let solid = solids[places[k].lo.w];
+let arm = between(places[k], solid.centre);
+let pull = GRAVITY - (solid.acceleration.xyz + solid.turning * arm);
+let promptness = solid.acceleration.w;
+let constants = depths[places[k].hi.w - i32(params.water)];
+let depth = constants.x;
+let full_weight = constants.y;
+let own = a_compression;
+{{TARGET}}walls[k - params.water] = vec4<f32>(out_density, out_increase, out_prompt_decrease, out_prompt_increase);

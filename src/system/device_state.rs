@@ -1,0 +1,109 @@
+//! What a device reads of a system, and what a system takes back from it.
+
+use super::{Escape, ParticleLimits, System};
+use crate::{
+    math::{Matrix, Vector},
+    model::{PressureGradient, Slip, Walls},
+    solid::{Role, Solid},
+};
+
+impl<const D: usize> System<D> {
+    /// What this system has that no device computes yet, if anything.
+    pub(crate) fn unsupported_on_device(&self) -> Option<&'static str> {
+        let (model, region, driving) = (&self.model, &self.fluid_domain, &self.driving.driving);
+        let [least, most] = region.limits.density;
+        let absorbs = |solid: &Solid<D>| match &solid.spec.role {
+            Role::Driven(motion) => motion.absorber().is_some(),
+            _ => false,
+        };
+        let cases = [
+            (self.fluid.images.periodic.iter().any(Option::is_some), "periodic sides"),
+            (self.symmetry_planes().any(), "symmetry planes"),
+            (!region.open_boundaries.is_empty(), "open boundaries ([[inflow]], [[outflow]])"),
+            (!region.sponge_layers.is_empty(), "sponge layers"),
+            (driving.current.is_some() || driving.towed.is_some(), "currents and towed frames"),
+            (!self.gravity_law.is_empty(), "gravity that changes with time"),
+            (region.limits.escape == Escape::Remove, "removal of particles (guard.escape = \"remove\")"),
+            (!(0.5..1.0).contains(&least) || !(1.0..=1.5).contains(&most), "density limits beyond 0.5 to 1.5"),
+            (model.slip == Slip::None, "slip = \"none\""),
+            (model.shift().is_some(), "particle shifting"),
+            (model.viscosity.stress().is_some(), "viscosity = \"sps\""),
+            (model.gradient != PressureGradient::Plain, "corrected gradients"),
+            (model.gamma != 7.0, "an exponent model.gamma other than 7"),
+            (self.solids.iter().any(absorbs), "paddles that absorb waves"),
+            (self.solids.iter().any(|solid| !solid.spec.ballast.is_empty()), "ballast"),
+            (model.walls == Walls::RelaxedAdami && self.has_free_solids(), "free bodies with walls = \"relaxed_adami\""),
+        ];
+        cases.into_iter().find(|(has, _)| *has).map(|(_, what)| what)
+    }
+
+    fn has_free_solids(&self) -> bool {
+        self.solids.iter().any(|solid| matches!(solid.spec.role, Role::Free(_)))
+    }
+
+    /// The valid range of a particle.
+    pub(crate) fn particle_limits(&self) -> ParticleLimits {
+        self.fluid_domain.limits
+    }
+
+    /// Depth (m) of each boundary particle below its face, and its weight behind a flat face under water, –; zeros where walls do
+    /// not relax.
+    pub(crate) fn wall_constants(&self) -> Vec<[f64; 2]> {
+        let coverage = &self.boundary.coverage;
+        match &self.boundary.depths {
+            Some(depths) => depths.iter().map(|&depth| [depth, coverage.full_weight(depth)]).collect(),
+            None => vec![[0.0, 1.0]; self.boundary.particles.len()],
+        }
+    }
+
+    /// Counts the force passes that a device has made.
+    pub(crate) fn count_device_passes(&mut self, passes: u64) {
+        self.status.passes += passes;
+    }
+
+    /// Positions (m) of the boundary particles of solid number `solid` in its frame; none of a fixed solid.
+    pub(crate) fn local_boundary(&self, solid: usize) -> &[Vector<D>] {
+        &self.boundary.local_positions[solid]
+    }
+
+    /// Number of the solid of boundary particle `i`.
+    pub(crate) fn solid_of_boundary(&self, i: usize) -> usize {
+        self.owner(i)
+    }
+
+    /// Says whether the particles are on a device: the host then places no boundary particles.
+    pub(crate) fn set_on_device(&mut self, on_device: bool) {
+        self.boundary.on_device = on_device;
+    }
+
+    /// Acceleration (1/s²) that an arm of solid number `solid` gives a point of it: α + Ω².
+    pub(crate) fn arm_acceleration(&self, solid: usize) -> Matrix<D> {
+        let solid = &self.solids[solid];
+        let spin = solid.kinematics.spin.0;
+        solid.angular_acceleration.0 + spin * spin
+    }
+
+    /// Takes the state of the water and the densities (kg/m³) of the boundary particles back from a device.
+    pub(crate) fn take_from_device(
+        &mut self,
+        water: impl Fn(usize) -> (Vector<D>, Vector<D>, f64),
+        boundary_density: impl Fn(usize) -> f64,
+    ) {
+        let particles = &mut self.fluid.particles;
+        for i in 0..particles.r.len() {
+            (particles.r[i], particles.v[i], particles.rho[i]) = water(i);
+        }
+        for (i, rho) in self.boundary.particles.rho.iter_mut().enumerate() {
+            *rho = boundary_density(i);
+        }
+        self.boundary.on_device = false;
+        for i in 0..self.solids.len() {
+            self.place_boundary(i);
+        }
+        self.boundary.on_device = true;
+        self.neighbours.set_fluid_positions(&self.fluid.particles.r);
+        self.boundary.poses_at_rebuild = Some(self.solids.iter().map(|solid| solid.kinematics.pose).collect());
+        (self.rates.current, self.rates.corrections_current) = (false, false);
+        self.check_water();
+    }
+}
