@@ -38,6 +38,7 @@
 //! | [`system`] | water and solids at one instant, and their rates |
 //! | [`coupling`] | the body step, acoustic added mass, load breakdown, energy budget |
 //! | [`time_integration`] | step size, symplectic and Verlet schemes |
+//! | `device` | whole steps on a graphics card (feature `gpu`) |
 //! | [`simulation`] | steps, rollback, adding and removing solids, external bodies |
 //! | [`plan`], [`probe`], [`analysis`], [`output`] | what a run samples, judges and writes |
 //! | [`scene`] | the TOML scene |
@@ -50,6 +51,7 @@
 //! |---|---|
 //! | `dim2`, `dim3` (default) | the engine for bodies in 2-D, in 3-D; one of them at least |
 //! | `cli` (default) | the program `pontoon` and the modules behind it |
+//! | `gpu` | whole steps on a graphics card |
 //! | `surface` | meshes of the free surface from 3-D frames |
 
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, reason = "tests may"))]

@@ -9,7 +9,7 @@ use std::{
 };
 
 /// The modules of the library in dependency order: each uses only those before it.
-const MODULES: [&str; 25] = [
+const MODULES: [&str; 26] = [
     "error",
     "math",
     "sph",
@@ -23,6 +23,7 @@ const MODULES: [&str; 25] = [
     "system",
     "coupling",
     "time_integration",
+    "device",
     "simulation",
     "probe",
     "plan",

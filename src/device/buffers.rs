@@ -3,7 +3,7 @@
 use super::{
     gpu::{Adapter, Gpu},
     layout::Layout,
-    shaders::GROUP,
+    shaders::{GROUP, ShaderTexts, cell_width},
     solids::{SOLID_WORDS, SolidChunks},
 };
 use crate::{
@@ -143,25 +143,25 @@ impl Counts {
         let (mut low, mut high) = ([0; D], [0; D]);
         for (i, r) in system.fluid().r.iter().chain(system.boundary().r).enumerate() {
             for k in 0..D {
-                let c = layout.coarse(r[k], f64::floor) >> 8;
+                let c = layout.coarse(r[k], f64::floor);
                 (low[k], high[k]) = if i == 0 { (c, c) } else { (c.min(low[k]), c.max(high[k])) };
             }
         }
-        // An empty cell around all.
-        let (mut origin, mut size) = ([0; 4], [1; 4]);
+        // Two empty cells around all.
+        let (width, mut origin, mut size) = (cell_width(margin), [0; 4], [1; 4]);
         for k in 0..D {
-            (origin[k], size[k]) = (low[k] - 1, high[k] - low[k] + 3);
+            (origin[k], size[k]) = (low[k] - 2 * width, (high[k] - low[k]) / width + 5);
         }
         let cells: f64 = size.iter().map(|&x| f64::from(x)).product();
-        if cells > 2e8 {
-            return Err(Error::new(ErrorKind::Usage, format!("the particles are spread over {cells:.1e} kernel supports"))
+        if cells > 4e8 {
+            return Err(Error::new(ErrorKind::Usage, format!("the particles are spread over {cells:.1e} cells of half a kernel support"))
                 .with_code(ErrorCode::NoDevice)
                 .help("start the solids nearer to the water, or leave --device out"));
         }
         let ratio = model.support_radius() * (1.0 + margin) / model.dp;
         let volume = if D == 2 { std::f64::consts::PI * ratio.powi(2) } else { 4.19 * ratio.powi(3) };
         let mut counts = Self { n, water, size, origin, cells: cells as usize, most: 0, part: 0 };
-        counts.set_list_length((1.25 * volume) as usize + 8, adapter);
+        counts.set_list_length((1.08 * volume) as usize + 4, adapter);
         Ok(counts)
     }
 
@@ -210,6 +210,10 @@ pub(super) struct Inner {
     pub(super) built: wgpu::Buffer,
     pub(super) sums: wgpu::Buffer,
     pub(super) walls: wgpu::Buffer,
+    pub(super) aways: wgpu::Buffer,
+    pub(super) gaps: wgpu::Buffer,
+    pub(super) rows: wgpu::Buffer,
+    pub(super) spare_rows: wgpu::Buffer,
     pub(super) spans: wgpu::Buffer,
     pub(super) order: wgpu::Buffer,
     pub(super) count: wgpu::Buffer,
@@ -222,8 +226,9 @@ pub(super) struct Inner {
 }
 
 impl Buffers {
-    /// Arrays for `counts` particles and sums of so many `rows`; with the step before if `verlet`.
-    pub(super) fn new(gpu: &Gpu, counts: &Counts, chunks: &SolidChunks, rows: usize, verlet: bool) -> Result<Self> {
+    /// Arrays for `counts` particles and the shaders of `texts`; with the step before if `verlet`.
+    pub(super) fn new(gpu: &Gpu, counts: &Counts, chunks: &SolidChunks, texts: &ShaderTexts, verlet: bool) -> Result<Self> {
+        let ([rows, input_rows, kept_rows], gaps) = (texts.rows, texts.gaps.is_some());
         let (n, boundary) = (counts.n, counts.n - counts.water);
         let history = if verlet { 16 * n } else { 16 };
         let solids = chunks.owners.iter().max().map_or(1, |most| most + 1);
@@ -234,6 +239,10 @@ impl Buffers {
             built: gpu.buffer(16 * n)?,
             sums: gpu.buffer(4 * rows * n)?,
             walls: gpu.buffer(16 * boundary)?,
+            aways: gpu.buffer(if gaps { 16 * boundary } else { 16 })?,
+            rows: gpu.buffer(4 * input_rows * n)?,
+            spare_rows: gpu.buffer(4 * kept_rows * n)?,
+            gaps: gpu.buffer(if gaps { 4 * boundary } else { 16 })?,
             spans: gpu.buffer(8 * n)?,
             order: gpu.buffer(4 * n)?,
             count: gpu.buffer(4 * total)?,
@@ -292,7 +301,7 @@ impl Buffers {
         let Inner { positions, velocities, built, sums, walls, spans, order, count, start, blocks, spare_places, .. } =
             &self.inner;
         let inner = [positions, velocities, built, sums, walls, spans, order, count, start, blocks, spare_places];
-        let more = [&self.inner.spare, &self.inner.local, &self.inner.chunks, &self.slot, &self.solids, &self.depths, &self.loads];
+        let more = [&self.inner.spare, &self.inner.local, &self.inner.chunks, &self.inner.aways, &self.inner.gaps, &self.inner.rows, &self.inner.spare_rows, &self.slot, &self.solids, &self.depths, &self.loads];
         let all = inner.into_iter().chain(more).chain(self.state()).chain(&self.backup).chain(&self.lists);
         all.map(wgpu::Buffer::size).sum()
     }

@@ -78,8 +78,29 @@ pub(super) struct Pass {
     groups: usize,
 }
 
-/// A shader, compiled.
-pub(super) struct Module(wgpu::ShaderModule);
+/// A shader, compiled, and the layout of its bindings.
+pub(super) struct Module {
+    shader: wgpu::ShaderModule,
+    group: wgpu::BindGroupLayout,
+    pipeline: wgpu::PipelineLayout,
+    bindings: Vec<u32>,
+}
+
+/// The bindings that a shader declares, one a line: number, and whether it is a uniform, read, or read and written.
+fn declared_bindings(text: &str) -> Vec<(u32, wgpu::BufferBindingType)> {
+    let declared = text.lines().filter_map(|line| line.strip_prefix("@group(0) @binding("));
+    declared
+        .filter_map(|line| {
+            let (number, rest) = line.split_once(')')?;
+            let kind = if rest.contains("var<uniform>") {
+                wgpu::BufferBindingType::Uniform
+            } else {
+                wgpu::BufferBindingType::Storage { read_only: rest.contains("var<storage, read>") }
+            };
+            Some((number.parse().ok()?, kind))
+        })
+        .collect()
+}
 
 impl Gpu {
     /// Opens the adapter that `name` says: a number, `gpu` for the first graphics card, or part of a name. A software driver is
@@ -178,33 +199,43 @@ impl Gpu {
     /// Compiles a shader.
     pub(super) fn module(&self, text: &str) -> Result<Module> {
         let source = wgpu::ShaderSource::Wgsl(text.into());
-        let module = self.device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source });
+        let shader = self.device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source });
+        let declared = declared_bindings(text);
+        let entry = |&(binding, ty): &(u32, wgpu::BufferBindingType)| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility: wgpu::ShaderStages::COMPUTE,
+            ty: wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None },
+            count: None,
+        };
+        let entries: Vec<_> = declared.iter().map(entry).collect();
+        let group = self.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries });
+        let layouts = [Some(&group)];
+        let pipeline = self.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: None,
+            bind_group_layouts: &layouts,
+            immediate_size: 0,
+        });
         self.check()?;
-        Ok(Module(module))
+        Ok(Module { shader, group, pipeline, bindings: declared.into_iter().map(|(binding, _)| binding).collect() })
     }
 
-    /// A pass by the function `entry` over `threads`, with its buffers by their bindings.
-    pub(super) fn pass(
-        &self,
-        module: &Module,
-        entry: &str,
-        threads: usize,
-        buffers: &[(u32, &wgpu::Buffer)],
-    ) -> Result<Pass> {
+    /// A pass by the function `entry` over `threads`; `buffers` are all of the shader, by their bindings.
+    pub(super) fn pass(&self, module: &Module, entry: &str, threads: usize, buffers: &[&wgpu::Buffer]) -> Result<Pass> {
         let pipeline = self.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
             label: Some(entry),
-            layout: None,
-            module: &module.0,
+            layout: Some(&module.pipeline),
+            module: &module.shader,
             entry_point: Some(entry),
             compilation_options: wgpu::PipelineCompilationOptions::default(),
             cache: None,
         });
-        let entries: Vec<_> = buffers
-            .iter()
-            .map(|(binding, buffer)| wgpu::BindGroupEntry { binding: *binding, resource: buffer.as_entire_binding() })
-            .collect();
-        let layout = pipeline.get_bind_group_layout(0);
-        let group = self.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout: &layout, entries: &entries });
+        let bound = |&binding: &u32| wgpu::BindGroupEntry {
+            binding,
+            resource: buffers[binding as usize].as_entire_binding(),
+        };
+        let entries: Vec<_> = module.bindings.iter().map(bound).collect();
+        let descriptor = wgpu::BindGroupDescriptor { label: None, layout: &module.group, entries: &entries };
+        let group = self.device.create_bind_group(&descriptor);
         self.check()?;
         Ok(Pass { pipeline, group, groups: threads.div_ceil(GROUP).max(1) })
     }

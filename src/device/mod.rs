@@ -23,14 +23,14 @@ use buffers::{Buffers, Control, Counts, WORDS};
 use gpu::Gpu;
 use layout::Layout;
 use passes::Passes;
-use shaders::{ShaderInput, TICKS};
+use shaders::{ShaderInput, TICKS, entries};
 use solids::SolidChunks;
 
 use crate::{
     error::{Error, ErrorCode, ErrorKind, Result},
     interaction::{PairSums, StepLimits},
-    math::Vector,
-    model::TimeScheme,
+    math::{Matrix, Vector},
+    model::{TimeScheme, Walls},
     solid::Load,
     sph::Units,
     system::System,
@@ -103,6 +103,29 @@ fn refused(what: &str) -> Error {
         .help("leave --device (model.device) out: the processor computes all of this scene")
 }
 
+/// Statements that add the rates of the sponge layers at `place` to `rate`.
+fn sponge_statements<const D: usize>(system: &System<D>, layout: &Layout, units: &Units) -> Result<String> {
+    let mut text = String::new();
+    for layer in system.sponge_layers() {
+        if !layout.reaches(&layer.from) {
+            return Err(refused("a sponge layer a million kernel supports from the origin"));
+        }
+        let from = layout.place(&layer.from, 0, 0);
+        let words = |part: &[u32], cast: fn(u32) -> String| part.iter().map(|x| cast(*x)).collect::<Vec<_>>().join(", ");
+        let (hi, lo) = (words(&from[..4], |x| format!("{}", x as i32)), words(&from[4..], |x| format!("{x}u")));
+        let way = layer.to - layer.from;
+        let way = way * (units.length / way.norm_squared());
+        let way: Vec<String> = (0..3).map(|k| format!("{:?}f", if k < D { way[k] as f32 } else { 0.0 })).collect();
+        let (strength, power) = ((layer.strength * units.time) as f32, layer.power as f32);
+        text += &format!(
+            "    rate += {strength:?}f * pow(clamp(dot(between(place, Place(vec4<i32>({hi}), vec4<u32>({lo}))), \
+             vec3<f32>({})), 0.0f, 1.0f), {power:?}f);\n",
+            way.join(", ")
+        );
+    }
+    Ok(text)
+}
+
 /// The texts of the shaders for the present state of `system`.
 fn shader_texts<const D: usize>(
     system: &System<D>,
@@ -123,9 +146,26 @@ fn shader_texts<const D: usize>(
         ],
         margin: MARGIN,
         chunks: [chunks.moving, chunks.owners.len()],
+        sponge: sponge_statements(system, layout, &units)?,
+        gaps: system.has_free_solids() && model.walls == Walls::RelaxedAdami,
     };
     let texts = input.texts().ok_or_else(|| refused("numbers of this size in single precision"))?;
     Ok((texts, units))
+}
+
+/// The texts of the shaders for `system`, without a device.
+///
+/// # Errors
+/// `Usage` if no device computes the system yet.
+#[doc(hidden)]
+pub fn shaders_of<const D: usize>(system: &System<D>) -> Result<ShaderTexts> {
+    if let Some(what) = system.unsupported_on_device() {
+        return Err(refused(what));
+    }
+    let model = system.model();
+    let (_, units) = model.pair_traces::<D>().ok_or_else(|| refused("this pair loop"))?;
+    let layout = Layout::new(model.support_radius(), &units, model.rho0);
+    Ok(shader_texts(system, &layout, &SolidChunks::new(system))?.0)
 }
 
 impl<const D: usize> Device<D> {
@@ -145,9 +185,8 @@ impl<const D: usize> Device<D> {
         let chunks = SolidChunks::new(system);
         let counts = Counts::new(system, &layout, &gpu.adapter, MARGIN)?;
         let (texts, units) = shader_texts(system, &layout, &chunks)?;
-        let rows = texts.rows;
         let verlet = matches!(model.scheme, TimeScheme::Verlet { .. });
-        let buffers = Buffers::new(&gpu, &counts, &chunks, rows, verlet)?;
+        let buffers = Buffers::new(&gpu, &counts, &chunks, &texts, verlet)?;
         let passes = Passes::new(&gpu, &texts, &counts, &chunks, &buffers, verlet)?;
         let mut device =
             Self { gpu, layout, units, texts, counts, chunks, buffers, passes, start: time, ticks: 0, steps: FIRST_STEPS, verlet };
@@ -181,6 +220,13 @@ impl<const D: usize> Device<D> {
         gpu.write(&buffers.motion, 0, &motion);
         let slots: Vec<u32> = (0..all.len() as u32).collect();
         gpu.write(&buffers.slot, 0, &slots);
+        if let (Some(row), Some(stress)) = (self.texts.stress, system.fluid_stress()) {
+            let scale = (self.units.time / self.units.length).powi(2);
+            for (row, (i, j)) in (row..).zip(entries(D)) {
+                let values: Vec<f32> = stress.iter().map(|stress| (stress[(i, j)] * scale) as f32).collect();
+                gpu.write(&buffers.inner.rows, 4 * row * self.counts.n, &values);
+            }
+        }
         let mut control = Control::start();
         if let Stepper::Verlet(verlet) = stepper {
             let history = verlet.history();
@@ -380,6 +426,15 @@ impl<const D: usize> Device<D> {
             (layout.position(place), layout.velocity(motion), layout.density(motion))
         };
         system.take_from_device(of_water, |i| layout.density(of(water + i).1));
+        if let Some(first) = self.texts.stress {
+            let [rows] = self.gpu.read::<f32, 1>([(&self.buffers.inner.rows, self.texts.rows[1] * n)])?;
+            let scale = (self.units.length / self.units.time).powi(2);
+            let entry = |i: usize, row: usize, column: usize| {
+                let (a, b) = (row.max(column), row.min(column));
+                f64::from(rows[(first + a * (a + 1) / 2 + b) * n + slot[i]]) * scale
+            };
+            system.set_fluid_stress(|i| Matrix::from_fn(|row, column| entry(i, row, column)));
+        }
         if let Stepper::Verlet(verlet) = stepper {
             let [before] = self.gpu.read::<u32, 1>([(&self.buffers.before, 4 * n)])?;
             let control = self.control()?;

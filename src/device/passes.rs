@@ -41,10 +41,9 @@ impl<'a> Maker<'a> {
         Ok(Self { gpu, module: gpu.module(text)?, buffers })
     }
 
-    /// The pass by the function `entry`, which uses the buffers of the bindings `uses`.
-    fn pass(&self, entry: &str, threads: usize, uses: &[usize]) -> Result<Arc<Pass>> {
-        let own: Vec<_> = uses.iter().map(|&binding| (binding as u32, self.buffers[binding])).collect();
-        Ok(Arc::new(self.gpu.pass(&self.module, entry, threads, &own)?))
+    /// The pass by the function `entry`.
+    fn pass(&self, entry: &str, threads: usize) -> Result<Arc<Pass>> {
+        Ok(Arc::new(self.gpu.pass(&self.module, entry, threads, &self.buffers)?))
     }
 }
 
@@ -80,8 +79,8 @@ impl Passes {
                 &buffers.loads,
             ],
         )?;
-        let place = solids.pass("place_moving", chunks.moving * GROUP, &[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10])?;
-        let loads = solids.pass("add_loads", chunks.owners.len() * GROUP, &[0, 2, 6, 8, 10, 11, 12])?;
+        let place = solids.pass("place_moving", chunks.moving * GROUP)?;
+        let loads = solids.pass("add_loads", chunks.owners.len() * GROUP)?;
         let step = Maker::new(
             gpu,
             &texts.step,
@@ -99,18 +98,18 @@ impl Passes {
                 &b.built,
             ],
         )?;
-        let limit = step.pass("limit", 1, &[0, 1])?;
-        let finish = step.pass("finish", 1, &[0, 1])?;
-        let derive = step.pass("derive", n, &[0, 2, 3, 5, 6, 10])?;
+        let limit = step.pass("limit", 1)?;
+        let finish = step.pass("finish", 1)?;
+        let derive = step.pass("derive", n)?;
         let (whole, first, second);
         if verlet {
-            let verlet = step.pass("verlet", n, &[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10])?;
+            let verlet = step.pass("verlet", n)?;
             whole = [&rates[..], &[limit.clone(), verlet.clone(), finish.clone()]].concat();
             first = [&rates[..], &[limit, loads.clone()]].concat();
             second = vec![verlet, finish];
         } else {
-            let first_half = step.pass("first_half", n, &[0, 1, 2, 3, 5, 6, 7, 8, 9, 10])?;
-            let rest = step.pass("whole_step", n, &[0, 1, 2, 3, 5, 6, 7, 8, 9, 10])?;
+            let first_half = step.pass("first_half", n)?;
+            let rest = step.pass("whole_step", n)?;
             first = [&rates[..], &[limit, first_half]].concat();
             whole = [&first[..], &rates, &[rest.clone(), finish.clone()]].concat();
             second = [&[place.clone()], &rates[..], &[loads.clone(), rest, finish]].concat();
@@ -148,21 +147,23 @@ fn rates(
             &b.spare_places,
             &b.spare,
             &b.built,
+            &b.rows,
+            &b.spare_rows,
         ],
     )?;
     let mut passes = vec![
-        search.pass("decide", 1, &[1])?,
-        search.pass("clear", total, &[0, 1, 7])?,
-        search.pass("tally", n, &[0, 1, 2, 7])?,
-        search.pass("scan", total.div_ceil(1024) * GROUP, &[0, 1, 7, 8, 9])?,
-        search.pass("scan_blocks", 1, &[0, 1, 9])?,
-        search.pass("scan_add", total, &[0, 1, 8, 9])?,
-        search.pass("scatter", n, &[0, 1, 2, 7, 8, 10])?,
-        search.pass("settle", 2 * cells, &[0, 1, 2, 8, 10])?,
-        search.pass("gather", n, &[0, 1, 2, 3, 4, 5, 6, 10, 12, 13])?,
-        search.pass("put_back", n, &[0, 1, 2, 3, 4, 5, 6, 11, 12, 13, 14])?,
+        search.pass("decide", 1)?,
+        search.pass("clear", total)?,
+        search.pass("tally", n)?,
+        search.pass("scan", total.div_ceil(1024) * GROUP)?,
+        search.pass("scan_blocks", 1)?,
+        search.pass("scan_add", total)?,
+        search.pass("scatter", n)?,
+        search.pass("settle", 2 * cells)?,
+        search.pass("gather", n)?,
+        search.pass("put_back", n)?,
     ];
-    let mut sweeps = Vec::new();
+    let (mut sweeps, mut corrections) = (Vec::new(), Vec::new());
     for (number, list) in buffers.lists.iter().enumerate() {
         let start = number * counts.part;
         let first = gpu.uniform(&[start as u32, counts.part as u32, 0, 0]);
@@ -184,8 +185,7 @@ fn rates(
                 &buffers.before,
             ],
         )?;
-        let uses: Vec<usize> = (0..12).collect();
-        passes.push(lists.pass("list_pairs", counts.part.min(n - start), &uses)?);
+        passes.push(lists.pass("list_pairs", counts.part.min(n - start))?);
         let sweep = Maker::new(
             gpu,
             &texts.sweep,
@@ -202,18 +202,78 @@ fn rates(
                 &buffers.places,
                 &buffers.solids,
                 &buffers.depths,
+                &b.aways,
+                &b.rows,
             ],
         )?;
         let threads = counts.part.min(n - start);
         if start < counts.water {
-            sweeps.push(sweep.pass("sweep_water", threads.min(counts.water - start), &[0, 1, 2, 3, 4, 5, 6, 7])?);
+            let water = threads.min(counts.water - start);
+            if let Some(text) = &texts.moments {
+                let buffers = vec![
+                    params,
+                    &buffers.control,
+                    &first,
+                    &b.positions,
+                    &b.velocities,
+                    list,
+                    &b.spans,
+                    &b.rows,
+                ];
+                corrections.push(Maker::new(gpu, text, buffers)?.pass("sweep_moments", water)?);
+            }
+            sweeps.push(sweep.pass("sweep_water", water)?);
         }
         if start + threads > counts.water {
-            let uses: &[usize] =
-                if texts.relaxed { &[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11] } else { &[0, 1, 2, 3, 4, 5, 6, 7] };
-            sweeps.push(sweep.pass("sweep_boundary", threads, uses)?);
+            sweeps.push(sweep.pass("sweep_boundary", threads)?);
         }
     }
+    if let Some(text) = &texts.gaps {
+        let gaps = Maker::new(
+            gpu,
+            text,
+            vec![
+                params,
+                &buffers.control,
+                &buffers.places,
+                &b.positions,
+                &b.velocities,
+                &b.start,
+                &b.spans,
+                &buffers.solids,
+                &b.gaps,
+                &b.aways,
+                &b.sums,
+                &b.built,
+            ],
+        )?;
+        let boundary = n - counts.water;
+        passes.push(gaps.pass("find_gaps", boundary)?);
+        sweeps.push(gaps.pass("add_gaps", boundary)?);
+    }
+    let mut close = None;
+    if let Some(text) = &texts.inputs {
+        let inputs = Maker::new(
+            gpu,
+            text,
+            vec![
+                params,
+                &buffers.control,
+                &buffers.places,
+                &b.positions,
+                &b.velocities,
+                &b.rows,
+                &b.sums,
+                &buffers.solids,
+            ],
+        )?;
+        passes.push(inputs.pass("fill_rows", n)?);
+        if texts.stress.is_some() {
+            close = Some(inputs.pass("close_stress", counts.water)?);
+        }
+    }
+    passes.extend(corrections);
     passes.extend(sweeps);
+    passes.extend(close);
     Ok(passes)
 }

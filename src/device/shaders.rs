@@ -3,12 +3,14 @@
 use super::text::{indented, statements};
 use crate::{
     interaction::PairTraces,
-    model::{Model, TimeScheme, Walls},
+    model::{Model, PressureGradient, TimeScheme, Walls},
     sph::{
-        FluidProperties, Units,
+        AuxiliarySums, FluidProperties, Num as _, Units,
         boundary::{Cover, WallExtrapolation, WallTarget},
         equation_of_state::EquationOfState,
-        trace::{Trace, Traced},
+        gradient_correction,
+        pressure::repulsion,
+        trace::{Recorder, Trace, Traced},
     },
     system::ParticleLimits,
     time_integration::FOLDINGS,
@@ -40,6 +42,10 @@ pub(super) struct ShaderInput<'a, const D: usize> {
     pub(super) margin: f64,
     /// Boundary particles of moving solids, in whole chunks; all chunks.
     pub(super) chunks: [usize; 2],
+    /// Whether there may be narrow gaps beside free solids.
+    pub(super) gaps: bool,
+    /// Statements that add the rates of the sponge layers at `place` to `rate`.
+    pub(super) sponge: String,
 }
 
 /// The texts.
@@ -55,10 +61,23 @@ pub struct ShaderTexts {
     pub step: String,
     /// Solids.
     pub solids: String,
-    /// Rows of sums.
-    pub rows: usize,
+    /// Pressure across gaps, if there may be any.
+    pub gaps: Option<String>,
+    /// Additional inputs of the pair loop, if terms read any.
+    pub inputs: Option<String>,
+    /// Moments of the neighbours, if gradients are corrected.
+    pub moments: Option<String>,
+    /// Rows of sums, of additional inputs, and of those that are kept from pass to pass.
+    pub rows: [usize; 3],
+    /// The first row of the stress of the water, if it is kept.
+    pub stress: Option<usize>,
     /// Whether walls relax.
     pub relaxed: bool,
+}
+
+/// Width of a cell in 2⁻⁸ of the support: two cells span the reach of the lists, which is `margin` beyond the support.
+pub(super) fn cell_width(margin: f64) -> i32 {
+    (128.0 * (1.0 + margin)).ceil() as i32
 }
 
 fn float(x: f64) -> String {
@@ -87,13 +106,22 @@ impl<const D: usize> ShaderInput<'_, D> {
             .replace("{{PRESSURE}}", &indented(&statements(&pressure, "t", str::to_string)?, 4))
             .replace("{{CHANGE}}", &indented(&statements(&wall_change(), "t", wall_input)?, 4))
             .replace("{{FORCE}}", &force)
+            .replace("{{SHIFT}}", &self.shift(&properties)?)
+            .replace("{{SPONGE}}", &self.sponge)
             .replace("{{RATE}}", &D.to_string());
+        let gaps = include_str!("shaders/gaps.wgsl")
+            .replace("{{SLOPE}}", &indented(&statements(&self.traces.slope, "t", str::to_string)?, 4))
+            .replace("{{ADD}}", &(0..D).map(|k| format!("    sums[{k}u * params.n + k] += sum.{};\n", axis(&k.to_string()))).collect::<String>());
         Some(ShaderTexts {
+            gaps: self.gaps.then(|| with_head(&gaps)),
             search: with_head(include_str!("shaders/search.wgsl")),
             lists: with_head(include_str!("shaders/lists.wgsl")),
             sweep: with_head(&self.sweep(&properties, &eos)?),
             step: with_head(&step),
-            rows: self.traces.rows[1],
+            inputs: (self.traces.rows[0] > 0).then(|| self.input_rows(&properties)).flatten().map(|text| with_head(&text)),
+            moments: self.moments(&properties).map(|text| with_head(&text)),
+            rows: [self.traces.rows[1], self.traces.rows[0], self.kept_rows()],
+            stress: self.traces.layout.stress,
             relaxed: self.model.walls == Walls::RelaxedAdami,
             solids: with_head(&include_str!("shaders/solids.wgsl").replace("{{FORCE}}", &force)),
         })
@@ -114,11 +142,16 @@ impl<const D: usize> ShaderInput<'_, D> {
         let lines = [
             format!("const VERLET: bool = {};", matches!(model.scheme, TimeScheme::Verlet { .. })),
             format!("const RELAXED: bool = {};", model.walls == Walls::RelaxedAdami),
-            format!("const LAYERS: i32 = {};", if D == 3 { 1 } else { 0 }),
+            format!("const LAYERS: i32 = {};", if D == 3 { 2 } else { 0 }),
+            format!("const CELL: i32 = {};", cell_width(*margin)),
+            format!("const GAPS: bool = {};", self.gaps),
             format!("const SUMS: u32 = {}u;", self.traces.rows[1]),
+            format!("const REACH2: f32 = {};", float(support.powi(2))),
             format!("const LOOK2: f32 = {};", float((support * (1.0 + margin)).powi(2))),
             // Two particles that approach by half the margin each.
             format!("const MARGIN2: u32 = {}u;", ((0.5 * margin * support * 0.999).powi(2) as f32).to_bits()),
+            format!("const KEPT_ROWS: u32 = {}u;", self.kept_rows()),
+            format!("const CORRECT_EVERY: u32 = {}u;", gradient_correction::PASSES),
             format!("const MOVING: u32 = {}u;", chunks[0] * GROUP),
             format!("const CHUNKS: u32 = {}u;", chunks[1]),
             format!("const GRAVITY: vec3<f32> = vec3<f32>({});", vector::<D>(|k| float(properties.gravity[k]), "0.0f")),
@@ -182,6 +215,120 @@ impl<const D: usize> ShaderInput<'_, D> {
     }
 }
 
+/// The entries of a symmetric tensor that are kept, by row and column.
+pub(super) fn entries(dimension: usize) -> impl Iterator<Item = (usize, usize)> {
+    (0..dimension).flat_map(|i| (0..=i).map(move |j| (i, j)))
+}
+
+/// A symmetric tensor of the inputs `name0`….
+fn tensor<'a, const D: usize>(recorder: &'a Recorder, name: &str) -> [[Traced<'a>; D]; D] {
+    let mut tensor = [[recorder.constant(0.0); D]; D];
+    for (n, (i, j)) in entries(D).enumerate() {
+        tensor[i][j] = recorder.input(&format!("{name}{n}"));
+        tensor[j][i] = tensor[i][j];
+    }
+    tensor
+}
+
+impl<const D: usize> ShaderInput<'_, D> {
+    /// Rows of additional inputs that the next pass reads although it does not make them.
+    fn kept_rows(&self) -> usize {
+        if self.traces.layout.stress.is_some() { self.traces.rows[0] } else { 0 }
+    }
+
+    /// The shader that makes the additional inputs.
+    fn input_rows(&self, properties: &FluidProperties<D>) -> Option<String> {
+        let layout = self.traces.layout;
+        let mut fill = String::new();
+        if let Some(row) = layout.mark {
+            fill += "if (k >= params.water) {\n";
+            fill += &format!("    rows[{row}u * params.n + k] = f32(solids[places[k].lo.w].origin.hi.w);\n}}\n");
+        }
+        if let Some(row) = layout.repulsion {
+            let trace = Trace::record(&mut |recorder| {
+                recorder.result("repulsion", repulsion(recorder.input("p"), recorder.input("volume")));
+            });
+            fill += &statements(&trace, "t", str::to_string)?;
+            fill += &format!("rows[{row}u * params.n + k] = out_repulsion;\n");
+        }
+        let mut stress = String::new();
+        if let (Some(row), Some(strain), Some(law)) = (layout.stress, layout.strain, self.model.viscosity.stress()) {
+            let trace = Trace::record(&mut |recorder| {
+                let tensor = law.stress(&tensor::<D>(recorder, "strain"), recorder.input("volume"), properties);
+                entries(D).enumerate().for_each(|(n, (i, j))| recorder.result(&format!("stress{n}"), tensor[i][j]));
+            });
+            stress += &statements(&trace, "t", |name| match name.strip_prefix("strain") {
+                Some(n) => format!("sums[{}u * params.n + k]", strain + n.parse::<usize>().unwrap_or(0)),
+                None => name.into(),
+            })?;
+            for n in 0..entries(D).count() {
+                stress += &format!("rows[{}u * params.n + k] = out_stress{n};\n", row + n);
+            }
+        }
+        let text = include_str!("shaders/rows.wgsl");
+        Some(text.replace("{{FILL}}", &indented(&fill, 4)).replace("{{STRESS}}", &indented(&stress, 4)))
+    }
+
+    /// The shader that corrects the gradients, if they are corrected.
+    fn moments(&self, properties: &FluidProperties<D>) -> Option<String> {
+        let (row, [trace, _]) = (self.traces.layout.correction?, self.traces.moments.as_ref()?);
+        let moment = pair_body(trace, "t")?;
+        let count = entries(D).count();
+        let everywhere = self.model.gradient == PressureGradient::Corrected;
+        let weight = properties.gravity.norm() * properties.dp;
+        let close = Trace::record(&mut |recorder| {
+            let p = recorder.input("p");
+            let share = if everywhere { recorder.constant(1.0) } else { gradient_correction::near_surface(p, weight) };
+            let correction = gradient_correction::correction(&tensor::<D>(recorder, "moment"));
+            entries(D)
+                .enumerate()
+                .for_each(|(n, (i, j))| recorder.result(&format!("correction{n}"), share * correction[i][j]));
+        });
+        let first = D + 1;
+        let mut text = statements(&close, "w", |name| match name.strip_prefix("moment") {
+            Some(n) => format!("sum{}", first + n.parse::<usize>().unwrap_or(0)),
+            None => name.into(),
+        })?;
+        for n in 0..count {
+            text += &format!("rows[{}u * params.n + k] = out_correction{n};\n", row + n);
+        }
+        let zeros: String = (0..first + count).map(|row| format!("var sum{row} = 0.0f;\n")).collect();
+        let shader = include_str!("shaders/moments.wgsl");
+        Some(
+            shader
+                .replace("{{ZERO_SUMS}}", &indented(&zeros, 4))
+                .replace("{{MOMENT}}", &indented(&moment, 8))
+                .replace("{{CLOSE}}", &indented(&text, 4)),
+        )
+    }
+
+    /// The body of the function that shifts a particle.
+    fn shift(&self, properties: &FluidProperties<D>) -> Option<String> {
+        let (Some(law), Some(row)) = (self.model.shift(), self.traces.layout.shift) else {
+            return Some("    return vec3<f32>(0.0f);\n".into());
+        };
+        let trace = Trace::record(&mut |recorder| {
+            let sum = |n: usize| recorder.input(&format!("sum{n}"));
+            let mut sums = AuxiliarySums::filled_with(recorder.constant(0.0));
+            sums.concentration_gradient = std::array::from_fn(sum);
+            sums.position_divergence = sum(D);
+            let way: [Traced; D] = law.displacement(&sums, recorder.input("speed"), recorder.input("dt"), properties);
+            (0..D).for_each(|k| recorder.result(&format!("way{k}"), way[k]));
+        });
+        let read = |name: &str| match name.strip_prefix("sum") {
+            Some(n) => format!("sums[{}u * params.n + k]", row + n.parse::<usize>().unwrap_or(0)),
+            None => name.into(),
+        };
+        let mut text = String::new();
+        if let Some(suppression) = self.traces.layout.suppression {
+            text += &format!("if (sums[{suppression}u * params.n + k] > 0.0f) {{ return vec3<f32>(0.0f); }}\n");
+        }
+        text += &statements(&trace, "t", read)?;
+        text += &format!("return vec3<f32>({});\n", vector::<D>(|k| format!("out_way{k}"), "0.0f"));
+        Some(indented(&text, 4))
+    }
+}
+
 /// What the loop over neighbours `j` of particle `k` does with a pair.
 fn pair_body(trace: &Trace, prefix: &str) -> Option<String> {
     let mut text = statements(trace, prefix, pair_input)?;
@@ -204,7 +351,11 @@ fn pair_input(name: &str) -> String {
     match name.split_at(1) {
         ("r", k) if k.len() == 1 => format!("r.{}", axis(k)),
         ("v", k) if k.len() == 1 => format!("v.{}", axis(k)),
-        _ => name.into(),
+        _ => match (name.strip_prefix("a_row"), name.strip_prefix("b_row")) {
+            (Some(row), _) => format!("rows[{row}u * params.n + k]"),
+            (_, Some(row)) => format!("rows[{row}u * params.n + j]"),
+            _ => name.into(),
+        },
     }
 }
 
@@ -254,6 +405,11 @@ fn wall_target<const D: usize>(properties: &FluidProperties<D>, eos: &EquationOf
         recorder.result("increase", target.increase);
         recorder.result("prompt_decrease", target.prompt_decrease);
         recorder.result("prompt_increase", target.prompt_increase);
+        let away = fit.direction();
+        for k in 0..3 {
+            let of = if k < D { away[k] } else { recorder.constant(0.0) };
+            recorder.result(&format!("away{k}"), fit.weight_sum.select_below(recorder.constant(1e-9), recorder.constant(0.0), of));
+        }
     })
 }
 

@@ -59,6 +59,7 @@ impl SolidChunks {
             let (solid, mut words) = (&system.solids()[i], [0; SOLID_WORDS]);
             let kinematics = &solid.kinematics;
             words[..8].copy_from_slice(&layout.place(&kinematics.pose.position, 0, 0));
+            words[3] = u32::from(system.suppresses_shifting(i));
             words[8..16].copy_from_slice(&layout.place(&kinematics.centre, 0, 0));
             let mut matrix = |at: usize, m: &Matrix<D>, scale: f64| {
                 for column in 0..D {
@@ -75,6 +76,7 @@ impl SolidChunks {
             };
             vector(52, &kinematics.velocity, speed);
             vector(56, &solid.acceleration, speed * rate);
+            words[55] = f32::from(u8::from(matches!(solid.spec.role, Role::Free(_)))).to_bits();
             words[59] = (system.wall_promptness(solid) as f32).to_bits();
             words
         };

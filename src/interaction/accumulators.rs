@@ -42,11 +42,11 @@ impl RequiredSums {
         self.shift || self.suppression || self.stress || self.renormalization
     }
 
-    const fn held_at(self, dimension: usize) -> usize {
+    pub(super) const fn held_at(self, dimension: usize) -> usize {
         dimension + 1 + if self.shift { dimension + 1 } else { 0 }
     }
 
-    const fn strain_at(self, dimension: usize) -> usize {
+    pub(super) const fn strain_at(self, dimension: usize) -> usize {
         self.held_at(dimension) + if self.suppression { 1 } else { 0 }
     }
 

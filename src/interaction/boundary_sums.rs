@@ -24,9 +24,9 @@ pub(super) trait BoundarySums<const D: usize>: Send + Sync {
         fits: &mut [WallExtrapolation<f64, D>],
     );
 
-    /// The trace of what a water particle adds, with its velocity.
+    /// The traces of what a water particle adds, with its velocity, and of the kernel's slope.
     #[cfg(feature = "gpu")]
-    fn trace(&self) -> crate::sph::trace::Trace;
+    fn traces(&self) -> [crate::sph::trace::Trace; 2];
 
     /// In SIMD lanes: the sums of a slab and of the next one; with the velocity if `flow`.
     fn sum_slab(&self, level: Level, packed: &PackedParticles<D>, slab: &Slab, flow: bool, sums: &mut [LaneRow]);
@@ -66,8 +66,8 @@ impl<K: Kernel, const D: usize> BoundarySums<D> for KernelSums<K> {
     }
 
     #[cfg(feature = "gpu")]
-    fn trace(&self) -> crate::sph::trace::Trace {
-        super::trace::extrapolation::<K, D>(&self.0)
+    fn traces(&self) -> [crate::sph::trace::Trace; 2] {
+        [super::trace::extrapolation::<K, D>(&self.0), super::trace::slope(&self.0)]
     }
 
     fn sum_slab(&self, level: Level, packed: &PackedParticles<D>, slab: &Slab, flow: bool, sums: &mut [LaneRow]) {

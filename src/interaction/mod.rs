@@ -14,7 +14,7 @@ mod simd_layout;
 mod trace;
 
 #[cfg(feature = "gpu")]
-pub use trace::PairTraces;
+pub use trace::{PairTraces, RowLayout};
 
 use std::time::Duration;
 

@@ -276,12 +276,15 @@ impl<const D: usize> PairLoop<D> for ReferencePairLoop<D> {
     fn traces(&self) -> Option<super::PairTraces> {
         let [fluid, wall] = self.laws.traces();
         let needs = self.laws.required_sums();
+        let [extrapolation, slope] = self.fits.traces();
         Some(super::PairTraces {
             fluid,
             wall,
-            extrapolation: self.fits.trace(),
+            extrapolation,
+            slope,
             moments: self.moments.as_ref().map(|moments| moments.traces()),
             rows: [needs.input_rows(D), needs.sum_rows(D)],
+            layout: super::RowLayout::new::<D>(needs),
             reach2: self.laws.reach2(),
         })
     }

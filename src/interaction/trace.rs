@@ -27,12 +27,51 @@ pub struct PairTraces {
     /// What a water particle adds to the extrapolation to a boundary particle, with its velocity. Inputs: `r0`… (r_wf), `b_pressure`,
     /// `b_volume`, `v0`… (v_f), `sum0`…; results: `sum0`….
     pub extrapolation: Trace,
+    /// V₀ ∂W: input `r2`, result `slope`.
+    pub slope: Trace,
     /// The moments of the neighbours, if gradients are corrected: inputs and results as of a pair.
     pub moments: Option<[Trace; 2]>,
     /// Rows of additional inputs, and of sums.
     pub rows: [usize; 2],
+    /// Where they lie.
+    pub layout: RowLayout,
     /// Square of the kernel's support.
     pub reach2: f64,
+}
+
+/// The first rows of the additional inputs and of the sums that only some terms have.
+#[derive(Clone, Copy, Debug)]
+pub struct RowLayout {
+    /// Input: marks of boundary particles.
+    pub mark: Option<usize>,
+    /// Input: tensile repulsion.
+    pub repulsion: Option<usize>,
+    /// Input: stress.
+    pub stress: Option<usize>,
+    /// Input: B − 1 of the corrected gradients.
+    pub correction: Option<usize>,
+    /// Sums: concentration gradient, then ∇·r.
+    pub shift: Option<usize>,
+    /// Sum: marks within the support.
+    pub suppression: Option<usize>,
+    /// Sums: strain rate.
+    pub strain: Option<usize>,
+}
+
+impl RowLayout {
+    /// The rows of terms with those `needs`.
+    pub(super) fn new<const D: usize>(needs: RequiredSums) -> Self {
+        let some = |has: bool, row: usize| has.then_some(row);
+        Self {
+            mark: some(needs.suppression, 0),
+            repulsion: some(needs.repulsion, needs.repulsion_row()),
+            stress: some(needs.stress, needs.stress_row()),
+            correction: some(needs.gradient_correction, needs.gradient_correction_row(D)),
+            shift: some(needs.shift, D + 1),
+            suppression: some(needs.suppression, needs.held_at(D)),
+            strain: some(needs.stress, needs.strain_at(D)),
+        }
+    }
 }
 
 /// A side of a pair, read as terms with needs `own` read it from the rows of terms with needs `all`.
@@ -120,6 +159,11 @@ pub(super) fn pair<K: Kernel, T, W, L: Term<D>, const D: usize>(
         pair.add_to(law, &mut sums, &mut others);
         results(recorder, needs, &mut sums, approach);
     })
+}
+
+/// The trace of V₀ ∂W.
+pub(super) fn slope<K: Kernel>(kernel: &K) -> Trace {
+    Trace::record(&mut |recorder| recorder.result("slope", kernel.slope(recorder.input("r2"))))
 }
 
 /// The trace of an extrapolation.

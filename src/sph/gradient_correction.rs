@@ -30,33 +30,36 @@ pub(crate) const PASSES: u64 = 20;
 const SURFACE_DEPTH: f64 = 4.0;
 
 /// s (–) of water with pressure `p` (P/ρ₀, m²/s²), where one dp of water weighs `weight` (|g| dp, m²/s²).
-pub fn near_surface(p: f64, weight: f64) -> f64 {
-    if weight > 0.0 { (2.0 - p / (SURFACE_DEPTH * weight)).clamp(0.0, 1.0) } else { 1.0 }
+pub fn near_surface<N: Num>(p: N, weight: f64) -> N {
+    let of = |x: f64| p.constant(x);
+    if weight > 0.0 { (of(2.0) - p / of(SURFACE_DEPTH * weight)).max(of(0.0)).min(of(1.0)) } else { of(1.0) }
 }
 
 /// C = B − 1 (–) from the `moment` M of a particle (`[i][j]` with j ≤ i is read).
-pub fn correction<const D: usize>(moment: &[[f64; D]; D]) -> [[f64; D]; D] {
+pub fn correction<N: Num, const D: usize>(moment: &[[N; D]; D]) -> [[N; D]; D] {
     // Gauss and Jordan without a search for pivots: M is symmetric and positive, or else there is no correction.
-    let mut left: [[f64; D]; D] = std::array::from_fn(|i| std::array::from_fn(|j| moment[i.max(j)][i.min(j)]));
-    let mut inverse: [[f64; D]; D] = std::array::from_fn(|i| std::array::from_fn(|j| f64::from(u8::from(i == j))));
-    let mut det = 1.0;
+    let of = |x: f64| moment[0][0].constant(x);
+    let unit = |i: usize, j: usize| of(f64::from(u8::from(i == j)));
+    let mut left: [[N; D]; D] = std::array::from_fn(|i| std::array::from_fn(|j| moment[i.max(j)][i.min(j)]));
+    let mut inverse: [[N; D]; D] = std::array::from_fn(|i| std::array::from_fn(|j| unit(i, j)));
+    let (mut det, mut regular) = (of(1.0), of(1.0));
     for k in 0..D {
         let pivot = left[k][k];
-        det *= pivot;
-        if !(pivot > 0.0 && det > SINGULAR) {
-            return [[0.0; D]; D];
-        }
-        let (row, of) = (left[k].map(|x| x / pivot), inverse[k].map(|x| x / pivot));
+        det = det * pivot;
+        regular = of(0.0).select_below(pivot, regular, of(0.0));
+        regular = of(SINGULAR).select_below(det, regular, of(0.0));
+        let (row, inverse_row) = (left[k].map(|x| x / pivot), inverse[k].map(|x| x / pivot));
         for i in 0..D {
             let factor = left[i][k];
             for j in 0..D {
                 left[i][j] = if i == k { row[j] } else { left[i][j] - factor * row[j] };
-                inverse[i][j] = if i == k { of[j] } else { inverse[i][j] - factor * of[j] };
+                inverse[i][j] = if i == k { inverse_row[j] } else { inverse[i][j] - factor * inverse_row[j] };
             }
         }
     }
-    let weight = (det * (1 << (D - 1)) as f64).min(1.0);
-    std::array::from_fn(|i| std::array::from_fn(|j| weight * (inverse[i][j] - f64::from(u8::from(i == j)))))
+    let weight = (det * of((1 << (D - 1)) as f64)).min(of(1.0));
+    let entry = |i: usize, j: usize| of(0.5).select_below(regular, weight * (inverse[i][j] - unit(i, j)), of(0.0));
+    std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j)))
 }
 
 /// The moments M of the neighbours, water and solids alike.

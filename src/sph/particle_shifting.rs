@@ -7,7 +7,6 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{AuxiliarySums, FluidProperties, Num, Pair, Term};
-use crate::math::Vector;
 
 /// Fickian shifting with a free-surface factor @skillen2013, @lee2008; eqs. (16)–(22) of @pirkhalili2023.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -27,18 +26,19 @@ impl Default for Shift {
 impl Shift {
     /// Displacement (m) in a step `dt` (s) of a particle of speed `speed` (m/s), from its finished sums; each
     /// component is held to 0.1 dp, so that no shift can carry a particle past another.
-    pub fn displacement<const D: usize>(
+    pub fn displacement<N: Num, const D: usize>(
         &self,
-        sums: &AuxiliarySums<f64, D>,
-        speed: f64,
-        dt: f64,
+        sums: &AuxiliarySums<N, D>,
+        speed: N,
+        dt: N,
         medium: &FluidProperties<D>,
-    ) -> Vector<D> {
+    ) -> [N; D] {
+        let of = |x: f64| speed.constant(x);
         let threshold = if D == 2 { 1.5 } else { 2.75 };
-        let surface = ((sums.position_divergence - threshold) / (D as f64 - threshold)).clamp(0.0, 1.0);
-        let factor = -self.a * medium.h * speed * dt * surface;
-        let limit = 0.1 * medium.dp;
-        Vector::from_fn(|i, _| (factor * sums.concentration_gradient[i]).clamp(-limit, limit))
+        let surface = (sums.position_divergence - of(threshold)) / of(D as f64 - threshold);
+        let factor = of(-self.a * medium.h) * speed * dt * surface.max(of(0.0)).min(of(1.0));
+        let limit = of(0.1 * medium.dp);
+        sums.concentration_gradient.map(|gradient| (factor * gradient).max(-limit).min(limit))
     }
 }
 

@@ -3,7 +3,7 @@
 use super::{Escape, ParticleLimits, System};
 use crate::{
     math::{Matrix, Vector},
-    model::{PressureGradient, Slip, Walls},
+    model::Slip,
     solid::{Role, Solid},
 };
 
@@ -20,25 +20,38 @@ impl<const D: usize> System<D> {
             (self.fluid.images.periodic.iter().any(Option::is_some), "periodic sides"),
             (self.symmetry_planes().any(), "symmetry planes"),
             (!region.open_boundaries.is_empty(), "open boundaries ([[inflow]], [[outflow]])"),
-            (!region.sponge_layers.is_empty(), "sponge layers"),
             (driving.current.is_some() || driving.towed.is_some(), "currents and towed frames"),
             (!self.gravity_law.is_empty(), "gravity that changes with time"),
             (region.limits.escape == Escape::Remove, "removal of particles (guard.escape = \"remove\")"),
             (!(0.5..1.0).contains(&least) || !(1.0..=1.5).contains(&most), "density limits beyond 0.5 to 1.5"),
             (model.slip == Slip::None, "slip = \"none\""),
-            (model.shift().is_some(), "particle shifting"),
-            (model.viscosity.stress().is_some(), "viscosity = \"sps\""),
-            (model.gradient != PressureGradient::Plain, "corrected gradients"),
             (model.gamma != 7.0, "an exponent model.gamma other than 7"),
             (self.solids.iter().any(absorbs), "paddles that absorb waves"),
             (self.solids.iter().any(|solid| !solid.spec.ballast.is_empty()), "ballast"),
-            (model.walls == Walls::RelaxedAdami && self.has_free_solids(), "free bodies with walls = \"relaxed_adami\""),
         ];
         cases.into_iter().find(|(has, _)| *has).map(|(_, what)| what)
     }
 
-    fn has_free_solids(&self) -> bool {
+    /// Whether a solid is free.
+    pub(crate) fn has_free_solids(&self) -> bool {
         self.solids.iter().any(|solid| matches!(solid.spec.role, Role::Free(_)))
+    }
+
+    /// Whether water beside solid number `solid` is not shifted.
+    pub(crate) fn suppresses_shifting(&self, solid: usize) -> bool {
+        self.model.shifting.suppressed_beside(matches!(self.solids[solid].spec.role, Role::Fixed))
+    }
+
+    /// Stress of the water from the last pass, m²/s², if the viscosity has one.
+    pub(crate) fn fluid_stress(&self) -> Option<&[Matrix<D>]> {
+        self.fluid.stress.as_deref()
+    }
+
+    /// Takes the stress (m²/s²) of each water particle from a device.
+    pub(crate) fn set_fluid_stress(&mut self, stress: impl Fn(usize) -> Matrix<D>) {
+        for (i, own) in self.fluid.stress.iter_mut().flatten().enumerate() {
+            *own = stress(i);
+        }
     }
 
     /// The valid range of a particle.

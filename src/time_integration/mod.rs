@@ -94,7 +94,7 @@ fn shifts<const D: usize>(system: &System<D>, dt: f64) -> Option<Vec<Vector<D>>>
         if sums.shifting_suppressed > 0.0 {
             Vector::zeros()
         } else {
-            shift.displacement(&sums, v.norm(), dt, system.properties())
+            shift.displacement(&sums, v.norm(), dt, system.properties()).into()
         }
     });
     Some(shifts.collect())

@@ -1,12 +1,11 @@
-// What all shaders share. A place has 64 bits, in 2^-40 of the support: the upper 24 are the cell, the middle 32 are what the pair
-// loop sees. `hi.w` is the index of the particle on the host, boundary particles after the water; `lo.w` the solid.
+// What all shaders share. A place has 64 bits, in 2^-40 of the support: the middle 32 are what the pair loop sees. `hi.w` is the index of the particle on the host, boundary particles after the water; `lo.w` the solid.
 struct Params {
     n: u32,          // particles, water first
     water: u32,      // water particles
     cells: u32,      // cells of one kind
     most: u32,       // room of a list
-    size: vec4<i32>,
-    origin: vec4<i32>,
+    size: vec4<i32>,   // cells along each axis
+    origin: vec4<i32>, // where they begin, in 2^-8 of the support
 };
 struct Place { hi: vec4<i32>, lo: vec4<u32> };
 struct Control {
@@ -32,7 +31,18 @@ struct Control {
     approach: atomic<u32>,
     fault: atomic<u32>,
     longest: atomic<u32>,
-    pad: array<u32, 7>,
+    age: u32,        // force passes since the gradients were corrected
+    correct: u32,
+    pad: array<u32, 5>,
+};
+struct Solid {
+    origin: Place,           // of its frame; hi.w: 1 if water beside it is not shifted
+    centre: Place,           // about which it turns and torques are taken
+    rotation: mat3x3<f32>,
+    spin: mat3x3<f32>,       // velocity of an arm
+    turning: mat3x3<f32>,    // acceleration of an arm
+    velocity: vec4<f32>,     // w: 1 of a free solid
+    acceleration: vec4<f32>, // w: promptness of its walls
 };
 const GROUP: u32 = 128u;
 const ROW: u32 = 32768u;          // workgroups in a row
@@ -42,4 +52,29 @@ fn index(id: vec3<u32>) -> u32 { return id.x + id.y * (ROW * GROUP); }
 fn group_index(id: vec3<u32>) -> u32 { return id.x + id.y * ROW; }
 fn middle(p: Place) -> vec3<i32> {
     return (p.hi.xyz << vec3<u32>(16u)) | bitcast<vec3<i32>>(p.lo.xyz >> vec3<u32>(16u));
+}
+// The cell of a place. Two cells span the reach of the lists, so that all neighbours lie within two cells. The two cells at each
+// rim stay empty: what lies outside counts to the last cells before them.
+fn cell_of(hi: vec4<i32>) -> vec4<i32> {
+    return clamp((hi - params.origin) / CELL, vec4<i32>(2), params.size - 3);
+}
+fn row_at(c: vec4<i32>, line: i32, layer: i32) -> u32 {
+    let plane = select(c.z + layer, 0, LAYERS == 0);
+    return u32((plane * params.size.y + c.y + line) * params.size.x + c.x - 2);
+}
+// a − b in 2^-24 of the support.
+fn between(a: Place, b: Place) -> vec3<f32> {
+    let low = a.lo.xyz - b.lo.xyz;
+    let borrow = select(vec3<i32>(0), vec3<i32>(1), a.lo.xyz < b.lo.xyz);
+    return vec3<f32>(a.hi.xyz - b.hi.xyz - borrow) * 65536.0f + vec3<f32>(low) / 65536.0f;
+}
+// A way in 2^-24 of the support, added to a place.
+fn moved(was: Place, way: vec3<f32>) -> Place {
+    let whole = floor(way);
+    let rest = vec3<i32>((way - whole) * 65536.0f);
+    let w = vec3<i32>(whole);
+    let add_lo = bitcast<vec3<u32>>((w << vec3<u32>(16u)) | rest);
+    let lo = was.lo.xyz + add_lo;
+    let carry = select(vec3<i32>(0), vec3<i32>(1), lo < add_lo);
+    return Place(vec4<i32>(was.hi.xyz + (w >> vec3<u32>(16u)) + carry, was.hi.w), vec4<u32>(lo, was.lo.w));
 }

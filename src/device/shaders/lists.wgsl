@@ -22,15 +22,14 @@ fn list_pairs(@builtin(global_invocation_id) id: vec3<u32>) {
     if (local >= first.y || k >= params.n) { return; }
     let x = positions[k].xyz;
     let is_water = k < params.water;
-    let c = clamp((places[k].hi >> vec4<u32>(8u)) - params.origin, vec4<i32>(1), params.size - 2);
+    let c = cell_of(places[k].hi);
     var m = 0u;
     var middle = 0u;
     for (var kind = 0u; kind < select(1u, 2u, is_water); kind++) {
         for (var layer = -LAYERS; layer <= LAYERS; layer++) {
-            for (var line = -1; line <= 1; line++) {
-                let plane = select(c.z + layer, 0, LAYERS == 0);
-                let row = u32((plane * params.size.y + c.y + line) * params.size.x + c.x - 1) + kind * params.cells;
-                let end = start[row + 3u];
+            for (var line = -2; line <= 2; line++) {
+                let row = row_at(c, line, layer) + kind * params.cells;
+                let end = start[row + 5u];
                 for (var j = start[row]; j < end; j++) {
                     let r = vec3<f32>(x - positions[j].xyz);
                     if (dot(r, r) < LOOK2 && j != k) {

@@ -1,4 +1,4 @@
-// Sorts the particles into cells as wide as the support, water first; within a cell by their index on the host, so that no race
+// Sorts the particles into cells, water first; within a cell by their index on the host, so that no race
 // decides the order.
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var<storage, read_write> control: Control;
@@ -15,12 +15,11 @@
 @group(0) @binding(12) var<storage, read_write> spare_places: array<Place>;
 @group(0) @binding(13) var<storage, read_write> spare: array<vec4<f32>>;
 @group(0) @binding(14) var<storage, read_write> built: array<vec4<i32>>;
+@group(0) @binding(15) var<storage, read_write> rows: array<f32>;
+@group(0) @binding(16) var<storage, read_write> spare_rows: array<f32>;
 
-// The cells at the rim stay empty: what lies outside counts to the last cells before them.
 fn cell(i: u32) -> u32 {
-    let c = clamp((places[i].hi >> vec4<u32>(8u)) - params.origin, vec4<i32>(1), params.size - 2);
-    let at = select(u32((c.z * params.size.y + c.y) * params.size.x + c.x), u32(c.y * params.size.x + c.x), params.size.z == 1);
-    return at + select(0u, params.cells, i >= params.water);
+    return row_at(cell_of(places[i].hi), 0, 0) + 2u + select(0u, params.cells, i >= params.water);
 }
 
 // Once before each pass: whether something has moved so far that the lists may miss a pair.
@@ -30,6 +29,9 @@ fn decide() {
     if (control.halt == 0u) {
         control.rebuilds += control.rebuild;
         control.passes += 1u;
+        control.age += 1u;
+        control.correct = select(0u, 1u, control.rebuild != 0u || control.age >= CORRECT_EVERY);
+        if (control.correct != 0u) { control.age = 0u; }
         atomicStore(&control.moved2, 0u);
         atomicStore(&control.force2, 0u);
         atomicStore(&control.approach, 0u);
@@ -153,6 +155,7 @@ fn gather(@builtin(global_invocation_id) id: vec3<u32>) {
     spare[params.n + k] = velocities[i];
     spare[2u * params.n + k] = bitcast<vec4<f32>>(positions[i]);
     if (VERLET) { spare[3u * params.n + k] = before[i]; }
+    for (var row = 0u; row < KEPT_ROWS; row++) { spare_rows[row * params.n + k] = rows[row * params.n + i]; }
 }
 
 @compute @workgroup_size(128)
@@ -169,4 +172,5 @@ fn put_back(@builtin(global_invocation_id) id: vec3<u32>) {
     built[k] = position;
     slot[u32(place.hi.w)] = k;
     if (VERLET) { before[k] = spare[3u * params.n + k]; }
+    for (var row = 0u; row < KEPT_ROWS; row++) { rows[row * params.n + k] = spare_rows[row * params.n + k]; }
 }

@@ -1,13 +1,4 @@
 // Boundary particles follow their solids, and the loads are added up.
-struct Solid {
-    origin: Place,           // of its frame
-    centre: Place,           // about which it turns and torques are taken
-    rotation: mat3x3<f32>,
-    spin: mat3x3<f32>,       // velocity of an arm
-    turning: mat3x3<f32>,    // acceleration of an arm
-    velocity: vec4<f32>,
-    acceleration: vec4<f32>, // w: promptness of its walls
-};
 struct Load { force: vec4<f32>, torque: vec4<f32> };
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var<storage, read_write> control: Control;
@@ -23,23 +14,6 @@ struct Load { force: vec4<f32>, torque: vec4<f32> };
 @group(0) @binding(11) var<storage, read> sums: array<f32>;
 @group(0) @binding(12) var<storage, read_write> loads: array<Load>;
 
-// a − b in 2^-24 of the support.
-fn between(a: Place, b: Place) -> vec3<f32> {
-    let low = a.lo.xyz - b.lo.xyz;
-    let borrow = select(vec3<i32>(0), vec3<i32>(1), a.lo.xyz < b.lo.xyz);
-    return vec3<f32>(a.hi.xyz - b.hi.xyz - borrow) * 65536.0f + vec3<f32>(low) / 65536.0f;
-}
-
-fn added(was: Place, way: vec3<f32>) -> Place {
-    let whole = floor(way);
-    let rest = vec3<i32>((way - whole) * 65536.0f);
-    let w = vec3<i32>(whole);
-    let add_lo = bitcast<vec3<u32>>((w << vec3<u32>(16u)) | rest);
-    let lo = was.lo.xyz + add_lo;
-    let carry = select(vec3<i32>(0), vec3<i32>(1), lo < add_lo);
-    return Place(vec4<i32>(was.hi.xyz + (w >> vec3<u32>(16u)) + carry, was.hi.w), vec4<u32>(lo, was.lo.w));
-}
-
 var<workgroup> furthest: atomic<u32>;
 
 // Places the boundary particles of solids that move; `chunks` has them first.
@@ -51,7 +25,7 @@ fn place_moving(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_inv
         let k = slot[params.water + b];
         let own = places[k];
         let solid = solids[own.lo.w];
-        var place = added(solid.origin, solid.rotation * local_positions[b].xyz);
+        var place = moved(solid.origin, solid.rotation * local_positions[b].xyz);
         place.hi.w = own.hi.w;
         place.lo.w = own.lo.w;
         places[k] = place;

@@ -27,16 +27,14 @@ fn acceleration(k: u32) -> vec3<f32> { return vec3<f32>({{FORCE}}) + GRAVITY; }
 
 fn compression_rate(k: u32) -> f32 { return sums[{{RATE}}u * params.n + k]; }
 
-// A way in 2^-24 of the support, added to 64 bits of 2^-40.
-fn moved(was: Place, way: vec3<f32>) -> Place {
-    let whole = floor(way);
-    let rest = vec3<i32>((way - whole) * 65536.0f);
-    let w = vec3<i32>(whole);
-    let add_lo = bitcast<vec3<u32>>((w << vec3<u32>(16u)) | rest);
-    let add_hi = w >> vec3<u32>(16u);
-    let lo = was.lo.xyz + add_lo;
-    let carry = select(vec3<i32>(0), vec3<i32>(1), lo < add_lo);
-    return Place(vec4<i32>(was.hi.xyz + add_hi + carry, was.hi.w), vec4<u32>(lo, was.lo.w));
+// How a particle is shifted in a step `dt`.
+fn shift(k: u32, speed: f32, dt: f32) -> vec3<f32> {
+{{SHIFT}}}
+
+// What sponge layers leave of a velocity in a step `dt`.
+fn kept(place: Place, dt: f32) -> f32 {
+    var rate = 0.0f;
+{{SPONGE}}    return exp(-rate * dt);
 }
 
 // An excess density, or the change of one, as a whole number. A change beyond 0.4 stays there: no guard allows it.
@@ -151,8 +149,10 @@ fn whole_step(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invoc
         let bare = start_excess
             + whole(-2.0f * epsilon / (2.0f + epsilon) * (1.0f + f32(start_excess) * EXCESS));
         if (k < params.water) {
-            let v = start.xyz + acceleration(k) * control.dt;
-            let place = moved(places[k], v * (0.5f * control.dt));
+            let undamped = start.xyz + acceleration(k) * control.dt;
+            let way = undamped * (0.5f * control.dt) + shift(k, length(velocities[k].xyz), control.dt);
+            let place = moved(places[k], way);
+            let v = undamped * kept(place, control.dt);
             places[k] = place;
             motion[k] = vec4<f32>(v, bitcast<f32>(bare));
             positions[k] = vec4<i32>(middle(place), bare);
@@ -181,8 +181,11 @@ fn verlet(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocatio
         let bare = bitcast<i32>(from_.w) + whole(compression_rate(k) * control.span);
         if (k < params.water) {
             let a = acceleration(k);
-            let place = moved(places[k], now.xyz * dt + a * (0.5f * dt * dt));
-            let v = from_.xyz + a * control.span;
+            let way = now.xyz * dt + a * (0.5f * dt * dt) + shift(k, length(now.xyz), dt);
+            let place = moved(places[k], way);
+            let left = kept(place, dt);
+            let v = (from_.xyz + a * control.span) * left;
+            before[k] = vec4<f32>(now.xyz * left, now.w);
             places[k] = place;
             motion[k] = vec4<f32>(v, bitcast<f32>(bare));
             positions[k] = vec4<i32>(middle(place), bare);

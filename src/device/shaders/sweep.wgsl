@@ -1,13 +1,4 @@
 // The sums over pairs. Every particle adds up its own neighbours, in the order of its list.
-struct Solid {
-    origin: Place,
-    centre: Place,
-    rotation: mat3x3<f32>,
-    spin: mat3x3<f32>,
-    turning: mat3x3<f32>,
-    velocity: vec4<f32>,
-    acceleration: vec4<f32>,
-};
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var<storage, read_write> control: Control;
 @group(0) @binding(2) var<uniform> first: vec4<u32>;
@@ -20,6 +11,8 @@ struct Solid {
 @group(0) @binding(9) var<storage, read> places: array<Place>;
 @group(0) @binding(10) var<storage, read> solids: array<Solid>;
 @group(0) @binding(11) var<storage, read> depths: array<vec2<f32>>;
+@group(0) @binding(12) var<storage, read_write> aways: array<vec4<f32>>;
+@group(0) @binding(13) var<storage, read> rows: array<f32>;
 
 var<workgroup> most_force: atomic<u32>;
 var<workgroup> most_approach: atomic<u32>;
@@ -67,12 +60,6 @@ fn sweep_water(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invo
         atomicMax(&control.force2, atomicLoad(&most_force));
         atomicMax(&control.approach, atomicLoad(&most_approach));
     }
-}
-
-fn between(a: Place, b: Place) -> vec3<f32> {
-    let low = a.lo.xyz - b.lo.xyz;
-    let borrow = select(vec3<i32>(0), vec3<i32>(1), a.lo.xyz < b.lo.xyz);
-    return vec3<f32>(a.hi.xyz - b.hi.xyz - borrow) * 65536.0f + vec3<f32>(low) / 65536.0f;
 }
 
 @compute @workgroup_size(128)

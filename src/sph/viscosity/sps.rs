@@ -35,15 +35,16 @@ impl Sps {
 
     /// ρ₀ τ/ρ² (m²/s²) from the strain rate (1/s; `[i][j]` with j ≤ i is read) and the specific volume `s` = ρ₀/ρ of
     /// a particle.
-    pub fn stress<const D: usize>(&self, strain: &[[f64; D]; D], s: f64, medium: &FluidProperties<D>) -> [[f64; D]; D] {
-        let strain: [[f64; D]; D] = std::array::from_fn(|i| std::array::from_fn(|j| strain[i.max(j)][i.min(j)]));
+    pub fn stress<N: Num, const D: usize>(&self, strain: &[[N; D]; D], s: N, medium: &FluidProperties<D>) -> [[N; D]; D] {
+        let of = |x: f64| s.constant(x);
+        let strain: [[N; D]; D] = std::array::from_fn(|i| std::array::from_fn(|j| strain[i.max(j)][i.min(j)]));
         let length2 = medium.dp * medium.dp / D as f64;
-        let norm2: f64 = 2.0 * strain.iter().flatten().map(|x| x * x).sum::<f64>();
-        let nu_t = self.smagorinsky * self.smagorinsky * length2 * norm2.sqrt();
-        let trace: f64 = (0..D).map(|i| strain[i][i]).sum();
-        let isotropic = 2.0 / 3.0 * (nu_t * trace + self.isotropic * length2 * norm2);
+        let norm2 = of(2.0) * strain.iter().flatten().fold(of(0.0), |sum, &x| sum + x * x);
+        let nu_t = of(self.smagorinsky * self.smagorinsky * length2) * norm2.sqrt();
+        let trace = (0..D).fold(of(0.0), |sum, i| sum + strain[i][i]);
+        let isotropic = of(2.0 / 3.0) * (nu_t * trace + of(self.isotropic * length2) * norm2);
         std::array::from_fn(|i| {
-            std::array::from_fn(|j| s * (2.0 * nu_t * strain[i][j] - if i == j { isotropic } else { 0.0 }))
+            std::array::from_fn(|j| s * (of(2.0) * nu_t * strain[i][j] - if i == j { isotropic } else { of(0.0) }))
         })
     }
 }

@@ -165,9 +165,9 @@ fn shifting_vanishes_at_the_free_surface_and_is_limited_to_a_tenth_of_dp() {
         ..AuxiliarySums::filled_with(0.0)
     };
     let shift = Shift::default();
-    assert_eq!(shift.displacement(&sums(2.7), 1.0, 1e-4, &m), Vector::<3>::zeros());
+    assert_eq!(shift.displacement(&sums(2.7), 1.0, 1e-4, &m), [0.0; 3]);
     let inside = shift.displacement(&sums(3.0), 1.0, 1e-4, &m);
-    assert_eq!(inside, Vector::from([-0.001, 0.001, 0.0]));
+    assert_eq!(inside, [-0.001, 0.001, 0.0]);
 }
 
 /// Compares accelerations and density rates of the pair loop with a loop over all pairs that uses the formulas of the
