@@ -26,8 +26,15 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 pub use add_remove::AddedSolid;
+#[cfg(feature = "gpu")]
+use on_device::OnDevice;
 use rollback::{RollbackControl, StoredState};
 
+#[cfg(feature = "gpu")]
+use crate::{
+    device::Adapter,
+    interaction::{PairSums, StepLimits},
+};
 use crate::{
     coupling::{Accounting, AccountingState, AcousticAddedMass, AddedMassState, Bodies, Hook, Interval, Moorings},
     error::{Error, ErrorCode, ErrorKind, Fault, Result},
@@ -54,7 +61,7 @@ pub struct Simulation<const D: usize> {
     removed: Vec<(f64, RemovedParticle<D>)>,
     stepping: Duration,
     #[cfg(feature = "gpu")]
-    device: Option<on_device::OnDevice<D>>,
+    device: Option<OnDevice<D>>,
 }
 
 /// Wall time by part, since the start.
@@ -180,7 +187,7 @@ impl<const D: usize> Simulation<D> {
     fn step_with_hook(&mut self, end: f64, hook: &mut Hook<D>) -> Result<()> {
         #[cfg(feature = "gpu")]
         if self.device.is_some() {
-            self.device_steps((1, end), end, hook)?;
+            on_device::steps(self, (1, end), end, hook)?;
             return self.fetch_from_device();
         }
         let start = Instant::now();
@@ -199,10 +206,57 @@ impl<const D: usize> Simulation<D> {
     pub(crate) fn step_to_pause(&mut self, pause: f64, end: f64) -> Result<()> {
         #[cfg(feature = "gpu")]
         if self.device.is_some() {
-            return self.device_steps((u64::MAX, pause), end, &mut |_| Ok(()));
+            return on_device::steps(self, (u64::MAX, pause), end, &mut |_| Ok(()));
         }
         let _ = pause;
         self.step_to(end)
+    }
+
+    /// The same simulation with its water on the device `name`: the number of an adapter, `gpu` for the first graphics card, or
+    /// part of a name; see [`crate::device::adapters`].
+    ///
+    /// [`Simulation::step`] then brings the state back after each step. [`run`](crate::run) does so only where an output is due.
+    ///
+    /// # Errors
+    /// `Usage` if there is no such device, or the simulation has something that no device computes yet: names both and the remedy.
+    #[cfg(feature = "gpu")]
+    pub fn on_device(self, name: &str) -> Result<Self> {
+        on_device::place(self, name)
+    }
+
+    /// The device that has the water, if one has.
+    #[cfg(feature = "gpu")]
+    pub fn device(&self) -> Option<&Adapter> {
+        self.device.as_ref().map(OnDevice::adapter)
+    }
+
+    /// Memory of the arrays on the device, B: all, and of these the neighbour lists.
+    #[cfg(feature = "gpu")]
+    pub fn device_memory(&self) -> Option<[u64; 2]> {
+        self.device.as_ref().map(OnDevice::memory)
+    }
+
+    /// Makes a force pass on the device at the present state; returns acceleration (m/s²) and rate of the excess density (1/s) of each
+    /// water particle, and the largest values that limit a step. For comparisons.
+    #[cfg(feature = "gpu")]
+    #[doc(hidden)]
+    pub fn device_rates(&mut self) -> Result<Option<(Vec<PairSums<D>>, StepLimits)>> {
+        on_device::rates(self)
+    }
+
+    /// Brings the state of the water back from the device, if one has it.
+    ///
+    /// # Errors
+    /// `Usage` if the device failed.
+    #[cfg(feature = "gpu")]
+    pub fn fetch_from_device(&mut self) -> Result<()> {
+        on_device::fetch(self)
+    }
+
+    /// Brings the loads on the solids back.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn fetch_loads(&mut self) -> Result<()> {
+        on_device::fetch_loads(self)
     }
 
     /// The present state: in the folder for such states, or in memory if there is none or it cannot be written to.
@@ -529,7 +583,7 @@ impl<const D: usize> Simulation<D> {
         self.system.set_masses_at(self.clock.time);
         self.rollback.restart(kept.rollbacks.into_owned());
         #[cfg(feature = "gpu")]
-        self.load_device()?;
+        on_device::load(self)?;
         Ok(())
     }
 }

@@ -197,32 +197,36 @@ pub(super) struct Buffers {
     pub(super) depths: wgpu::Buffer,
     pub(super) loads: wgpu::Buffer,
     pub(super) lists: Vec<wgpu::Buffer>,
-    /// What only the passes use.
-    pub(super) inner: Inner,
+    pub(super) pairs: PairBuffers,
+    pub(super) search: SearchBuffers,
     /// Copies of control, places, motion and the step before.
     backup: [wgpu::Buffer; 4],
 }
 
-/// The arrays that only the passes use.
-pub(super) struct Inner {
+/// The arrays that only the passes over pairs use.
+pub(super) struct PairBuffers {
     pub(super) positions: wgpu::Buffer,
     pub(super) velocities: wgpu::Buffer,
     pub(super) built: wgpu::Buffer,
     pub(super) sums: wgpu::Buffer,
+    pub(super) rows: wgpu::Buffer,
+    pub(super) spans: wgpu::Buffer,
     pub(super) walls: wgpu::Buffer,
     pub(super) aways: wgpu::Buffer,
     pub(super) gaps: wgpu::Buffer,
-    pub(super) rows: wgpu::Buffer,
-    pub(super) spare_rows: wgpu::Buffer,
-    pub(super) spans: wgpu::Buffer,
+    pub(super) local: wgpu::Buffer,
+    pub(super) chunks: wgpu::Buffer,
+}
+
+/// The arrays of the search.
+pub(super) struct SearchBuffers {
     pub(super) order: wgpu::Buffer,
     pub(super) count: wgpu::Buffer,
     pub(super) start: wgpu::Buffer,
     pub(super) blocks: wgpu::Buffer,
     pub(super) spare_places: wgpu::Buffer,
     pub(super) spare: wgpu::Buffer,
-    pub(super) local: wgpu::Buffer,
-    pub(super) chunks: wgpu::Buffer,
+    pub(super) spare_rows: wgpu::Buffer,
 }
 
 impl Buffers {
@@ -233,28 +237,31 @@ impl Buffers {
         let history = if verlet { 16 * n } else { 16 };
         let solids = chunks.owners.iter().max().map_or(1, |most| most + 1);
         let total = 2 * counts.cells + 1;
-        let inner = Inner {
+        let if_gaps = |bytes: usize| if gaps { bytes } else { 16 };
+        let pairs = PairBuffers {
             positions: gpu.buffer(16 * n)?,
             velocities: gpu.buffer(16 * n)?,
             built: gpu.buffer(16 * n)?,
             sums: gpu.buffer(4 * rows * n)?,
-            walls: gpu.buffer(16 * boundary)?,
-            aways: gpu.buffer(if gaps { 16 * boundary } else { 16 })?,
             rows: gpu.buffer(4 * input_rows * n)?,
-            spare_rows: gpu.buffer(4 * kept_rows * n)?,
-            gaps: gpu.buffer(if gaps { 4 * boundary } else { 16 })?,
             spans: gpu.buffer(8 * n)?,
+            walls: gpu.buffer(16 * boundary)?,
+            aways: gpu.buffer(if_gaps(16 * boundary))?,
+            gaps: gpu.buffer(if_gaps(4 * boundary))?,
+            local: gpu.buffer(16 * boundary)?,
+            chunks: gpu.buffer(4 * chunks.members.len())?,
+        };
+        let search = SearchBuffers {
             order: gpu.buffer(4 * n)?,
             count: gpu.buffer(4 * total)?,
             start: gpu.buffer(4 * total)?,
             blocks: gpu.buffer(4 * total.div_ceil(1024))?,
             spare_places: gpu.buffer(32 * n)?,
             spare: gpu.buffer((if verlet { 64 } else { 48 }) * n)?,
-            local: gpu.buffer(16 * boundary)?,
-            chunks: gpu.buffer(4 * chunks.members.len())?,
+            spare_rows: gpu.buffer(4 * kept_rows * n)?,
         };
-        gpu.write(&inner.local, 0, &chunks.local);
-        gpu.write(&inner.chunks, 0, &chunks.members);
+        gpu.write(&pairs.local, 0, &chunks.local);
+        gpu.write(&pairs.chunks, 0, &chunks.members);
         let mut buffers = Self {
             control: gpu.buffer(4 * WORDS)?,
             places: gpu.buffer(32 * n)?,
@@ -265,7 +272,8 @@ impl Buffers {
             depths: gpu.buffer(8 * boundary)?,
             loads: gpu.buffer(32 * chunks.owners.len())?,
             lists: Vec::new(),
-            inner,
+            pairs,
+            search,
             backup: [gpu.buffer(4 * WORDS)?, gpu.buffer(32 * n)?, gpu.buffer(16 * n)?, gpu.buffer(history)?],
         };
         buffers.make_lists(gpu, counts)?;
@@ -298,11 +306,12 @@ impl Buffers {
 
     /// Memory, B.
     pub(super) fn bytes(&self) -> u64 {
-        let Inner { positions, velocities, built, sums, walls, spans, order, count, start, blocks, spare_places, .. } =
-            &self.inner;
-        let inner = [positions, velocities, built, sums, walls, spans, order, count, start, blocks, spare_places];
-        let more = [&self.inner.spare, &self.inner.local, &self.inner.chunks, &self.inner.aways, &self.inner.gaps, &self.inner.rows, &self.inner.spare_rows, &self.slot, &self.solids, &self.depths, &self.loads];
-        let all = inner.into_iter().chain(more).chain(self.state()).chain(&self.backup).chain(&self.lists);
+        let PairBuffers { positions, velocities, built, sums, rows, spans, walls, aways, gaps, local, chunks } = &self.pairs;
+        let SearchBuffers { order, count, start, blocks, spare_places, spare, spare_rows } = &self.search;
+        let pairs = [positions, velocities, built, sums, rows, spans, walls, aways, gaps, local, chunks];
+        let search = [order, count, start, blocks, spare_places, spare, spare_rows];
+        let solids = [&self.slot, &self.solids, &self.depths, &self.loads];
+        let all = pairs.into_iter().chain(search).chain(solids).chain(self.state()).chain(&self.backup).chain(&self.lists);
         all.map(wgpu::Buffer::size).sum()
     }
 

@@ -33,7 +33,7 @@ use crate::{
     model::{TimeScheme, Walls},
     solid::Load,
     sph::Units,
-    system::System,
+    system::{System, device_state},
     time_integration::{Stepper, VerletHistory},
 };
 
@@ -139,7 +139,7 @@ fn shader_texts<const D: usize>(
         model,
         traces: &traces,
         units,
-        limits: system.particle_limits(),
+        limits: device_state::particle_limits(system),
         domain: [
             std::array::from_fn(|k| layout.coarse(domain.min[k], f64::floor)),
             std::array::from_fn(|k| layout.coarse(domain.max[k], f64::ceil)),
@@ -147,7 +147,7 @@ fn shader_texts<const D: usize>(
         margin: MARGIN,
         chunks: [chunks.moving, chunks.owners.len()],
         sponge: sponge_statements(system, layout, &units)?,
-        gaps: system.has_free_solids() && model.walls == Walls::RelaxedAdami,
+        gaps: device_state::has_free_solids(system) && model.walls == Walls::RelaxedAdami,
     };
     let texts = input.texts().ok_or_else(|| refused("numbers of this size in single precision"))?;
     Ok((texts, units))
@@ -159,7 +159,7 @@ fn shader_texts<const D: usize>(
 /// `Usage` if no device computes the system yet.
 #[doc(hidden)]
 pub fn shaders_of<const D: usize>(system: &System<D>) -> Result<ShaderTexts> {
-    if let Some(what) = system.unsupported_on_device() {
+    if let Some(what) = device_state::unsupported_on_device(system) {
         return Err(refused(what));
     }
     let model = system.model();
@@ -171,7 +171,7 @@ pub fn shaders_of<const D: usize>(system: &System<D>) -> Result<ShaderTexts> {
 impl<const D: usize> Device<D> {
     /// Puts the particles of `system` on the device `name`, at `time` (s).
     pub(crate) fn new(name: &str, system: &System<D>, stepper: &Stepper<D>, time: f64) -> Result<Self> {
-        if let Some(what) = system.unsupported_on_device() {
+        if let Some(what) = device_state::unsupported_on_device(system) {
             return Err(refused(what));
         }
         let gpu = Gpu::open(name)?;
@@ -211,7 +211,7 @@ impl<const D: usize> Device<D> {
         let count = water.len();
         let of_water = (0..count).map(|i| (water.r[i], water.v[i], water.rho[i], u32::MAX));
         let of_boundary = (0..boundary.len())
-            .map(|i| (boundary.r[i], boundary.v[i], boundary.rho[i], system.solid_of_boundary(i) as u32));
+            .map(|i| (boundary.r[i], boundary.v[i], boundary.rho[i], device_state::solid_of_boundary(system, i) as u32));
         let all: Vec<_> = of_water.chain(of_boundary).collect();
         let places: Vec<_> =
             all.iter().enumerate().map(|(i, (r, _, _, solid))| layout.place(r, i as u32, *solid)).collect();
@@ -220,11 +220,11 @@ impl<const D: usize> Device<D> {
         gpu.write(&buffers.motion, 0, &motion);
         let slots: Vec<u32> = (0..all.len() as u32).collect();
         gpu.write(&buffers.slot, 0, &slots);
-        if let (Some(row), Some(stress)) = (self.texts.stress, system.fluid_stress()) {
+        if let (Some(row), Some(stress)) = (self.texts.stress, device_state::fluid_stress(system)) {
             let scale = (self.units.time / self.units.length).powi(2);
             for (row, (i, j)) in (row..).zip(entries(D)) {
                 let values: Vec<f32> = stress.iter().map(|stress| (stress[(i, j)] * scale) as f32).collect();
-                gpu.write(&buffers.inner.rows, 4 * row * self.counts.n, &values);
+                gpu.write(&buffers.pairs.rows, 4 * row * self.counts.n, &values);
             }
         }
         let mut control = Control::start();
@@ -241,8 +241,7 @@ impl<const D: usize> Device<D> {
         gpu.write(&buffers.control, 0, &control.0);
         (self.start, self.ticks) = (time, 0);
         self.write_solids(system);
-        let constants: Vec<[f32; 2]> = system
-            .wall_constants()
+        let constants: Vec<[f32; 2]> = device_state::wall_constants(system)
             .into_iter()
             .map(|[depth, weight]| [(depth / self.units.length) as f32, weight as f32])
             .collect();
@@ -386,7 +385,7 @@ impl<const D: usize> Device<D> {
         self.gpu.run(&[], self.passes.rates.iter().map(AsRef::as_ref));
         let (n, water) = (self.counts.n, self.counts.water);
         let control = self.control()?;
-        let [sums] = self.gpu.read::<f32, 1>([(&self.buffers.inner.sums, (D + 1) * n)])?;
+        let [sums] = self.gpu.read::<f32, 1>([(&self.buffers.pairs.sums, (D + 1) * n)])?;
         let [slot] = self.gpu.read::<u32, 1>([(&self.buffers.slot, n)])?;
         let Units { length, time } = self.units;
         let of = |i: usize| {
@@ -399,11 +398,6 @@ impl<const D: usize> Device<D> {
             approach_rate: f64::from(control.approach()) / time,
         };
         Ok(((0..water).map(of).collect(), limits))
-    }
-
-    /// The texts of the shaders.
-    pub(crate) fn texts(&self) -> &ShaderTexts {
-        &self.texts
     }
 
     /// The loads on the solids by the last force pass.
@@ -425,15 +419,15 @@ impl<const D: usize> Device<D> {
             let (place, motion) = of(i);
             (layout.position(place), layout.velocity(motion), layout.density(motion))
         };
-        system.take_from_device(of_water, |i| layout.density(of(water + i).1));
+        device_state::take_from_device(system, of_water, |i| layout.density(of(water + i).1));
         if let Some(first) = self.texts.stress {
-            let [rows] = self.gpu.read::<f32, 1>([(&self.buffers.inner.rows, self.texts.rows[1] * n)])?;
+            let [rows] = self.gpu.read::<f32, 1>([(&self.buffers.pairs.rows, self.texts.rows[1] * n)])?;
             let scale = (self.units.length / self.units.time).powi(2);
             let entry = |i: usize, row: usize, column: usize| {
                 let (a, b) = (row.max(column), row.min(column));
                 f64::from(rows[(first + a * (a + 1) / 2 + b) * n + slot[i]]) * scale
             };
-            system.set_fluid_stress(|i| Matrix::from_fn(|row, column| entry(i, row, column)));
+            device_state::set_fluid_stress(system, |i| Matrix::from_fn(|row, column| entry(i, row, column)));
         }
         if let Stepper::Verlet(verlet) = stepper {
             let [before] = self.gpu.read::<u32, 1>([(&self.buffers.before, 4 * n)])?;

@@ -59,7 +59,7 @@ impl Passes {
         let params = gpu.uniform(&counts.words());
         let rates = rates(gpu, texts, counts, buffers, &params)?;
         let n = counts.n;
-        let b = &buffers.inner;
+        let b = &buffers.pairs;
         let solids = Maker::new(
             gpu,
             &texts.solids,
@@ -126,7 +126,7 @@ fn rates(
     buffers: &Buffers,
     params: &wgpu::Buffer,
 ) -> Result<Vec<Arc<Pass>>> {
-    let (b, n, cells) = (&buffers.inner, counts.n, counts.cells);
+    let (b, searched, n, cells) = (&buffers.pairs, &buffers.search, counts.n, counts.cells);
     let total = 2 * cells + 1;
     let search = Maker::new(
         gpu,
@@ -139,16 +139,16 @@ fn rates(
             &buffers.before,
             &b.positions,
             &b.velocities,
-            &b.count,
-            &b.start,
-            &b.blocks,
-            &b.order,
+            &searched.count,
+            &searched.start,
+            &searched.blocks,
+            &searched.order,
             &buffers.slot,
-            &b.spare_places,
-            &b.spare,
+            &searched.spare_places,
+            &searched.spare,
             &b.built,
             &b.rows,
-            &b.spare_rows,
+            &searched.spare_rows,
         ],
     )?;
     let mut passes = vec![
@@ -176,7 +176,7 @@ fn rates(
                 &first,
                 &buffers.places,
                 &b.positions,
-                &b.start,
+                &searched.start,
                 list,
                 &b.spans,
                 &buffers.motion,
@@ -238,7 +238,7 @@ fn rates(
                 &buffers.places,
                 &b.positions,
                 &b.velocities,
-                &b.start,
+                &searched.start,
                 &b.spans,
                 &buffers.solids,
                 &b.gaps,

@@ -272,8 +272,10 @@ impl<const D: usize> ShaderInput<'_, D> {
     /// The shader that corrects the gradients, if they are corrected.
     fn moments(&self, properties: &FluidProperties<D>) -> Option<String> {
         let (row, [trace, _]) = (self.traces.layout.correction?, self.traces.moments.as_ref()?);
-        let moment = pair_body(trace, "t")?;
-        let count = entries(D).count();
+        let (first, count) = (D + 1, entries(D).count());
+        let mut trace = trace.clone();
+        trace.results.retain(|(name, _)| (first..first + count).any(|row| *name == format!("sum{row}")));
+        let moment = pair_body(&trace, "t")?;
         let everywhere = self.model.gradient == PressureGradient::Corrected;
         let weight = properties.gravity.norm() * properties.dp;
         let close = Trace::record(&mut |recorder| {
@@ -284,7 +286,6 @@ impl<const D: usize> ShaderInput<'_, D> {
                 .enumerate()
                 .for_each(|(n, (i, j))| recorder.result(&format!("correction{n}"), share * correction[i][j]));
         });
-        let first = D + 1;
         let mut text = statements(&close, "w", |name| match name.strip_prefix("moment") {
             Some(n) => format!("sum{}", first + n.parse::<usize>().unwrap_or(0)),
             None => name.into(),
@@ -292,7 +293,7 @@ impl<const D: usize> ShaderInput<'_, D> {
         for n in 0..count {
             text += &format!("rows[{}u * params.n + k] = out_correction{n};\n", row + n);
         }
-        let zeros: String = (0..first + count).map(|row| format!("var sum{row} = 0.0f;\n")).collect();
+        let zeros: String = (first..first + count).map(|row| format!("var sum{row} = 0.0f;\n")).collect();
         let shader = include_str!("shaders/moments.wgsl");
         Some(
             shader

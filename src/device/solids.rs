@@ -5,7 +5,7 @@ use crate::{
     math::{Bivector, Matrix, Vector},
     solid::{Load, Role},
     sph::Units,
-    system::System,
+    system::{System, device_state},
 };
 
 /// Words of a solid.
@@ -45,7 +45,7 @@ impl SolidChunks {
         let unit = crate::neighbours::NeighbourLists::<D>::length_unit(system.model().support_radius());
         let mut local = vec![[0.0; 4]; system.boundary().len()];
         for &solid in &moving {
-            for (i, r) in system.solids()[solid].boundary.clone().zip(system.local_boundary(solid)) {
+            for (i, r) in system.solids()[solid].boundary.clone().zip(device_state::local_boundary(system, solid)) {
                 (0..D).for_each(|k| local[i][k] = (r[k] / unit) as f32);
             }
         }
@@ -59,7 +59,7 @@ impl SolidChunks {
             let (solid, mut words) = (&system.solids()[i], [0; SOLID_WORDS]);
             let kinematics = &solid.kinematics;
             words[..8].copy_from_slice(&layout.place(&kinematics.pose.position, 0, 0));
-            words[3] = u32::from(system.suppresses_shifting(i));
+            words[3] = u32::from(device_state::suppresses_shifting(system, i));
             words[8..16].copy_from_slice(&layout.place(&kinematics.centre, 0, 0));
             let mut matrix = |at: usize, m: &Matrix<D>, scale: f64| {
                 for column in 0..D {
@@ -70,7 +70,7 @@ impl SolidChunks {
             };
             matrix(16, &kinematics.pose.rotation, 1.0);
             matrix(28, &kinematics.spin.0, rate);
-            matrix(40, &system.arm_acceleration(i), rate * rate);
+            matrix(40, &device_state::arm_acceleration(system, i), rate * rate);
             let mut vector = |at: usize, v: &Vector<D>, scale: f64| {
                 (0..D).for_each(|k| words[at + k] = ((v[k] * scale) as f32).to_bits());
             };

@@ -7,7 +7,7 @@ mod boundary_extension;
 mod change;
 mod checkpoint;
 #[cfg(feature = "gpu")]
-mod device_state;
+pub(crate) mod device_state;
 mod driving;
 mod fluid;
 mod free_surface;

@@ -16,7 +16,6 @@ fn sweep_moments(@builtin(global_invocation_id) id: vec3<u32>) {
     let position = positions[k];
     let velocity = velocities[k];
     let span = min(spans[k], vec2<u32>(params.most));
-    var approach = 0.0f;
 {{ZERO_SUMS}}    for (var m = 0u; m < span.y; m++) {
         let j = list[m * first.y + local];
         let other = positions[j];
