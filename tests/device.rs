@@ -296,6 +296,22 @@ fn gaps_beside_free_bodies_carry_the_same_pressure() {
 }
 
 #[test]
+fn lists_that_are_too_short_are_made_longer() {
+    // Particles nine tenths of dp apart have a quarter more neighbours than the lists have room for at first.
+    let dp = 0.02;
+    let model = Model::water(2, dp, 0.3).for_free_bodies();
+    let spacing = 0.9 * dp;
+    let places = (0..16).flat_map(|i| (0..14).map(move |j| Vector::from([f64::from(i) + 0.5, f64::from(j) + 0.5]) * spacing));
+    let walls = SolidSpec::fixed("tank", Shape::Tank { size: [0.8, 0.5].into(), thickness: 4.0 * dp });
+    let body = SolidSpec::free("box", Shape::Box { size: [0.2, 0.2].into() }, 900.0).at([0.5, 0.12]);
+    let setup = Setup::new(model).solid(walls).solid(body).water(places, 0.26);
+    let [on_device, reference] = beside(&setup, 0.0, 30);
+    let [r, v] = distances(&on_device, &reference);
+    println!("positions {r:.1e} dp, velocities {v:.1e} c0");
+    assert!(r < 1e-4, "{r} dp off");
+}
+
+#[test]
 fn what_no_device_computes_is_refused_with_the_remedy() {
     let refused = |model: Model| {
         let error = Simulation::new(dam(model, [0.8, 0.3])).unwrap().on_device(&device()).map(|_| ()).unwrap_err();

@@ -199,8 +199,10 @@ pub(super) struct Buffers {
     pub(super) lists: Vec<wgpu::Buffer>,
     pub(super) pairs: PairBuffers,
     pub(super) search: SearchBuffers,
-    /// Copies of control, places, motion and the step before.
-    backup: [wgpu::Buffer; 4],
+    /// Copies of the state.
+    backup: Vec<wgpu::Buffer>,
+    /// Whether rows of additional inputs belong to the state.
+    keeps_rows: bool,
 }
 
 /// The arrays that only the passes over pairs use.
@@ -274,8 +276,10 @@ impl Buffers {
             lists: Vec::new(),
             pairs,
             search,
-            backup: [gpu.buffer(4 * WORDS)?, gpu.buffer(32 * n)?, gpu.buffer(16 * n)?, gpu.buffer(history)?],
+            backup: Vec::new(),
+            keeps_rows: kept_rows > 0,
         };
+        buffers.backup = buffers.state().iter().map(|of| gpu.buffer(of.size() as usize)).collect::<Result<_>>()?;
         buffers.make_lists(gpu, counts)?;
         Ok(buffers)
     }
@@ -289,19 +293,20 @@ impl Buffers {
         Ok(())
     }
 
-    /// The state, in the order of its copies.
-    fn state(&self) -> [&wgpu::Buffer; 4] {
-        [&self.control, &self.places, &self.motion, &self.before]
+    /// The state: control words, places, motion, the step before, and rows that are kept.
+    fn state(&self) -> Vec<&wgpu::Buffer> {
+        let rows = self.keeps_rows.then_some(&self.pairs.rows);
+        [&self.control, &self.places, &self.motion, &self.before].into_iter().chain(rows).collect()
     }
 
     /// What to copy to keep the state.
-    pub(super) fn backups(&self) -> [(&wgpu::Buffer, &wgpu::Buffer); 4] {
-        std::array::from_fn(|i| (self.state()[i], &self.backup[i]))
+    pub(super) fn backups(&self) -> Vec<(&wgpu::Buffer, &wgpu::Buffer)> {
+        self.state().into_iter().zip(&self.backup).collect()
     }
 
     /// What to copy to go back to the state kept.
-    pub(super) fn restores(&self) -> [(&wgpu::Buffer, &wgpu::Buffer); 4] {
-        std::array::from_fn(|i| (&self.backup[i], self.state()[i]))
+    pub(super) fn restores(&self) -> Vec<(&wgpu::Buffer, &wgpu::Buffer)> {
+        self.backup.iter().zip(self.state()).collect()
     }
 
     /// Memory, B.

@@ -1,6 +1,6 @@
 //! Adapters, buffers and passes: what this program asks of `wgpu`.
 
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, OnceLock};
 
 use bytemuck::Pod;
 use wgpu::util::DeviceExt as _;
@@ -33,9 +33,14 @@ pub struct Adapter {
 const DRIVERS: &str = "install the driver of the card: on Linux its Vulkan driver and the loader (libvulkan1); `pontoon bench \
     --devices` lists what is found. Without --device the processor computes";
 
-fn instance() -> wgpu::Instance {
-    let backends = wgpu::Backends::VULKAN | wgpu::Backends::METAL | wgpu::Backends::DX12;
-    wgpu::Instance::new(wgpu::InstanceDescriptor { backends, ..wgpu::InstanceDescriptor::new_without_display_handle() })
+/// The instance of this program: a driver gives only so many (NVIDIA's some thirty).
+fn instance() -> &'static wgpu::Instance {
+    static INSTANCE: OnceLock<wgpu::Instance> = OnceLock::new();
+    INSTANCE.get_or_init(|| {
+        let backends = wgpu::Backends::VULKAN | wgpu::Backends::METAL | wgpu::Backends::DX12;
+        let descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
+        wgpu::Instance::new(wgpu::InstanceDescriptor { backends, ..descriptor })
+    })
 }
 
 fn all_adapters(instance: &wgpu::Instance) -> Vec<(wgpu::Adapter, Adapter)> {
@@ -59,7 +64,7 @@ fn all_adapters(instance: &wgpu::Instance) -> Vec<(wgpu::Adapter, Adapter)> {
 
 /// The adapters of this machine.
 pub fn adapters() -> Vec<Adapter> {
-    all_adapters(&instance()).into_iter().map(|(_, summary)| summary).collect()
+    all_adapters(instance()).into_iter().map(|(_, summary)| summary).collect()
 }
 
 /// An opened adapter.
@@ -109,8 +114,7 @@ impl Gpu {
         let unavailable = |what: String, help: String| {
             Err(Error::new(ErrorKind::Usage, what).with_code(ErrorCode::NoDevice).help(help))
         };
-        let instance = instance();
-        let found = all_adapters(&instance);
+        let found = all_adapters(instance());
         let list = || {
             let lines = found.iter().map(|(_, adapter)| format!("{}: {}", adapter.number, adapter.name));
             lines.collect::<Vec<_>>().join(", ")

@@ -218,8 +218,6 @@ impl<const D: usize> Device<D> {
         let motion: Vec<_> = all.iter().map(|(_, v, rho, _)| layout.motion(v, *rho)).collect();
         gpu.write(&buffers.places, 0, &places);
         gpu.write(&buffers.motion, 0, &motion);
-        let slots: Vec<u32> = (0..all.len() as u32).collect();
-        gpu.write(&buffers.slot, 0, &slots);
         if let (Some(row), Some(stress)) = (self.texts.stress, device_state::fluid_stress(system)) {
             let scale = (self.units.time / self.units.length).powi(2);
             for (row, (i, j)) in (row..).zip(entries(D)) {
@@ -358,18 +356,19 @@ impl<const D: usize> Device<D> {
     }
 
     /// Completes the step with the solids of `system` where they are halfway, and returns the loads on them.
-    pub(crate) fn second_half(&mut self, system: &System<D>, end: f64) -> Result<(DeviceSteps, Vec<Load<D>>)> {
+    ///
+    /// `None` if a list was too short: then the state is that before the step, and the step is to be made again.
+    pub(crate) fn second_half(&mut self, system: &System<D>, end: f64) -> Result<Option<(DeviceSteps, Vec<Load<D>>)>> {
         self.write_solids(system);
         self.gpu.run(&[], self.passes.second.iter().map(AsRef::as_ref));
         let counts = [(&self.buffers.control, WORDS), (&self.buffers.loads, 8 * self.chunks.owners.len())];
         let [control, loads] = self.gpu.read(counts)?;
         let control = Control::from_words(&control);
-        if control.longest() as usize > self.counts.most {
-            let what = format!("{} neighbours of one particle", control.longest());
-            return Err(refused(&what));
+        if self.grow_lists(&control)? {
+            return Ok(None);
         }
         let outcome = self.outcome(&control, end);
-        Ok((outcome, self.chunks.loads(&loads, system, &self.units)))
+        Ok(Some((outcome, self.chunks.loads(&loads, system, &self.units))))
     }
 
     /// Gives the device the solids of `system` at the end of a step.

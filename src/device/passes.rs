@@ -96,6 +96,7 @@ impl Passes {
                 &b.spans,
                 &b.walls,
                 &b.built,
+                &buffers.slot,
             ],
         )?;
         let limit = step.pass("limit", 1)?;

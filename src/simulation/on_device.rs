@@ -151,15 +151,22 @@ fn advance<const D: usize>(sim: &mut Simulation<D>, (most, pause): (u64, f64), e
 fn body_step<const D: usize>(sim: &mut Simulation<D>, longest: f64, end: f64, hook: &mut Hook<D>) -> Result<Option<DeviceSteps>> {
     let Simulation { device: Some(own), system, bodies, clock, .. } = sim else { return Ok(None) };
     (own.host_is_current, own.loads_are_current) = (false, true);
-    let dt = match own.device.first_half(longest, end)? {
-        Ok(dt) => dt,
-        Err(done) => return Ok(Some(done)),
+    let start: Vec<_> = system.solids.iter().map(|solid| solid.kinematics).collect();
+    let (over, done, loads) = loop {
+        let dt = match own.device.first_half(longest, end)? {
+            Ok(dt) => dt,
+            Err(done) => return Ok(Some(done)),
+        };
+        let over = Interval { t: clock.time, dt };
+        if system.model().scheme == TimeScheme::Symplectic {
+            drift_half_step(system, over);
+        }
+        if let Some((done, loads)) = own.device.second_half(system, end)? {
+            break (over, done, loads);
+        }
+        system.solids.iter_mut().zip(&start).for_each(|(solid, start)| solid.kinematics = *start);
+        own.device.move_solids(system);
     };
-    let over = Interval { t: clock.time, dt };
-    if system.model().scheme == TimeScheme::Symplectic {
-        drift_half_step(system, over);
-    }
-    let (done, loads) = own.device.second_half(system, end)?;
     system.solids.iter_mut().zip(loads).for_each(|(solid, load)| solid.load = load);
     if let StepsEnd::Fault(_) | StepsEnd::NoStep = done.end {
         return Ok(Some(done));

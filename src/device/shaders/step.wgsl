@@ -11,6 +11,7 @@
 @group(0) @binding(8) var<storage, read> spans: array<vec2<u32>>;
 @group(0) @binding(9) var<storage, read> walls: array<vec4<f32>>;
 @group(0) @binding(10) var<storage, read_write> built: array<vec4<i32>>;
+@group(0) @binding(11) var<storage, read_write> slot: array<u32>;
 
 const TICKS: f32 = 16777216.0f;
 
@@ -56,6 +57,7 @@ fn derive(@builtin(global_invocation_id) id: vec3<u32>) {
     positions[k] = vec4<i32>(middle(places[k]), x);
     velocities[k] = vec4<f32>(motion[k].xyz, pressure(f32(x) * EXCESS));
     built[k] = positions[k];
+    slot[u32(places[k].hi.w)] = k;
 }
 
 // The step that the water allows, no longer than the host allows and not past the end.
