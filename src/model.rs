@@ -205,8 +205,9 @@ const DEEP_H_OVER_DP: f64 = 2.1;
 
 impl Model {
     /// Water `depth` (m) deep at spacing `dp` (m) in `dimension` 2 or 3, with the choices of a scene that names
-    /// none, without free bodies or waves by name: Wendland, h = 1.7 dp (1.5 dp in 3-D), c₀ = 10 √(g·depth), Riemann dissipation, Fourtakas' δ = 0.1, no shifting,
-    /// walls relaxed Adami with free slip, symplectic at CFL 0.4. The methods below change one choice each.
+    /// none, without free bodies or waves by name: Wendland, h = 1.7 dp (1.5 dp in 3-D), c₀ = 10 √(g·depth), Riemann
+    /// dissipation, Fourtakas' δ = 0.1, no shifting, walls relaxed Adami with free slip, symplectic at CFL 0.4. The methods
+    /// below change one choice each.
     pub fn water(dimension: usize, dp: f64, depth: f64) -> Self {
         const G: f64 = 9.81;
         let mut gravity = vec![0.0; dimension];

@@ -281,6 +281,61 @@ fn the_report_of_a_3d_run_rotates_and_shows_a_cut() {
 }
 
 #[test]
+fn the_report_draws_mooring_lines_from_fairlead_to_anchor() {
+    let folder = folder("moored");
+    let line = "\n[[line_type]]\nname = \"chain\"\ndiameter = 0.004\nmass_per_length = 0.1\nstiffness = 500.0\n\
+                [[mooring]]\nbetween = [\"box\"]\nfrom = [0.5, 0.3]\nto = [0.1, 0.0]\nlength = 0.55\nline = \"chain\"\n\
+                [[mooring]]\nsince = 0.09\nbetween = [\"box\"]\nfrom = [0.5, 0.3]\nto = [0.7, 0.0]\nlength = 0.4\nline = \"chain\"\n";
+    let run = run_scene(&folder, "bay", &format!("{BAY}{line}"), &[]);
+    if chromium().is_none() {
+        return;
+    }
+    let result = evaluate(
+        &run.join(report::REPORT_FILE),
+        "const view = deck.views[0], shown = () => { const { canvas } = view, at = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+           return at.data; };
+         result.lines = []; for (const t of [0, 0.05, 0.2]) { deck.seek(t); result.lines.push(films[0].lines().map(line => [line.length, line[0], line.at(-1)])); }
+         const drawn = shown(), none = (films[0].moorings = null, deck.draw(), shown());
+         result.pixels = none.filter((x, i) => x !== drawn[i]).length;",
+    );
+    let count = |k: usize| result["lines"][k].as_array().unwrap().len();
+    assert_eq!([count(0), count(1), count(2)], [1, 1, 2], "the second line begins at 0.09 s: {result}");
+    let place = |line: &Value, end: usize| [0, 1].map(|c| line[end][c].as_f64().unwrap());
+    for (k, line) in [(0, 0), (1, 0), (2, 0)] {
+        let line = &result["lines"][k][line];
+        let [fairlead, anchor] = [1, 2].map(|end| place(line, end));
+        // Positions are rounded to dp/48, and the box moves by less than a spacing.
+        let off = |at: [f64; 2], x: f64, y: f64| (at[0] - x).hypot(at[1] - y);
+        assert!(off(fairlead, 0.5, 0.3) < 0.02 && off(anchor, 0.1, 0.0) < 0.001, "{line}");
+    }
+    assert!(result["pixels"].as_u64().unwrap() > 300, "the lines are drawn: {}", result["pixels"]);
+    screenshot(&run.join(report::REPORT_FILE), "moored.png", &["--window-size=1280,900"]);
+}
+
+#[test]
+fn water_that_enters_is_in_the_player() {
+    let folder = folder("river");
+    let scene = "title = \"River\"\ndimension = 2\ndp = 0.02\nuntil = 0.4\n\
+                 inflow = [{ x = 0.0, velocity = 1.0 }]\noutflow = [{ x = 0.6, velocity = 1.0 }]\n\
+                 [[water]]\nfill = { box = { min = [0.0, 0.0], max = [0.6, 0.2] } }\nvelocity = [1.0, 0.0]\n\
+                 [[solid]]\nname = \"bed\"\nfixed = true\nshape = { box = { size = [2.0, 0.1] } }\nat = { x = 0.3, y = -0.05 }\n\
+                 [frames]\nevery = 0.1\n";
+    let run = run_scene(&folder, "river", scene, &[]);
+    if chromium().is_none() {
+        return;
+    }
+    let result = evaluate(
+        &run.join(report::REPORT_FILE),
+        "result.first = films[0].frames[0][0].length; result.last = films[0].frames.at(-1)[0].length;",
+    );
+    let (first, last) = (result["first"].as_f64().unwrap(), result["last"].as_f64().unwrap());
+    assert!(
+        first == 300.0 && (last / first - 1.0).abs() < 0.1,
+        "{first} and {last} particles, of which many have entered"
+    );
+}
+
+#[test]
 fn compared_runs_share_time_and_colour_range() {
     let folder = folder("compare");
     run_scene(&folder, "a", BAY, &["--no-report"]);

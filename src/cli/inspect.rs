@@ -235,7 +235,7 @@ fn moorings(preflight: &Preflight) -> String {
     if preflight.moorings.is_empty() {
         return String::new();
     }
-    let force = if preflight.size.dimension == 2 { "N/m" } else { "N" };
+    let [force, stiffness_unit] = if preflight.size.dimension == 2 { ["N/m", "N/m²"] } else { ["N", "N/m"] };
     let heads =
         ["mooring", "length (m)", "fairlead", "anchor", "on bed (m)", "touchdown (m)", "anchor angle", "step (s)"];
     let mut rows = vec![heads.map(String::from).to_vec()];
@@ -257,7 +257,7 @@ fn moorings(preflight: &Preflight) -> String {
         let period =
             surge.period_s.map_or_else(|| "none".into(), |t| format!("{} s without added mass", three_digits(t)));
         let stiffness = three_digits(surge.stiffness_npm);
-        let _ = writeln!(text, "  surge of \"{}\": {stiffness} {force}/m, natural period {period}", surge.name);
+        let _ = writeln!(text, "  surge of \"{}\": {stiffness} {stiffness_unit}, natural period {period}", surge.name);
     }
     text
 }

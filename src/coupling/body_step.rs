@@ -15,7 +15,7 @@ use crate::{
         ContactForce, Engine, EngineFault, Kinematics, Load, Role, Solid,
         constraint::assembly::{Assembly, AssemblyState, ConstraintLoads},
     },
-    system::{MomentumTransfer, System},
+    system::{MomentumTransfer, System, face_reached},
 };
 
 /// The rigid bodies of a run with their engine. A scene without free bodies has no engine.
@@ -186,12 +186,8 @@ impl<const D: usize> Bodies<D> {
         }
         hook(&mut step)?;
         let (solids, transfers) = step.finish()?;
-        if let Some(i) = (0..solids.len()).find(|&i| system.meets_its_image(i, &solids[i].pose)) {
-            return Err(fault_error(system, at_plane(i, &solids[i]), self.steps, over.t));
-        }
-        let side = |i: usize| Some((i, system.side_reached(i, &solids[i])?));
-        if let Some((i, axis)) = (0..solids.len()).find_map(side) {
-            return Err(fault_error(system, at_side(i, axis, &solids[i]), self.steps, over.t));
+        if let Some(fault) = out_of_place(system, &solids) {
+            return Err(fault_error(system, fault, self.steps, over.t));
         }
         self.steps += 1;
         place(system, Some(over.dt), |i, solid| match &solid.spec.role {
@@ -410,29 +406,35 @@ fn escaped<const D: usize>(solid: usize, now: &Kinematics<D>) -> EngineFault<D> 
     }
 }
 
-/// Returns the fault of solid number `solid`, which has met its image at a symmetry plane.
-fn at_plane<const D: usize>(solid: usize, now: &Kinematics<D>) -> EngineFault<D> {
-    EngineFault {
-        code: ErrorCode::LeftDomain,
-        solid,
-        reason: "contact with its mirror image at a symmetry plane".into(),
-        cause: "Contacts do not act across symmetry planes. Start it further from the plane, hold it with a line or a lock, or                 compute both sides:  leave symmetry out.",
-        position: now.centre,
-        velocity: now.velocity,
-    }
-}
+/// Usual cause and remedy of a solid that meets its image at a symmetry plane.
+const AT_PLANE: &str = "Contacts do not act across symmetry planes. Start it further from the plane, hold it with a line or a \
+                        lock, or compute both sides:  leave symmetry out.";
 
-/// Returns the fault of driven solid number `solid`, which ends at a periodic side along `axis`.
-fn at_side<const D: usize>(solid: usize, axis: &str, now: &Kinematics<D>) -> EngineFault<D> {
-    EngineFault {
-        code: ErrorCode::LeftDomain,
-        solid,
-        reason: format!("an end at a periodic side along {axis}"),
-        cause: "Too long a solid is not repeated. Let it reach 2.5 kernel supports or more beyond both sides during its whole \
-                motion, or start it between the sides, shorter than the period less 5 supports.",
-        position: now.centre,
-        velocity: now.velocity,
-    }
+/// Usual cause and remedy of a driven solid that ends at a periodic side.
+const AT_SIDE: &str = "Too long a solid is not repeated. Let it reach 2.5 kernel supports or more beyond both sides during its \
+                       whole motion, or start it between the sides, shorter than the period less 5 supports.";
+
+/// Usual cause and remedy of a solid that ends in the buffer of an open boundary.
+const AT_FACE: &str = "The water beyond a face is prescribed and carries no body. Hold it with a mooring or  free.locked,  move the \
+                       face further away, or end the run earlier:  until.";
+
+/// Returns the fault of the first solid that stands where it may not be at the end of a step with these `solids`: at its image
+/// across a symmetry plane, at a periodic side, or in the buffer of an open boundary.
+fn out_of_place<const D: usize>(system: &System<D>, solids: &[Kinematics<D>]) -> Option<EngineFault<D>> {
+    let fault = |(solid, now): (usize, &Kinematics<D>)| {
+        let (reason, cause) = if system.meets_its_image(solid, &now.pose) {
+            ("contact with its mirror image at a symmetry plane".to_string(), AT_PLANE)
+        } else if let Some(axis) = system.side_reached(solid, now) {
+            (format!("an end at a periodic side along {axis}"), AT_SIDE)
+        } else {
+            let face = face_reached(system, solid, &now.pose)?;
+            let (name, axis, at) = (&face.name, ["x", "y"][face.axis], face.at);
+            (format!("an end in the buffer of open boundary {name:?} at {axis} = {at}"), AT_FACE)
+        };
+        let (position, velocity) = (now.centre, now.velocity);
+        Some(EngineFault { code: ErrorCode::LeftDomain, solid, reason, cause, position, velocity })
+    };
+    solids.iter().enumerate().find_map(fault)
 }
 
 pub(super) fn fault_error<const D: usize>(system: &System<D>, fault: EngineFault<D>, step: u64, time: f64) -> Error {

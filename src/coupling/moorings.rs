@@ -66,14 +66,7 @@ impl<const D: usize> Moorings<D> {
 
     /// Brings all `lines` that act to rest. Returns the largest force on a node of each over its weight.
     fn find_rest(&self, system: &System<D>, lines: &mut [&mut MooringLine<D>]) -> Vec<f64> {
-        let (around, gravity) = (|x: &Vector<D>| self.surroundings(system, x), system.gravity());
-        let joined = if self.junctions.is_empty() { 0.0 } else { self.junctions.find_rest(lines, &around, &gravity) };
-        let rest = |(i, line): (usize, &mut &mut MooringLine<D>)| match self.junctions.joins(i) {
-            true => joined,
-            false if line.state.acts => line.find_rest(&around, &gravity),
-            false => 0.0,
-        };
-        lines.iter_mut().enumerate().map(rest).collect()
+        self.junctions.bring_to_rest(lines, &|x| self.surroundings(system, x), &system.gravity())
     }
 
     /// Shape and tension of line number `i`.
@@ -99,7 +92,7 @@ impl<const D: usize> Moorings<D> {
         let force = |way: f64| {
             let mut moved: Vec<_> = self.lines.iter().map(|mooring| mooring.line.clone()).collect();
             for (i, k) in own() {
-                let node = k * moved[i].segments();
+                let node = moved[i].end_node(k);
                 moved[i].state.x[node][0] += way;
             }
             self.find_rest(system, &mut moved.iter_mut().collect::<Vec<_>>());

@@ -3,20 +3,24 @@
 use std::ops::Range;
 
 /// Ends of the names of columns, and the units that they mean.
-const UNITS: [(&str, &str); 20] = [
+const UNITS: [(&str, &str); 24] = [
     ("_Nm_per_m", "N m/m"),
+    ("_Ns_per_m", "N s/m"),
     ("_N_per_m", "N/m"),
     ("_J_per_m", "J/m"),
     ("_W_per_m", "W/m"),
+    ("_kg_per_m", "kg/m"),
     ("_m3ps", "m³/s"),
     ("_m2ps", "m²/s"),
     ("_radps", "rad/s"),
+    ("_mps2", "m/s²"),
     ("_mps", "m/s"),
     ("_deg", "°"),
     ("_rad", "rad"),
     ("_kg", "kg"),
     ("_Pa", "Pa"),
     ("_Nm", "N m"),
+    ("_Ns", "N s"),
     ("_N", "N"),
     ("_J", "J"),
     ("_W", "W"),

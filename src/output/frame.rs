@@ -192,7 +192,8 @@ impl FrameWriter {
         let (mut points, mut connectivity, mut tension, mut owner) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         for (i, mooring) in moorings.iter().enumerate() {
             let first = points.len() as i64;
-            connectivity.extend((0..mooring.tensions.len() as i64).flat_map(|s| [first + s, first + s + 1]));
+            let whole = (0..mooring.tensions.len()).filter(|s| mooring.broken != Some(*s));
+            connectivity.extend(whole.flat_map(|s| [first + s as i64, first + s as i64 + 1]));
             points.extend_from_slice(&mooring.nodes);
             let beside =
                 |node: usize| &mooring.tensions[node.saturating_sub(1)..(node + 1).min(mooring.tensions.len())];

@@ -1,6 +1,9 @@
 //! Reader of the frames that [`FrameWriter`](super::FrameWriter) writes.
 
-use std::path::{Path, PathBuf};
+use std::{
+    collections::HashSet,
+    path::{Path, PathBuf},
+};
 
 use super::vtu::{self, Values};
 use crate::error::{Error, Result};
@@ -85,7 +88,8 @@ impl FrameSequence {
         read_points(&self.path("solids", number))
     }
 
-    /// Reads the nodes (m) of each mooring line in frame `number`; none if the frame has no lines.
+    /// Reads the nodes (m) of the mooring lines in frame `number`, one list for each line that acts and two for a line that has
+    /// broken; none if the frame has no lines.
     ///
     /// # Errors
     /// `File` if the frame cannot be read.
@@ -94,15 +98,13 @@ impl FrameSequence {
         if !path.exists() {
             return Ok(Vec::new());
         }
-        let FramePoints { position, line_index, .. } = read_points(&path)?;
-        let mut lines: Vec<Vec<[f32; 3]>> = Vec::new();
-        for (k, (x, line)) in position.iter().zip(&line_index).enumerate() {
-            if k == 0 || line_index[k - 1] != *line {
-                lines.push(Vec::new());
-            }
-            lines.iter_mut().last().into_iter().for_each(|own| own.push(*x));
-        }
-        Ok(lines)
+        let (FramePoints { position, .. }, cells) =
+            read_file(&path, |file| Ok((parse_points(file)?, vtu::read_connectivity(file)?)))?;
+        // A segment joins a node to the next.
+        let joined: HashSet<i64> = cells.chunks(2).map(|segment| segment[0]).collect();
+        let parts = (0..position.len()).collect::<Vec<_>>();
+        let parts = parts.chunk_by(|k, _| joined.contains(&(*k as i64)));
+        Ok(parts.map(|nodes| nodes.iter().map(|k| position[*k]).collect()).collect())
     }
 
     fn path(&self, part: &str, number: usize) -> PathBuf {
@@ -111,8 +113,13 @@ impl FrameSequence {
 }
 
 fn read_points(path: &Path) -> Result<FramePoints> {
+    read_file(path, parse_points)
+}
+
+/// Returns what `parse` reads in the file at `path`.
+fn read_file<T>(path: &Path, parse: impl Fn(&[u8]) -> std::result::Result<T, String>) -> Result<T> {
     let file = std::fs::read(path).map_err(|why| Error::read(path, &why))?;
-    parse_points(&file).map_err(|why| Error::file(path, format!("is not a frame of this program: {why}")))
+    parse(&file).map_err(|why| Error::file(path, format!("is not a frame of this program: {why}")))
 }
 
 /// Returns the points in a .vtu `file`.

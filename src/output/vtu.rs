@@ -201,6 +201,16 @@ pub(crate) fn read_points(file: &[u8]) -> Result<(Vec<f32>, Vec<DataArray>), Str
     Ok((points.ok_or("it has no points")?, fields))
 }
 
+/// Returns the points of all cells in a .vtu `file`, cell by cell.
+pub(crate) fn read_connectivity(file: &[u8]) -> Result<Vec<i64>, String> {
+    let arrays = read_arrays(file, &["Cells"])?.into_iter();
+    let mut cells = arrays.filter_map(|(_, array)| match array {
+        DataArray { name, values: Values::I64(points), .. } if name == "connectivity" => Some(points),
+        _ => None,
+    });
+    cells.next().ok_or_else(|| "it has no cells".into())
+}
+
 /// Returns the arrays in the elements of a `file` with a name in `parents`, each with the name of its element.
 fn read_arrays(file: &[u8], parents: &[&str]) -> Result<Vec<(String, DataArray)>, String> {
     let (text, appended) = split(file)?;

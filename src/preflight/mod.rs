@@ -8,6 +8,7 @@ mod absorption_limits;
 mod lifetimes;
 mod misplaced_bodies;
 mod moorings;
+mod open_boundaries;
 mod periodic_sides;
 mod floating_bodies;
 mod hollows;
@@ -214,6 +215,7 @@ pub fn preflight<const D: usize>(
     look.check_thickness(&mut findings);
     thin_parts::check_parts(&look, &mut findings);
     periodic_sides::check(&look, &mut findings);
+    open_boundaries::check(&look, &mut findings);
     look.check_probes(&sound, &mut findings);
     lifetimes::check(&look, &mut findings);
     let (waves, absorbers) = (look.generated_waves(&mut findings), look.absorbers());

@@ -21,6 +21,9 @@ const PLACES: f32 = 1.0 / 48.0;
 /// The resolution of field values, as a fraction of their usual range.
 const VALUES: f32 = 1.0 / 600.0;
 
+/// The names of the coordinates.
+const AXES: [&str; 3] = ["x", "y", "z"];
+
 /// The largest number of frames, and the smallest number of frames before the program omits particles.
 const FRAMES: [usize; 2] = [600, 60];
 
@@ -36,6 +39,8 @@ pub(crate) struct Animation {
     pub counts: Vec<usize>,
     /// Whether each frame contains full values instead of differences from the previous frame.
     pub alone: Vec<bool>,
+    /// How the particles of each frame differ from those of the previous frame, if they do and are mostly the same.
+    pub changes: Vec<Option<ParticleChange>>,
     /// The position of the first frame.
     pub offset: usize,
     /// The channels: the coordinates, then the fields.
@@ -48,8 +53,21 @@ pub(crate) struct Animation {
     pub of: [usize; 2],
     /// The boundary particles of all solids, each in the local frame of its solid.
     pub skins: BoundaryAnimation,
+    /// The mooring lines, if the frames contain any.
+    pub lines: Option<LineAnimation>,
     /// The usual range of each field that the page can show.
     pub ranges: Vec<(&'static str, [f64; 2])>,
+}
+
+/// The particles that are in one of two successive frames only.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub(crate) struct ParticleChange {
+    /// The position of the numbers of particles that have gone, in the earlier frame; those of the new ones, in the later frame, follow.
+    pub at: usize,
+    /// The number of particles that have gone.
+    pub gone: usize,
+    /// The number of new particles.
+    pub new: usize,
 }
 
 /// A quantity of each particle, stored as integers: value = min + step × integer.
@@ -75,6 +93,23 @@ pub(crate) struct BoundaryAnimation {
     /// The position of the first pose. A pose has 3 coordinates and 9 matrix entries, row by row, for each frame and
     /// solid.
     pub poses: usize,
+}
+
+/// The nodes of the mooring lines, stored as the particles are.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct LineAnimation {
+    /// The number of nodes in each frame.
+    pub counts: Vec<usize>,
+    /// Whether each frame contains full values instead of differences from the previous frame.
+    pub alone: Vec<bool>,
+    /// How the nodes of each frame differ from those of the previous frame.
+    pub changes: Vec<Option<ParticleChange>>,
+    /// The position of the first frame.
+    pub offset: usize,
+    /// The coordinates.
+    pub channels: Vec<QuantisedChannel>,
+    /// The number of nodes of each line in each frame. A line that does not act is absent; a broken one counts twice.
+    pub nodes: Vec<Vec<usize>>,
 }
 
 /// A frame, reduced to the shown particles and fields.
@@ -110,27 +145,44 @@ pub(crate) fn encode_animation(
     let most = (samples / left(apart)).clamp(2, FRAMES[0]).min(readable.max(2)).min(frames);
     let kept: Vec<usize> = (0..most).map(|k| (k * (frames - 1)).checked_div(most - 1).unwrap_or(0)).collect();
     let distance = (apart > 1).then_some((apart as f32, dp));
-    // In cropped frames, particles appear that are absent from the first frame.
-    let cropped = set.is_some_and(|set| set.plan.frames.as_ref().is_some_and(|frames| frames.crop.is_some()));
+    // In cropped frames and beside inflows, particles appear that are absent from the first frame.
+    let known: HashSet<u32> = first.id.iter().copied().collect();
     let chosen: HashSet<u32> =
         subsample(&first, distance).into_iter().filter_map(|i| first.id.get(i).copied()).collect();
     let mut shown = Vec::new();
     for &number in &kept {
         let cloud = film.water(number)?;
-        let order = match cloud.id.is_empty() || (cropped && apart > 1) {
-            true => subsample(&cloud, distance),
-            false => sorted_by_id(&cloud, |id| cropped || chosen.contains(id)),
+        let order = if apart == 1 && !cloud.id.is_empty() {
+            sorted_by_id(&cloud, |_| true)
+        } else if cloud.id.is_empty() || cloud.id.iter().any(|id| !known.contains(id)) {
+            subsample(&cloud, distance)
+        } else {
+            sorted_by_id(&cloud, |id| chosen.contains(id))
         };
         shown.push(sample_frame(&cloud, film.times()[number], dimension, &order));
     }
-    let channels = channels(&shown, &first, dimension, dp);
+    let channels = channels(&shown, channel_names(&first, dimension), dimension, dp);
     let offset = blob.len();
-    let alone = encode_frames(&shown, &channels, blob);
+    let (alone, changes) = encode_frames(&shown, &channels, blob);
     let ranges = field_ranges(&shown, &channels, set);
     let skins = encode_boundaries(film, &kept, set, dimension, dp, blob)?;
+    let lines = encode_lines(film, &kept, dimension, dp, blob)?;
     let counts = shown.iter().map(|frame| frame.id.len()).collect();
     let times = shown.iter().map(|frame| frame.t).collect();
-    Ok(Animation { times, counts, alone, offset, channels, dp, apart, of: [frames, all], skins, ranges })
+    Ok(Animation {
+        times,
+        counts,
+        alone,
+        changes,
+        offset,
+        channels,
+        dp,
+        apart,
+        of: [frames, all],
+        skins,
+        lines,
+        ranges,
+    })
 }
 
 /// Returns the indices of particles about `distance` apart: the first particle in each cell of that size, or all
@@ -166,10 +218,15 @@ fn sample_frame(cloud: &FramePoints, t: f64, dimension: usize, order: &[usize]) 
     FrameSamples { t, id, x }
 }
 
-fn channels(shown: &[FrameSamples], first: &FramePoints, dimension: usize, dp: f32) -> Vec<QuantisedChannel> {
-    let mut names = ["x", "y", "z"][..dimension].to_vec();
+/// Returns the names of the coordinates and of the fields of the `first` frame.
+fn channel_names(first: &FramePoints, dimension: usize) -> Vec<&'static str> {
+    let mut names = AXES[..dimension].to_vec();
     names.extend((!first.pressure.is_empty()).then_some("pressure"));
     names.extend((!first.velocity.is_empty()).then_some("speed"));
+    names
+}
+
+fn channels(shown: &[FrameSamples], names: Vec<&'static str>, dimension: usize, dp: f32) -> Vec<QuantisedChannel> {
     let channel = |(c, name): (usize, &'static str)| {
         let all = || shown.iter().flat_map(|frame| frame.x[c].iter().copied()).filter(|x| x.is_finite());
         let (min, max) = (all().fold(f32::INFINITY, f32::min), all().fold(f32::NEG_INFINITY, f32::max));
@@ -196,17 +253,24 @@ fn quantiles(numbers: &mut [f32], shares: [f64; 2]) -> [f32; 2] {
     shares.map(|share| *numbers.select_nth_unstable_by((share * last as f64) as usize, f32::total_cmp).1)
 }
 
-fn encode_frames(shown: &[FrameSamples], channels: &[QuantisedChannel], blob: &mut BinaryData) -> Vec<bool> {
-    let mut alone = Vec::new();
+/// Adds the values of the `shown` frames to `blob`. Returns whether each frame contains full values, and how its particles differ
+/// from those of the frame before, if they do.
+fn encode_frames(
+    shown: &[FrameSamples],
+    channels: &[QuantisedChannel],
+    blob: &mut BinaryData,
+) -> (Vec<bool>, Vec<Option<ParticleChange>>) {
+    let (mut alone, mut exchanged) = (Vec::new(), Vec::new());
     let mut before: Option<(&[u32], Vec<Vec<u16>>)> = None;
     for frame in shown {
         let rounded: Vec<Vec<u16>> = channels.iter().zip(&frame.x).map(|(channel, x)| quantise(channel, x)).collect();
-        let same = before.take().filter(|(id, _)| *id == frame.id);
-        alone.push(same.is_none());
+        let known = before.take().and_then(|(id, values)| Some((exchange(id, &frame.id)?, values)));
+        alone.push(known.is_none());
         for (c, now) in rounded.iter().enumerate() {
-            match &same {
-                Some((_, then)) => {
-                    let steps: Vec<u16> = now.iter().zip(&then[c]).map(|(a, b)| zigzag(*a, *b)).collect();
+            match &known {
+                Some((exchange, then)) => {
+                    let then = exchange.carry(&then[c], now.len());
+                    let steps: Vec<u16> = now.iter().zip(&then).map(|(a, b)| zigzag(*a, *b)).collect();
                     blob.push_byte_planes(&steps);
                 }
                 None => {
@@ -214,10 +278,57 @@ fn encode_frames(shown: &[FrameSamples], channels: &[QuantisedChannel], blob: &m
                 }
             }
         }
-        // Particles without identification numbers have a different order in every frame.
-        before = (frame.id.len() < 2 || frame.id[0] != frame.id[1]).then_some((&frame.id[..], rounded));
+        exchanged.push(known.map(|(exchange, _)| exchange));
+        before = Some((&frame.id[..], rounded));
     }
-    alone
+    let place = |exchange: Option<ParticleExchange>| {
+        let ParticleExchange { gone, new } = exchange.filter(|one| !(one.gone.is_empty() && one.new.is_empty()))?;
+        let at = blob.push_floats(gone.iter().chain(&new).map(|i| *i as f32));
+        Some(ParticleChange { at, gone: gone.len(), new: new.len() })
+    };
+    let changes = exchanged.into_iter().map(place).collect();
+    (alone, changes)
+}
+
+/// The particles that are in one of two frames only.
+#[derive(Debug, PartialEq)]
+struct ParticleExchange {
+    /// The numbers of those that have gone, in the earlier frame.
+    gone: Vec<usize>,
+    /// The numbers of those that are new, in the later frame.
+    new: Vec<usize>,
+}
+
+impl ParticleExchange {
+    /// Returns the values `then` of the earlier frame in the order of the `count` particles of the later one; 0 for new particles.
+    fn carry(&self, then: &[u16], count: usize) -> Vec<u16> {
+        let mut gone = self.gone.iter().copied().peekable();
+        let kept = then.iter().enumerate().filter(|(i, _)| gone.next_if_eq(i).is_none()).map(|(_, x)| *x);
+        let (mut kept, mut new) = (kept, self.new.iter().copied().peekable());
+        (0..count).map(|k| if new.next_if_eq(&k).is_some() { 0 } else { kept.next().unwrap_or(0) }).collect()
+    }
+}
+
+/// Returns how the particles of a frame, of which `now` has the identifiers, differ from those of an earlier one. Returns `None` if
+/// most are others, or if they are not in the order of their identifiers, as those without identifiers.
+fn exchange(before: &[u32], now: &[u32]) -> Option<ParticleExchange> {
+    let is_sorted = |id: &[u32]| id.is_sorted_by(|a, b| a < b);
+    if before != now && !(is_sorted(before) && is_sorted(now)) || before.len() > 1 && before[0] == before[1] {
+        return None;
+    }
+    let others = |id: &[u32], of: &[u32]| -> Vec<usize> {
+        let mut of = of.iter().copied().peekable();
+        let mut is_other = |id: u32| {
+            while of.next_if(|other| *other < id).is_some() {}
+            of.peek() != Some(&id)
+        };
+        (0..id.len()).filter(|&i| is_other(id[i])).collect()
+    };
+    if before == now {
+        return Some(ParticleExchange { gone: vec![], new: vec![] });
+    }
+    let exchange = ParticleExchange { gone: others(before, now), new: others(now, before) };
+    (2 * exchange.new.len() <= now.len()).then_some(exchange)
 }
 
 fn quantise(channel: &QuantisedChannel, x: &[f32]) -> Vec<u16> {
@@ -285,7 +396,7 @@ fn encode_boundaries(
         .flat_map(|(own, solid)| own.iter().map(|&k| solid.start.to_local(&first.position[k])))
         .collect();
     let (mut channels, mut offsets) = (Vec::new(), Vec::new());
-    for (c, name) in ["x", "y", "z"].into_iter().enumerate().take(dimension) {
+    for (c, name) in AXES.into_iter().enumerate().take(dimension) {
         let x: Vec<f32> = local.iter().map(|x| x[c] as f32).collect();
         let (min, max) = x.iter().fold((f32::INFINITY, f32::NEG_INFINITY), |(a, b), x| (a.min(*x), b.max(*x)));
         let step = (PLACES * dp).max((max - min) / 65_000.0);
@@ -307,6 +418,34 @@ fn encode_boundaries(
         counts: members.iter().map(Vec::len).collect(),
         poses: blob.push_floats(poses),
     })
+}
+
+/// Adds the nodes of the mooring lines in the `kept` frames to `blob`. Returns `None` if no frame contains a line.
+fn encode_lines(
+    film: &FrameSequence,
+    kept: &[usize],
+    dimension: usize,
+    dp: f32,
+    blob: &mut BinaryData,
+) -> Result<Option<LineAnimation>> {
+    let (mut shown, mut nodes) = (Vec::new(), Vec::new());
+    for &number in kept {
+        let lines = film.moorings(number)?;
+        let x = (0..dimension).map(|c| lines.iter().flatten().map(|x| x[c]).collect()).collect();
+        let own: Vec<usize> = lines.iter().map(Vec::len).collect();
+        // Nodes are the same in two frames if as many lines have as many nodes each.
+        let id = (0u32..).zip(&own).flat_map(|(line, &n)| (0..n as u32).map(move |node| line << 12 | node)).collect();
+        shown.push(FrameSamples { t: film.times()[number], id, x });
+        nodes.push(own);
+    }
+    if nodes.iter().all(Vec::is_empty) {
+        return Ok(None);
+    }
+    let channels = channels(&shown, AXES[..dimension].to_vec(), dimension, dp);
+    let offset = blob.len();
+    let (alone, changes) = encode_frames(&shown, &channels, blob);
+    let counts = shown.iter().map(|frame| frame.id.len()).collect();
+    Ok(Some(LineAnimation { counts, alone, changes, offset, channels, nodes }))
 }
 
 /// Returns the indices of the boundary particles of solid `number` among all boundary particles.

@@ -133,7 +133,7 @@ pub(crate) struct CurveData {
 }
 
 /// Groups of columns by their names without units. The page shows the first groups and collapses the others.
-const FAMILIES: [(&[&str], bool); 16] = [
+const FAMILIES: [(&[&str], bool); 20] = [
     (&["surge", "sway", "heave"], false),
     (&["roll", "pitch", "yaw"], false),
     (&["fx", "fy", "fz"], false),
@@ -145,7 +145,11 @@ const FAMILIES: [(&[&str], bool); 16] = [
     (&["flow"], false),
     (&["volume"], false),
     (&["front"], false),
+    (&["fairlead", "anchor", "largest"], false),
+    (&["entered", "left"], false),
     (&["water kinetic", "water potential", "water compression", "bodies kinetic", "bodies potential", "total"], false),
+    (&["quarter", "middle", "three quarters"], true),
+    (&["momentum x", "momentum y", "momentum z"], true),
     (&["level", "below 1", "below 2", "below 3"], true),
     (&["vx", "vy", "vz"], true),
     (&["spin", "spin x", "spin y", "spin z"], true),

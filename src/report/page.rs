@@ -58,6 +58,7 @@ struct PageScene<'a> {
     level: f64,
     rho0: f64,
     g: f64,
+    ends: &'a [(usize, f64)],
     solids: Vec<PageSolid<'a>>,
     gauges: Vec<PageGauge<'a>>,
 }
@@ -80,7 +81,8 @@ impl<'a> From<&'a SceneGeometry> for PageScene<'a> {
     fn from(set: &'a SceneGeometry) -> Self {
         let solids = set.solids.iter().map(|s| PageSolid { name: &s.name, role: s.role, lines: &s.lines }).collect();
         let gauges = set.gauges().map(|(name, what, at)| PageGauge { name, what, at }).collect();
-        Self { dimension: set.dimension, dp: set.dp, level: set.level, rho0: set.rho0, g: set.g, solids, gauges }
+        let SceneGeometry { dimension, dp, level, rho0, g, ref ends, .. } = *set;
+        Self { dimension, dp, level, rho0, g, ends, solids, gauges }
     }
 }
 

@@ -17,7 +17,7 @@ use crate::{
     plan::Plan,
     probe::ProbeLocation,
     run::{self, RunStatistics, StatisticsFilter, outputs, run_folder},
-    scene::{Scene, SceneLayout},
+    scene::{OpenBoundaryConfig, Scene, SceneLayout},
     solid::Role,
 };
 
@@ -59,6 +59,8 @@ pub(crate) struct SceneGeometry {
     pub rho0: f64,
     /// The gravitational acceleration along the negative last axis, m/s²; 0 if gravity has another direction.
     pub g: f64,
+    /// Where the water ends without a surface or a wall: axis and coordinate (m) of faces, periodic sides and symmetry planes.
+    pub ends: Vec<(usize, f64)>,
     /// The solids at the start.
     pub solids: Vec<DrawnSolid>,
     /// The probes, the checks and the output settings.
@@ -200,8 +202,16 @@ impl SceneGeometry {
         let solids = solids.collect();
         let (down, beside) =
             model.gravity.split_last().map_or((0.0, false), |(g, rest)| (-g, rest.iter().any(|x| *x != 0.0)));
-        let g = if beside || scene.periodic.is_some() { 0.0 } else { down };
-        Ok(Self { dimension: D, dp: scene.dp, level: still_water.level, rho0: model.rho0, g, solids, plan })
+        let periodic = scene.periodic.clone().unwrap_or_default().build::<D>();
+        let g = if beside || periodic[D - 1].is_some() { 0.0 } else { down };
+        let sides =
+            periodic.iter().enumerate().flat_map(|(axis, side)| side.iter().flatten().map(move |at| (axis, *at)));
+        let planes = scene.symmetry.clone().unwrap_or_default().build::<D>();
+        let planes = planes.into_iter().enumerate().filter_map(|(axis, plane)| Some((axis, plane?)));
+        let faces = scene.inflow.iter().chain(&scene.outflow).filter_map(OpenBoundaryConfig::place);
+        let ends = sides.chain(planes).chain(faces).collect();
+        let (dp, level, rho0) = (scene.dp, still_water.level, model.rho0);
+        Ok(Self { dimension: D, dp, level, rho0, g, ends, solids, plan })
     }
 
     /// Returns the gauges: the name of each gauge, its measured quantity, and its position (m) with as many coordinates

@@ -251,8 +251,12 @@ pub(crate) fn animation_note(reel: &Animation) -> String {
     } else {
         format!(" with all {} water particles", thousands(particles as u64))
     };
-    said + ". Between two frames the player moves particles in straight lines. Places are rounded to 1/48 dp, values to about \
-            1/600 of their usual range; frames.pvd has all of it."
+    // Of thinned water that particles enter, each frame has others.
+    said += match reel.alone.iter().skip(1).any(|alone| *alone) {
+        true => ". The player shows one frame after the other, as they have different particles",
+        false => ". Between two frames the player moves particles in straight lines",
+    };
+    said + ". Places are rounded to 1/48 dp, values to about 1/600 of their usual range; frames.pvd has all of it."
 }
 
 /// Returns the differences between the parameter values of several runs, with a row for each key.

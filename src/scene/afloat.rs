@@ -2,6 +2,7 @@
 
 use super::{
     Scene,
+    constraints::build_constraints,
     context::Context,
     section::{
         solid::SolidConfig,
@@ -71,7 +72,7 @@ fn float_bodies<const D: usize>(
     pool: &StillWater<D>,
 ) -> Result<()> {
     let (rho0, level) = (ctx.rho0.unwrap_or_default(), pool.still.level);
-    let constraints = scene.constraints(ctx, &placed.specs, pool.still.level)?.at_start();
+    let constraints = build_constraints(scene, ctx, &placed.specs, pool.still.level)?.at_start();
     let specs: Vec<&SolidSpec<D>> = placed.specs.iter().collect();
     let afloat: Vec<bool> = scene.solid.iter().map(SolidConfig::is_afloat).collect();
     let bottom = level - pool.still.depth;

@@ -3,16 +3,16 @@
 use super::{
     CurrentConfig, OpenBoundaryConfig, Scene,
     afloat::{PlacedSolids, placed_solids},
+    constraints::build_constraints,
     context::{Context, FileNote},
     file_units::require_plausible_units,
     section::{
         analysis::ProbeSeries,
         gravity,
         model::require_depth,
-        mooring::MooringPointConfig,
         open_boundary::FaceFlow,
         shape::{vector, world_bounds},
-        solid::{SolidConfig, require_solid},
+        solid::require_solid,
         water::{StillWaterLevel, WaterBody, WaterConfig, require_near_origin},
     },
 };
@@ -27,11 +27,7 @@ use crate::{
     model::{Model, TimeScheme},
     plan::{FramesPlan, Plan},
     simulation::{Driving, OpenBoundary, Setup},
-    solid::{
-        Constraints, InitialHold, Role, SolidSpec, TimeFunction, TimedRemoval,
-        constraint::links::{check_force, check_rope, check_spring},
-        mooring::{check_mooring, check_mooring_points},
-    },
+    solid::{Constraints, Role, SolidSpec, TimeFunction},
     system::{Periodic, buffer_length, check_open_boundary, periodic},
 };
 
@@ -143,7 +139,7 @@ impl Scene {
         let placed = placed_solids::<D>(&scene, ctx, &water, true)?;
         let solids = &placed.specs;
         require_plausible_units(ctx, &self.solid, &water, solids)?;
-        let constraints = scene.constraints(ctx, solids, still.level)?;
+        let constraints = build_constraints(&scene, ctx, solids, still.level)?;
         let domain = scene.domain.as_ref().map(|d| Bounds { min: vector(&d.min), max: vector(&d.max) });
         if let Some(domain) = &domain {
             require_inside_domain(ctx, domain, &water, solids)?;
@@ -286,63 +282,6 @@ impl Scene {
         let build =
             |(key, face, flow): (String, &OpenBoundaryConfig, FaceFlow)| face.build(ctx, (&key, flow), water, length);
         Ok(self.open_faces().map(build).collect::<Result<Vec<_>>>()?.into_iter().unzip())
-    }
-
-    /// Returns the joints, force elements and contact rules of `solids`, which must be in the order of the scene, over still water at
-    /// the height `level` (m).
-    pub(super) fn constraints<const D: usize>(
-        &self,
-        ctx: &Context,
-        solids: &[SolidSpec<D>],
-        level: f64,
-    ) -> Result<Constraints<D>> {
-        let number = |name: &String| self.solid.iter().position(|solid| solid.name == *name);
-        let mut constraints = Constraints::default();
-        for (i, joint) in self.joint.iter().enumerate() {
-            let key = format!("joint.{i}");
-            // A joint with one solid connects it to the world.
-            let between = match &joint.between[..] {
-                [one] => [None, number(one)],
-                two => [0, 1].map(|k| two.get(k).and_then(number)),
-            };
-            constraints.joints.push(joint.build(ctx, &key, between, &self.solid)?);
-            constraints.check_joint(i, solids).map_err(|e| ctx.with_location(e, &key))?;
-        }
-        for (i, spring) in self.spring.iter().enumerate() {
-            let spring = spring.build(&self.solid);
-            check_spring(&spring, solids).map_err(|e| ctx.with_location(e, &format!("spring.{i}")))?;
-            constraints.springs.push(spring);
-        }
-        for (i, rope) in self.rope.iter().enumerate() {
-            let rope = rope.build(&self.solid);
-            check_rope(&rope, solids).map_err(|e| ctx.with_location(e, &format!("rope.{i}")))?;
-            constraints.ropes.push(rope);
-        }
-        for (i, mooring) in self.mooring.iter().enumerate() {
-            let key = format!("mooring.{i}");
-            let mooring = mooring.build(ctx, &key, &self.mooring_scope())?;
-            check_mooring(&mooring, solids).map_err(|e| ctx.with_location(e, &key))?;
-            constraints.moorings.push(mooring);
-        }
-        constraints.mooring_points = self.mooring_point.iter().map(MooringPointConfig::build).collect();
-        check_mooring_points(&constraints.mooring_points, &constraints.moorings)
-            .map_err(|e| ctx.with_location(e, "mooring_point"))?;
-        for (i, force) in self.force.iter().enumerate() {
-            let key = format!("force.{i}");
-            let force = force.build(ctx, &key, &self.solid)?;
-            check_force(&force, solids).map_err(|e| ctx.with_location(e, &key))?;
-            constraints.forces.push(force);
-        }
-        for (i, wind) in self.wind.iter().enumerate() {
-            constraints.winds.push(wind.build(ctx, &format!("wind.{i}"), &self.solid, solids, level)?);
-        }
-        constraints.contacts = self.contact.iter().flat_map(|contact| contact.build(&self.solid)).collect();
-        let hold =
-            |(solid, body): (usize, &SolidConfig)| Some(InitialHold { solid, until: body.free.as_ref()?.release? });
-        constraints.holds = self.solid.iter().enumerate().filter_map(hold).collect();
-        let removal = |(solid, body): (usize, &SolidConfig)| Some(TimedRemoval { solid, at: body.until? });
-        constraints.removals = self.solid.iter().enumerate().filter_map(removal).collect();
-        Ok(constraints)
     }
 
     /// Returns the plan of a run. The defaults of the scene must be filled in.

@@ -31,6 +31,7 @@ pub fn bundled_scenes() -> &'static [BundledScene] {
         scene!("flap-converter"),
         scene!("harbour"),
         scene!("moored-box"),
+        scene!("moored-barge"),
         scene!("focused-box"),
         scene!("solitary-runup"),
         scene!("still-tank"),

@@ -2,7 +2,7 @@
 //!
 //! `toml_source` reads a [`Scene`] from TOML, `overrides` puts the values of `--set` into it and `diagnostics` explains the errors of
 //! the parser. Each file of `section` contains the configuration, validation, defaults and construction of a section of
-//! the scene. `resolve` and `build` combine the sections.
+//! the scene. `resolve`, `build` and `constraints` combine the sections.
 //!
 //! An absent key is `None`; [`resolve`](Scene::resolve) returns its default and the reason. A vector is a list of two
 //! numbers in 2-D and three numbers in 3-D. Units are SI; keys that end in `_deg` are in degrees.
@@ -11,6 +11,7 @@
 mod afloat;
 mod build;
 mod bundled;
+mod constraints;
 mod context;
 mod diagnostics;
 mod file_content;

@@ -3,7 +3,7 @@
 use crate::{
     error::{Error, Result},
     geometry::{Shape, hollow::Hollow},
-    math::{Bivector, Bounds, Pose, Vector},
+    math::{Bivector, Pose, Vector, format::four_digits},
     solid::FreeBody,
 };
 
@@ -119,7 +119,7 @@ impl<'a, const D: usize> Hull<'a, D> {
     }
 
     fn sinking_error(&self, pose: &Pose<D>, mass: f64, whole: f64) -> Error {
-        let part = mass / whole;
+        let (part, [mass, whole]) = (mass / whole, [mass, whole].map(four_digits));
         if self.rim_height(pose).is_finite() {
             let what = format!(
                 "the hull floods: its mass {mass} is {part:.3} of the {whole} of water that it displaces with the water at \

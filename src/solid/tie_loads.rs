@@ -13,7 +13,7 @@ use super::{
 };
 use crate::{
     error::Error,
-    math::{Bivector, Vector},
+    math::{Bivector, Vector, format::four_digits},
 };
 
 /// Largest part of the load that tensions may leave unbalanced, –.
@@ -207,7 +207,7 @@ impl TieLoads {
         if load == 0.0 {
             return error;
         }
-        let more = format!("; of that, {load:.4} are the load of its joints, ropes, springs and forces");
+        let more = format!("; of that, {} are the load of its joints, lines, springs and forces", four_digits(load));
         Error { message: error.message + &more, ..error }
     }
 }

@@ -29,7 +29,9 @@ pub(crate) use driving::{set_gravity_at, update_current};
 pub(crate) use fluid::{Fluid, permute};
 use gap_pressure::GapPressure;
 pub use open_boundary::{FaceExchange, OpenBoundary};
-pub(crate) use open_boundary::{buffer_length, check as check_open_boundary, update_buffer};
+pub(crate) use open_boundary::{
+    buffer_length, check as check_open_boundary, face_reached, prescribed_discharge, update_buffer,
+};
 pub(crate) use periodic::Periodic;
 use periodic::{Images, SortedWater};
 pub use setup::Setup;

@@ -23,7 +23,7 @@ use serde::{Deserialize, Serialize};
 use super::{Fluid, FluidDomain, Setup, System, periodic::WIDTH, reflected};
 use crate::{
     error::{Error, ErrorCode, Result},
-    math::{Bounds, Vector, expression::UnsteadyField},
+    math::{Bounds, Pose, Vector, expression::UnsteadyField},
     model::Model,
     particles::Particles,
     solid::{Role, TimeFunction},
@@ -132,6 +132,12 @@ impl<const D: usize> OpenBoundary<D> {
     /// The sense of the axis out of the water, –.
     pub(crate) fn outward(&self) -> f64 {
         if self.is_lower { -1.0 } else { 1.0 }
+    }
+
+    /// Whether a solid with these `bounds` (m) has an end in the buffer, `length` (m) long, of water of this `dp` (m).
+    fn has_end_in_buffer(&self, bounds: &Bounds<D>, length: f64, dp: f64) -> bool {
+        let ends = [&bounds.min, &bounds.max].map(|x| self.beyond(x));
+        ends.iter().any(|beyond| *beyond > 1e-6 * dp && *beyond < length * (1.0 - 1e-9))
     }
 
     /// The prescribed velocity (m/s) out of the water at `x` (m) and time `t` (s).
@@ -372,6 +378,32 @@ impl<const D: usize> FaceExchange<D> {
     }
 }
 
+/// The discharge (m³/s; m²/s in 2-D) out of the water that face number `i` prescribes at time `t` (s), over the present buffer.
+/// `None` if the face has no velocity.
+pub(crate) fn prescribed_discharge<const D: usize>(system: &System<D>, i: usize, t: f64) -> Option<f64> {
+    let Fluid { particles, buffer, .. } = &system.fluid;
+    let face = &system.fluid_domain.open_boundaries[i];
+    face.velocity.as_ref()?;
+    let own = buffer.faces.iter().zip(&particles.r[system.particle_count()..]).filter(|(face, _)| **face as usize == i);
+    let speeds = own.filter_map(|(_, r)| face.outward_velocity(r, t)).sum::<f64>();
+    let volume = system.particle_mass() / system.properties.rho0;
+    Some(speeds * volume * system.water_multiplicity() / buffer_length(&system.model))
+}
+
+/// The face in whose buffer moving solid number `i` has an end at `pose`.
+pub(crate) fn face_reached<'a, const D: usize>(
+    system: &'a System<D>,
+    i: usize,
+    pose: &Pose<D>,
+) -> Option<&'a OpenBoundary<D>> {
+    let (faces, spec) = (&system.fluid_domain.open_boundaries, &system.solids[i].spec);
+    if faces.is_empty() || matches!(spec.role, Role::Fixed) {
+        return None;
+    }
+    let (bounds, length) = (spec.shape.bounds_at(pose), buffer_length(&system.model));
+    faces.iter().find(|face| face.has_end_in_buffer(&bounds, length, system.model.dp))
+}
+
 /// Refuses open boundary number `i` of a setup if it cannot be.
 ///
 /// # Errors
@@ -405,9 +437,8 @@ pub(crate) fn check<const D: usize>(setup: &Setup<D>, i: usize) -> Result<()> {
         return Err(Error::scene(what).help(help));
     }
     for solid in &setup.solids {
-        let Bounds { min, max } = solid.shape.bounds_at(&solid.initial_kinematics().pose);
-        let ends = [min[axis], max[axis]].map(|x| (x - at) * face.outward());
-        if !ends.iter().any(|beyond| *beyond > 1e-6 * setup.model.dp && *beyond < length * (1.0 - 1e-9)) {
+        let bounds = solid.shape.bounds_at(&solid.initial_kinematics().pose);
+        if !face.has_end_in_buffer(&bounds, length, setup.model.dp) {
             continue;
         }
         let end = at + face.outward() * length;

@@ -8,9 +8,9 @@
 //! not wrapped: its kinematics go on beyond the sides. Its boundary particles stand in the arrays twice for each periodic
 //! axis, an even and an odd number of periods from its place: one copy with its middle between the sides, and one beyond
 //! the nearer side. So do those of a driven solid for each periodic axis along which it moves, if it starts between the
-//! sides and is short; a longer one reaches beyond both sides all the time. Of the copies of a particle exactly one lies between the sides. It gives the load, and the others
-//! take its density. A copy moves by two periods when the middle of the solid passes the middle between the sides; then
-//! no water is near it.
+//! sides and is short; a longer one reaches beyond both sides all the time. Of the copies of a particle exactly one lies
+//! between the sides. It gives the load, and the others take its density. A copy moves by two periods when the middle of
+//! the solid passes the middle between the sides; then no water is near it.
 
 use super::{
     Fluid, RemovedParticle, System, open_boundary,
@@ -389,7 +389,9 @@ pub(crate) fn check<const D: usize>(
         let rows = (length / dp).round();
         if (length / dp - rows).abs() > 1e-6 * rows {
             let what = format!("the period along {name}, {length} m, is not a whole number of dp");
-            return Err(Error::scene(what).help(format!("write  dp = {}", length / rows)));
+            // Nine digits, without the round-off of the quotient.
+            let spacing = format!("{:.8e}", length / rows).parse().unwrap_or(length / rows);
+            return Err(Error::scene(what).help(format!("write  dp = {spacing}")));
         }
         for solid in solids.iter().filter(|solid| matches!(solid.role, Role::Free(_))) {
             check_free(solid, (name, axis), [from, to], width)?;

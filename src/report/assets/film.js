@@ -22,6 +22,36 @@ function planes(bytes, offset, count) {
   return all;
 }
 
+/** For each particle of a frame of `n` its number in the frame before, -1 for a new one; null where all are the same. */
+function origins(change, n, bytes) {
+  if (!change) return null;
+  const gone = floats(bytes, change.at, change.gone), fresh = floats(bytes, change.at + 4 * change.gone, change.new), from = new Int32Array(n);
+  for (let k = 0, i = 0, g = 0, f = 0; k < n; k++) {
+    if (fresh[f] === k) { from[k] = -1; f++; continue; }
+    while (gone[g] === i) { g++; i++; }
+    from[k] = i++;
+  }
+  return from;
+}
+
+/** The frames of `reel`: whole numbers by frame and channel. */
+function unroll(reel, bytes) {
+  let at = reel.offset, before = null;
+  return reel.counts.map((n, f) => {
+    const from = origins(reel.changes[f], n, bytes);
+    const now = reel.channels.map((_, c) => {
+      const q = planes(bytes, at, n);
+      at += 2 * n;
+      if (!reel.alone[f]) for (let i = 0, b = before[c]; i < n; i++) {
+        const then = from ? from[i] < 0 ? 0 : b[from[i]] : b[i];
+        q[i] = then + ((q[i] >>> 1) ^ -(q[i] & 1));
+      }
+      return q;
+    });
+    return before = now;
+  });
+}
+
 /** The frames of a run: where its particles and solids are at any time. */
 class Film {
   constructor(run, bytes) {
@@ -32,26 +62,22 @@ class Film {
     this.dim = reel.channels.filter(c => "xyz".includes(c.name)).length;
     this.dp = (reel.dp || 0.01) * reel.apart;
     this.ranges = Object.fromEntries(reel.ranges);
-    this.read(reel, bytes);
+    this.frames = unroll(reel, bytes);
+    this.alone = reel.alone;
+    this.following = i => {
+      if (this.followed?.i !== i) {
+        const from = origins(reel.changes[i + 1], reel.counts[i + 1], bytes), next = from && new Int32Array(reel.counts[i]).fill(-1);
+        from?.forEach((p, k) => { if (p >= 0) next[p] = k; });
+        this.followed = { i, next };
+      }
+      return this.followed.next;
+    };
+    this.moorings = reel.lines && { ...reel.lines, frames: unroll(reel.lines, bytes) };
     const { skins } = reel;
     this.poses = floats(bytes, skins.poses, stage ? 12 * reel.times.length * stage.solids.length : 0);
     this.solids = this.skins(stage ? stage.solids : [], skins, bytes);
     this.x = [0, 1, 2].map(() => new Float32Array(0));
     this.bounds = this.around();
-  }
-
-  read(reel, bytes) {
-    let at = reel.offset, before = null;
-    this.frames = reel.counts.map((n, f) => {
-      const now = reel.channels.map((_, c) => {
-        const q = planes(bytes, at, n);
-        at += 2 * n;
-        if (!reel.alone[f]) for (let i = 0, b = before[c]; i < n; i++) q[i] = b[i] + ((q[i] >>> 1) ^ -(q[i] & 1));
-        return q;
-      });
-      return before = now;
-    });
-    this.alone = reel.alone;
   }
 
   skins(solids, skins, bytes) {
@@ -87,8 +113,10 @@ class Film {
     const { min, step } = this.channels[c], p = this.frames[i][c];
     if (a < 1e-6) { for (let k = 0; k < out.length; k++) out[k] = min + step * p[k]; return; }
     const q = this.frames[i + 1][c], most = c < this.dim ? 0.5 * this.span[c] : Infinity;
+    // A particle that is not in the next frame stays.
+    const next = this.following(i);
     for (let k = 0; k < out.length; k++) {
-      const d = q[k] - p[k];
+      const d = next ? next[k] < 0 ? 0 : q[next[k]] - p[k] : q[k] - p[k];
       out[k] = min + step * (p[k] + (d > most || d < -most ? 0 : a * d));
     }
   }
@@ -115,6 +143,23 @@ class Film {
     return p.map((x, k) => x + a * (q[k] - x));
   }
 
+  /** The mooring lines where they were placed: the nodes of each, m. */
+  lines() {
+    if (!this.moorings) return [];
+    const { i } = this.at, { frames, channels, alone, changes, nodes } = this.moorings;
+    const a = i + 1 < frames.length && !alone[i + 1] && !changes[i + 1] ? this.at.a : 0;
+    let from = 0;
+    return nodes[i].map(n => {
+      const line = Array.from({ length: n }, (_, k) => [0, 1, 2].map(c => {
+        if (!channels[c]) return 0;
+        const p = frames[i][c][from + k], q = a ? frames[i + 1][c][from + k] : p;
+        return channels[c].min + channels[c].step * (p + a * (q - p));
+      }));
+      from += n;
+      return line;
+    });
+  }
+
   /** The box that holds the water of all frames, but for single drops, and the moving solids: low and high corner. */
   around() {
     const low = [1e9, 1e9, 1e9], high = [-1e9, -1e9, -1e9];
@@ -134,6 +179,7 @@ class Film {
         const pose = this.pose(s);
         for (const line of solid.lines) for (const x of line.points) moved(pose, x).forEach((x, c) => c < this.dim && take(c, x));
       });
+      for (const line of this.lines()) for (const x of line) x.forEach((x, c) => c < this.dim && take(c, x));
     });
     return [low, high].map((x, k) => x.slice(0, this.dim).map(x => x + (k ? 2 : -2) * this.dp));
   }

@@ -141,8 +141,9 @@ class View {
     if (this.turning) this.edges(on);
     else {
       if (look.show.surface) this.surface(on);
-      this.solids(on, solid => solid.role !== "fixed");
     }
+    this.moorings(on);
+    if (!this.turning) this.solids(on, solid => solid.role !== "fixed");
     if (look.show.gauges) this.gauges(on);
     if (look.show.names) this.names(on);
     on.restore();
@@ -225,11 +226,33 @@ class View {
     on.globalAlpha = 1;
   }
 
+  /** The mooring lines; in a section what is near to it. */
+  moorings(on) {
+    const { film, cut } = this, [u, v] = this.axes(), axis = "xyz".indexOf(this.look.mode);
+    const off = x => x[axis] - cut, crosses = (a, b) => off(a) * off(b) <= 0 || Math.min(Math.abs(off(a)), Math.abs(off(b))) < film.dp;
+    on.beginPath();
+    for (const line of film.lines()) line.forEach((x, k) => {
+      const at = this.pixel([u, v].map(a => a[0] * x[0] + a[1] * x[1] + a[2] * x[2]));
+      if (k && (cut === null || crosses(line[k - 1], x))) on.lineTo(...at); else on.moveTo(...at);
+    });
+    on.strokeStyle = this.css.line;
+    on.lineJoin = on.lineCap = "round";
+    on.lineWidth = 1.6;
+    on.stroke();
+  }
+
   surface(on) {
     const [x0, y1] = this.sheet([this.margin[0], 0]), [x1, y0] = this.sheet([this.wide, this.height - this.margin[1]]), { dp } = this.film;
     const lines = surface(this.water, this.skins, dp, [x0 - 3 * dp, y0 - 3 * dp, x1 + 3 * dp, y1 + 3 * dp]);
+    // Water goes on beyond faces, periodic sides and symmetry planes.
+    const axes = this.axes(), ends = [0, 1].map(i => (this.film.run.stage?.ends ?? []).filter(([axis]) => axes[i][axis] === 1).map(([, at]) => at));
+    const goesOn = k => [0, 1].some(i => {
+      const [p, q] = [lines[k + i], lines[k + 2 + i]], along = Math.abs(lines[k + 1 - i] - lines[k + 3 - i]);
+      return along > Math.abs(p - q) && ends[i].some(at => Math.max(Math.abs(p - at), Math.abs(q - at)) < 1.5 * dp);
+    });
     on.beginPath();
     for (let k = 0; k < lines.length; k += 4) {
+      if (goesOn(k)) continue;
       on.moveTo(...this.pixel([lines[k], lines[k + 1]]));
       on.lineTo(...this.pixel([lines[k + 2], lines[k + 3]]));
     }

@@ -72,7 +72,7 @@ impl OpenBoundaryConfig {
     }
 
     /// Number of the axis and coordinate (m).
-    fn place(&self) -> Option<(usize, f64)> {
+    pub(crate) fn place(&self) -> Option<(usize, f64)> {
         match (self.x, self.y) {
             (Some(x), None) => Some((0, x)),
             (None, Some(y)) => Some((1, y)),

@@ -1,8 +1,8 @@
 //! Reactions of locks, end stops and ropes along their rows, where the engine reports only part of them.
 //!
 //! With several solver iterations rapier reports only the last impulse; with one, position correction leaves 1e-6 unreported.
-//! The momentum of the solids gives the rest: with R its unexplained change, the reactions f satisfy Σ f Jᵀ = R. Starting from the last impulse times the
-//! number of iterations they are corrected row by row, f ← f + J M⁻¹ R/(J M⁻¹ Jᵀ), until R vanishes (Kaczmarz 1937).
+//! The momentum of the solids gives the rest: with R its unexplained change, the reactions f satisfy Σ f Jᵀ = R. Starting from
+//! the last impulse times the number of iterations they are corrected row by row, f ← f + J M⁻¹ R/(J M⁻¹ Jᵀ), until R vanishes (Kaczmarz 1937).
 
 use super::jacobian::{ConstraintJacobian, Mobility};
 use crate::{

@@ -34,13 +34,15 @@ pub struct MooringReading<const D: usize> {
     pub on_bed: f64,
     /// Angle of the second end above the horizontal, rad.
     pub anchor_angle: f64,
+    /// Number of the segment that has broken.
+    pub broken: Option<usize>,
 }
 
 impl<const D: usize> Default for MooringReading<D> {
     /// Of a line that does not act.
     fn default() -> Self {
         let end_forces = [Vector::zeros(); 2];
-        Self { nodes: Vec::new(), tensions: Vec::new(), end_forces, on_bed: 0.0, anchor_angle: 0.0 }
+        Self { nodes: Vec::new(), tensions: Vec::new(), end_forces, on_bed: 0.0, anchor_angle: 0.0, broken: None }
     }
 }
 
@@ -181,8 +183,10 @@ impl<const D: usize> Mooring<D> {
             nodes: state.x.clone(),
             tensions: (0..line.segments()).map(|s| line.tension(s)).collect(),
             end_forces: [0, 1].map(|k| self.end_force(k)),
-            on_bed: (0..around.len()).filter(lies).map(|i| line.share(i)).sum(),
+            // The sum of no numbers would be −0.
+            on_bed: (0..around.len()).filter(lies).map(|i| line.share(i)).fold(0.0, |sum, length| sum + length),
             anchor_angle: (-q[D - 1]).clamp(-1.0, 1.0).asin(),
+            broken: state.broken.map(|segment| segment as usize),
         }
     }
 

@@ -8,8 +8,8 @@
 //! - weight less buoyancy of the wet share φ: (m − φ ρ A) l₀ g
 //! - drag ½ ρ d l₀ φ (C_d |u_n| u_n + π C_dAx |u_t| u_t) of the velocity u of the water relative to the node
 //! - added mass φ ρ A l₀ (C_a (1 − t tᵀ) + C_aAx t tᵀ)
-//! - a bed: stiffness k c l₀ times the depth of the node in it, and damping b c l₀, with the contact width c; along it the same stiffness from where the node
-//!   came to lie, up to the Coulomb friction, beyond which the node slides
+//! - a bed: stiffness k c l₀ times the depth of the node in it, and damping b c l₀, with the contact width c; along it the same
+//!   stiffness from where the node came to lie, up to the Coulomb friction, beyond which the node slides
 //!
 //! The acceleration of the water is not in these forces: it is small beside the drag of a line much thinner than the waves are high.
 

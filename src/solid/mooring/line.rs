@@ -92,6 +92,11 @@ impl<const D: usize> MooringLine<D> {
         self.bodies.len() - 1
     }
 
+    /// Number of the node at end `k`.
+    pub(crate) fn end_node(&self, k: usize) -> usize {
+        k * self.segments()
+    }
+
     /// Length without tension, m.
     pub(crate) fn length(&self) -> f64 {
         self.state.segment * self.segments() as f64
@@ -171,9 +176,9 @@ impl<const D: usize> MooringLine<D> {
         around: &[NodeSurroundings<D>],
         gravity: &Vector<D>,
     ) -> [Vector<D>; 2] {
-        let (mut impulses, nodes) = ([Vector::zeros(); 2], [0, self.segments()]);
+        let mut impulses = [Vector::zeros(); 2];
         for k in (0..2).filter(|k| self.held[*k]) {
-            let i = nodes[k];
+            let i = self.end_node(k);
             let velocity = (ends[k] - self.state.x[i]) / dt;
             let mass = self.load(i, around, gravity).mass;
             impulses[k] -= mass * (velocity - self.state.v[i]);
@@ -184,9 +189,9 @@ impl<const D: usize> MooringLine<D> {
 
     /// Ends a step `dt` (s) long with the held ends at the points `ends` (m) and these `impulses` (N s) on what holds them.
     pub(super) fn end_step(&mut self, ends: [Vector<D>; 2], dt: f64, impulses: [Vector<D>; 2]) {
-        let nodes = [0, self.segments()];
         for k in (0..2).filter(|k| self.held[*k]) {
-            self.state.x[nodes[k]] = ends[k];
+            let node = self.end_node(k);
+            self.state.x[node] = ends[k];
         }
         self.state.end_forces = impulses.map(|impulse| impulse / dt);
     }

@@ -1,7 +1,8 @@
 //! Mooring lines with mass: elastic catenaries, and lumped-mass lines at rest and in motion.
 //!
 //! `forces` has the equations, `line` their integration in time, `network` the points in which lines meet, `equilibrium` and
-//! `catenary` the line at rest, and `attached` the line on the solids of a running system. Nothing here knows the particles: the coupling says what is around each node.
+//! `catenary` the line at rest, and `attached` the line on the solids of a running system. Nothing here knows the particles: the
+//! coupling says what is around each node.
 
 mod attached;
 mod catenary;
@@ -24,3 +25,7 @@ pub(crate) use specification::{check_mooring, check_mooring_points, junctions};
 #[cfg(all(test, feature = "dim2", feature = "dim3"))]
 #[path = "../../../tests/unit/solid/mooring/references.rs"]
 mod references;
+
+#[cfg(all(test, feature = "dim2", feature = "dim3"))]
+#[path = "../../../tests/unit/solid/mooring/sample.rs"]
+mod sample;

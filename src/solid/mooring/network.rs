@@ -42,11 +42,6 @@ pub(crate) struct LineStep<const D: usize> {
 }
 
 impl<const D: usize> MooringLine<D> {
-    /// The number of the node at end `k`.
-    pub(super) fn end_node(&self, k: usize) -> usize {
-        k * self.segments()
-    }
-
     /// Eliminates the nodes between the ends after [`MooringLine::assemble`].
     fn condense(&mut self) -> CondensedEnds<D> {
         let n = self.segments();
@@ -184,8 +179,25 @@ impl Junctions {
         [0, 1].map(|k| self.points.iter().position(|point| point.contains(&(i, k))))
     }
 
+    /// Brings the `lines` that act to rest, those that meet together. Returns the largest force (N) that remains on a node or a point of
+    /// each, over the weight of a node. `around` says what is around a place (m), and `gravity` is in m/s².
+    pub(crate) fn bring_to_rest<const D: usize>(
+        &self,
+        lines: &mut [&mut MooringLine<D>],
+        around: &dyn Fn(&Vector<D>) -> NodeSurroundings<D>,
+        gravity: &Vector<D>,
+    ) -> Vec<f64> {
+        let joined = if self.is_empty() { 0.0 } else { self.find_rest(lines, around, gravity) };
+        let rest = |(i, line): (usize, &mut &mut MooringLine<D>)| match self.joins(i) {
+            true => joined,
+            false if line.state.acts => line.find_rest(around, gravity),
+            false => 0.0,
+        };
+        lines.iter_mut().enumerate().map(rest).collect()
+    }
+
     /// Brings the lines that meet to rest. Returns the largest force (N) that remains on a node or a point, over the weight of a node.
-    pub(crate) fn find_rest<const D: usize>(
+    fn find_rest<const D: usize>(
         &self,
         lines: &mut [&mut MooringLine<D>],
         around: &dyn Fn(&Vector<D>) -> NodeSurroundings<D>,

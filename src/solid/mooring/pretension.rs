@@ -45,12 +45,6 @@ pub(crate) fn forces_at_rest<const D: usize>(
     let (junctions, bodies) = junctions(points, moorings);
     let mut all: Vec<_> = lines.iter_mut().collect();
     junctions.attach(&mut all, &bodies);
-    let alone = all.iter_mut().enumerate().filter(|(i, _)| !junctions.joins(*i));
-    alone.for_each(|(_, line)| {
-        line.find_rest(&around, &gravity);
-    });
-    if !junctions.is_empty() {
-        junctions.find_rest(&mut all, &around, &gravity);
-    }
+    junctions.bring_to_rest(&mut all, &around, &gravity);
     lines.into_iter().map(|line| line.state.end_forces).collect()
 }

@@ -316,6 +316,33 @@ fn walls_that_differ_at_periodic_sides_are_a_warning() {
 }
 
 #[test]
+fn faces_whose_discharges_do_not_cancel_are_a_warning() {
+    let found = |inflow: &str, outflow: &str| {
+        let text = format!(
+            "dimension = 2\ndp = 0.05\nuntil = 1.0\ninflow = [{{ x = 0.0, {inflow} }}]\noutflow = [{{ x = 2.0, {outflow} }}]\n\
+             [[water]]\nfill = {{ box = {{ min = [0.0, 0.0], max = [2.0, 0.5] }} }}\nvelocity = [0.6, 0.0]\n\
+             [[solid]]\nname = \"bed\"\nfixed = true\nshape = {{ box = {{ size = [6.0, 0.3] }} }}\nat = {{ x = 1.0, y = -0.15 }}\n"
+        );
+        let report = preflight_report::<2>(&Scene::parse(&text, Path::new(""), &[]).unwrap());
+        report.findings.into_iter().find(|f| f.topic == "unequal_discharges")
+    };
+    let less = found("velocity = 0.6", "velocity = 0.4").expect("0.1 m²/s stay");
+    assert_eq!(less.severity, Severity::Warning);
+    assert_eq!(less.what, "0.3 m²/s of water enter through the faces, and 0.2 m²/s leave");
+    assert_eq!(less.mend, "give \"outflow\" 1.5 times its velocity, or a level without a velocity");
+    let reversed = found("velocity = -0.6", "velocity = 0.6").expect("water leaves at both faces");
+    assert!(reversed.mend.contains("positive in the sense of the flow"), "{}", reversed.mend);
+    for (inflow, outflow) in [
+        ("velocity = 0.6", "velocity = 0.6"),
+        ("velocity = \"2.4*y\"", "velocity = 0.6"),
+        ("velocity = 0.6", "level = 0.5"),
+        ("velocity = 0.6, factor = \"1+0.1*t\"", "velocity = 0.6"),
+    ] {
+        assert_eq!(found(inflow, outflow), None, "{inflow}; {outflow}");
+    }
+}
+
+#[test]
 fn water_removed_by_solids_is_a_warning() {
     let wide = [("solid.sill.shape.box.size", "[1.1, 0.5]"), ("solid.sill.at.x", "1.45"), ("solid.box.at.x", "0.5")];
     let found = report(&wide);

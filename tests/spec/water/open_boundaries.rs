@@ -152,6 +152,24 @@ fn open_boundaries_that_cannot_be_are_refused_with_the_number_that_would_do() {
 }
 
 #[test]
+fn a_body_that_drifts_into_a_buffer_stops_the_run() {
+    let box_in_flow = |x: f64| {
+        let shape = Shape::Box { size: Vector::from([0.3, 0.2]) };
+        channel(Model::water(2, DP, DEPTH), 1.0).solid(common::float(shape, [x, 0.75], 500.0))
+    };
+    let refused = Simulation::new(box_in_flow(1.95)).err().expect("it reaches into the buffer").to_string();
+    assert!(refused.contains("solid \"float\" ends in the buffer of open boundary \"outlet\""), "{refused}");
+    // It falls into the water beside the outlet, which carries it away.
+    let mut sim = Simulation::new(box_in_flow(1.8)).expect("a sound setup");
+    let stopped = common::run_to(&mut sim, 5.0).expect_err("it passes the outlet");
+    let fault = stopped.fault.as_ref().expect("a fault of the run");
+    assert_eq!(fault.who, "body \"float\"");
+    assert_eq!(fault.reason, "an end in the buffer of open boundary \"outlet\" at x = 2");
+    assert!((fault.position[0] - (LENGTH - 0.15)).abs() < 0.05, "{:?}", fault.position);
+    assert!(stopped.help.as_deref().unwrap_or_default().contains("Hold it with a mooring"), "{:?}", stopped.help);
+}
+
+#[test]
 fn the_force_that_holds_a_discharge_is_the_drag_of_poiseuille_flow() {
     // Between plates: Q = a H³/(12 ν).
     let (height, length, nu) = (1.0, 0.5, 0.1);

@@ -7,6 +7,9 @@ fn units_and_labels_follow_from_column_names() {
     assert_eq!(["fx_N_per_m", "fx_N", "heave_m, 0 at 2 s", "vx_mps", "x"].map(unit), ["N/m", "N", "m", "m/s", "–"]);
     assert_eq!(unit("front_m (2)"), "m", "the second check of a series");
     assert_eq!(["power_W_per_m", "flow_m2ps", "eta_at_1.5_m"].map(unit), ["W/m", "m²/s", "m"]);
+    let faces = ["entered_kg_per_m", "momentum_x_Ns_per_m", "momentum_x_Ns", "left_kg", "acceleration_mps2"];
+    assert_eq!(faces.map(unit), ["kg/m", "N s/m", "N s", "kg", "m/s²"]);
+    assert_eq!(faces.map(column_label)[..2], ["entered", "momentum x"]);
     assert_eq!(["fx_N_per_m", "water_kinetic_J", "x"].map(column_label), ["fx", "water kinetic", "x"]);
     let row = ["eta_at_1.5_m", "below_1_at_-0.5_0.3_m", "vx_at_1_0.2_mps", "p_at_0_0_Pa"];
     assert_eq!(row.map(column_label), ["eta at 1.5 m", "below 1 at -0.5, 0.3 m", "vx at 1, 0.2 m", "p at 0, 0 m"]);

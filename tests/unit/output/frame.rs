@@ -1,6 +1,7 @@
 //! Unit tests of `src/output/frame.rs`.
 
 use super::*;
+use crate::output::FrameSequence;
 
 #[test]
 fn points_in_2d_are_written_with_a_third_coordinate_and_a_vertex_each() -> io::Result<()> {
@@ -28,4 +29,25 @@ fn an_unknown_field_is_refused_with_the_nearest_name() {
     let plan = FramesPlan { every: 1.0, fields: vec!["presure".into()], crop: None, moorings: false };
     let error = FrameWriter::new(&std::env::temp_dir(), &plan, vec![]).err();
     assert_eq!(error.and_then(|e| e.help), Some("did you mean \"pressure\"?".into()));
+}
+
+#[test]
+fn a_broken_line_is_read_in_two_parts_and_one_that_does_not_act_in_none() -> Result<()> {
+    let folder = std::env::temp_dir().join(format!("pontoon-frame-of-lines-{}", std::process::id()));
+    let plan = FramesPlan { every: 1.0, fields: vec![], crop: None, moorings: true };
+    let mut writer = FrameWriter::new(&folder, &plan, vec![])?;
+    let line = |y: f64, segments: usize, broken: Option<usize>| MooringReading::<2> {
+        nodes: (0..=segments).map(|k| Vector::from([k as f64, y])).collect(),
+        tensions: vec![1.0; segments],
+        broken,
+        ..MooringReading::default()
+    };
+    writer
+        .write_lines("moorings_00000.vtu", &[line(0.0, 3, None), MooringReading::default(), line(2.0, 4, Some(1))])?;
+    writer.times.push(0.0);
+    writer.write_index()?;
+    let parts = FrameSequence::open(&folder)?.map(|frames| frames.moorings(0)).transpose()?.unwrap_or_default();
+    let nodes = |y: f32, from: u8, to: u8| (from..=to).map(|k| [f32::from(k), y, 0.0]).collect::<Vec<_>>();
+    assert_eq!(parts, [nodes(0.0, 0, 3), nodes(2.0, 0, 1), nodes(2.0, 2, 4)]);
+    std::fs::remove_dir_all(&folder).map_err(|why| Error::file(&folder, why))
 }

@@ -1,30 +1,12 @@
 use super::*;
-use crate::solid::mooring::forces::{BedPlane, LineMaterial, NodeSurroundings};
+use crate::solid::mooring::{
+    forces::{BedPlane, LineMaterial, NodeSurroundings},
+    sample::{self, GRAVITY, air, down},
+};
 
-const GRAVITY: f64 = 9.81;
-
-fn down<const D: usize>() -> Vector<D> {
-    Vector::from_fn(|i, _| if i == D - 1 { -GRAVITY } else { 0.0 })
-}
-
-/// A light chain in air.
+/// A chain that stretches, on a stiff bed.
 fn material() -> LineMaterial {
-    LineMaterial {
-        diameter: 0.004,
-        mass: 0.1,
-        stiffness: 200.0,
-        table: None,
-        damping: 0.0,
-        bending: 0.0,
-        added_mass: [1.0, 0.0],
-        drag: [1.2, 0.0],
-        water_density: 1000.0,
-        contact_width: 0.004,
-        contact_radius: 0.0,
-        bed_stiffness: 3e6,
-        bed_damping: 3e5,
-        bed_friction: 0.0,
-    }
+    LineMaterial { stiffness: 200.0, bed_stiffness: 3e6, bed_damping: 3e5, ..sample::material() }
 }
 
 fn bed<const D: usize>(x: &Vector<D>) -> NodeSurroundings<D> {
@@ -36,7 +18,6 @@ fn bed<const D: usize>(x: &Vector<D>) -> NodeSurroundings<D> {
 /// Largest error of the tension at the ends over the exact one, of a hanging line of `segments` segments.
 fn hanging_error<const D: usize>(segments: usize, ends: [Vector<D>; 2]) -> f64 {
     let mut line = MooringLine::straight(material(), 2.0, segments, ends);
-    let air = |_: &Vector<D>| NodeSurroundings::air();
     let left = line.find_rest(&air, &down());
     assert!(left < 1e-8, "{segments} segments: {left} of a node's weight remains");
     let (exact, _, _) = line.catenary(&air, &down()).unwrap();
@@ -111,7 +92,7 @@ fn a_table_gives_the_tension() {
         hung.bodies[4].mass = weight / GRAVITY;
         // The lower half is slack: its end is as high as the weight.
         hung.state.x[8] = [0.0, -1.0].into();
-        hung.find_rest(&|_: &Vector<2>| NodeSurroundings::air(), &down());
+        hung.find_rest(&air, &down());
         let length = -hung.state.x[4][1];
         assert!((length - (1.0 + strain)).abs() < 1e-4, "{weight} N: {length} m");
     }

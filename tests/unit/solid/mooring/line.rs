@@ -1,34 +1,11 @@
 use super::*;
-use crate::solid::mooring::forces::BedPlane;
-
-const GRAVITY: f64 = 9.81;
-
-fn down<const D: usize>() -> Vector<D> {
-    Vector::from_fn(|i, _| if i == D - 1 { -GRAVITY } else { 0.0 })
-}
-
-/// A line in air without losses.
-fn material() -> LineMaterial {
-    LineMaterial {
-        diameter: 0.004,
-        mass: 0.1,
-        stiffness: 500.0,
-        table: None,
-        damping: 0.0,
-        bending: 0.0,
-        added_mass: [1.0, 0.2],
-        drag: [1.2, 0.1],
-        water_density: 1000.0,
-        contact_width: 0.004,
-        contact_radius: 0.0,
-        bed_stiffness: 0.0,
-        bed_damping: 0.0,
-        bed_friction: 0.0,
-    }
-}
+use crate::solid::mooring::{
+    forces::BedPlane,
+    sample::{self, GRAVITY, down, material},
+};
 
 fn air<const D: usize>(line: &MooringLine<D>) -> Vec<NodeSurroundings<D>> {
-    vec![NodeSurroundings::air(); line.segments() + 1]
+    line.state.x.iter().map(sample::air).collect()
 }
 
 fn momentum<const D: usize>(line: &MooringLine<D>) -> Vector<D> {
@@ -183,7 +160,7 @@ fn friction_slows_what_slides() {
 fn a_stiff_line_bends_as_a_beam() {
     let beam = LineMaterial { bending: 20.0, stiffness: 1e5, ..material() };
     let mut line = MooringLine::<2>::straight(beam, 1.0, 40, [[0.0, 0.0].into(), [1.0, 0.0].into()]);
-    let left = line.find_rest(&|_| NodeSurroundings::air(), &down());
+    let left = line.find_rest(&sample::air, &down());
     let sag = -line.state.x[20][1];
     let exact = 5.0 * 0.1 * GRAVITY / (384.0 * 20.0);
     // Between fixed hinges the sag stretches the line; its tension bears less than 1 %.

@@ -1,34 +1,12 @@
 use super::*;
-use crate::solid::mooring::forces::LineMaterial;
-
-const GRAVITY: f64 = 9.81;
-
-fn down<const D: usize>() -> Vector<D> {
-    Vector::from_fn(|i, _| if i == D - 1 { -GRAVITY } else { 0.0 })
-}
+use crate::solid::mooring::{
+    forces::LineMaterial,
+    sample::{self, air, down},
+};
 
 /// A damped line in air.
 fn material() -> LineMaterial {
-    LineMaterial {
-        diameter: 0.004,
-        mass: 0.1,
-        stiffness: 500.0,
-        table: None,
-        damping: 0.4,
-        bending: 0.0,
-        added_mass: [1.0, 0.2],
-        drag: [1.2, 0.1],
-        water_density: 1000.0,
-        contact_width: 0.004,
-        contact_radius: 0.0,
-        bed_stiffness: 0.0,
-        bed_damping: 0.0,
-        bed_friction: 0.0,
-    }
-}
-
-fn air<const D: usize>(_: &Vector<D>) -> NodeSurroundings<D> {
-    NodeSurroundings::air()
+    LineMaterial { damping: 0.4, ..sample::material() }
 }
 
 fn step<const D: usize>(line: &MooringLine<D>, ends: [Vector<D>; 2]) -> LineStep<D> {
