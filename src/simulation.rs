@@ -30,11 +30,6 @@ pub use add_remove::AddedSolid;
 use on_device::OnDevice;
 use rollback::{RollbackControl, StoredState};
 
-#[cfg(feature = "gpu")]
-use crate::{
-    device::Adapter,
-    interaction::{PairSums, StepLimits},
-};
 use crate::{
     coupling::{Accounting, AccountingState, AcousticAddedMass, AddedMassState, Bodies, Hook, Interval, Moorings},
     error::{Error, ErrorCode, ErrorKind, Fault, Result},
@@ -48,6 +43,11 @@ use crate::{
     },
     system::{LimitViolation, System, SystemState, set_gravity_at, update_buffer, update_current},
     time_integration::{Stepper, step_size},
+};
+#[cfg(feature = "gpu")]
+use crate::{
+    device::Adapter,
+    interaction::{PairSums, StepLimits},
 };
 
 /// Water and solids moving through time.
@@ -203,13 +203,12 @@ impl<const D: usize> Simulation<D> {
 
     /// Advances by one step, not past time `end` (s). On a device it makes steps until time `pause` (s) is reached, and leaves the
     /// state there: call [`Simulation::fetch_from_device`] to read the water.
+    #[cfg(feature = "gpu")]
     pub(crate) fn step_to_pause(&mut self, pause: f64, end: f64) -> Result<()> {
-        #[cfg(feature = "gpu")]
-        if self.device.is_some() {
-            return on_device::steps(self, (u64::MAX, pause), end, &mut |_| Ok(()));
+        match self.device {
+            Some(_) => on_device::steps(self, (u64::MAX, pause), end, &mut |_| Ok(())),
+            None => self.step_to(end),
         }
-        let _ = pause;
-        self.step_to(end)
     }
 
     /// The same simulation with its water on the device `name`: the number of an adapter, `gpu` for the first graphics card, or

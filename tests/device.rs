@@ -8,10 +8,10 @@ use pontoon::{
     geometry::Shape,
     math::{Vector, expression::Formula},
     model::{
-        Diffusion, Dimension, KernelKind, Model, PairLoopKind, PressureGradient, Shifting, Slip, TimeScheme, Viscosity, Walls,
+        Diffusion, Dimension, KernelKind, Model, PairLoopKind, PressureGradient, Shifting, Slip, TimeScheme, Viscosity,
+        Walls,
     },
     simulation::{Setup, Simulation},
-    system::SpongeLayer,
     solid::{Dim, PrescribedMotion, SolidSpec, TimeFunction},
     sph::{
         density_diffusion::Molteni,
@@ -19,6 +19,7 @@ use pontoon::{
         trace::Trace,
         viscosity::{Artificial, Laminar, Riemann, Sps},
     },
+    system::SpongeLayer,
 };
 
 fn device() -> String {
@@ -150,7 +151,10 @@ fn every_law_agrees_with_the_reference() {
             ("tensile", base().kernel(KernelKind::Cubic { tensile: true })),
             ("sps", base().viscosity(Viscosity::Sps(Sps::default()))),
             ("shifting", base().shifting(Shifting::AwayFromSolids(Shift::default()))),
-            ("sps, shifting", base().viscosity(Viscosity::Sps(Sps::default())).shifting(Shifting::Everywhere(Shift::default()))),
+            (
+                "sps, shifting",
+                base().viscosity(Viscosity::Sps(Sps::default())).shifting(Shifting::Everywhere(Shift::default())),
+            ),
             ("corrected", base().gradient(PressureGradient::Corrected)),
             ("near surface", base().for_waves()),
         ];
@@ -301,7 +305,8 @@ fn lists_that_are_too_short_are_made_longer() {
     let dp = 0.02;
     let model = Model::water(2, dp, 0.3).for_free_bodies();
     let spacing = 0.9 * dp;
-    let places = (0..16).flat_map(|i| (0..14).map(move |j| Vector::from([f64::from(i) + 0.5, f64::from(j) + 0.5]) * spacing));
+    let places =
+        (0..16).flat_map(|i| (0..14).map(move |j| Vector::from([f64::from(i) + 0.5, f64::from(j) + 0.5]) * spacing));
     let walls = SolidSpec::fixed("tank", Shape::Tank { size: [0.8, 0.5].into(), thickness: 4.0 * dp });
     let body = SolidSpec::free("box", Shape::Box { size: [0.2, 0.2].into() }, 900.0).at([0.5, 0.12]);
     let setup = Setup::new(model).solid(walls).solid(body).water(places, 0.26);
@@ -382,7 +387,10 @@ where
     Dim<D>: Dimension<D>,
 {
     for model in every_choice::<D>(dp) {
-        let name = format!("{:?} {:?} {:?} {:?} {:?}", model.kernel, model.viscosity, model.diffusion, model.shifting, model.gradient);
+        let name = format!(
+            "{:?} {:?} {:?} {:?} {:?}",
+            model.kernel, model.viscosity, model.diffusion, model.shifting, model.gradient
+        );
         let (traces, units) = model.pair_traces::<D>().expect("traces");
         // Sums of the first pass: there is no stress yet, and gradients are corrected where few neighbours are.
         let plain = model.gradient == PressureGradient::Plain;
@@ -425,7 +433,11 @@ where
                     }
                     _ => {
                         let k: usize = input[1..].parse().unwrap();
-                        if input.starts_with('r') { (fluid.r[a][k] - r[k]) / length } else { (fluid.v[a][k] - v[k]) / speed }
+                        if input.starts_with('r') {
+                            (fluid.r[a][k] - r[k]) / length
+                        } else {
+                            (fluid.v[a][k] - v[k]) / speed
+                        }
                     }
                 };
                 let results = trace.evaluate(read);
@@ -441,11 +453,14 @@ where
                     add(&traces.fluid, r, &fluid.v[b], fluid.rho[b], &mut sums);
                 }
             });
-            system.visit_boundary_near(&fluid.r[a], &mut |b, r, _| add(&traces.wall, r, &boundary.v[b], boundary.rho[b], &mut sums));
+            system.visit_boundary_near(&fluid.r[a], &mut |b, r, _| {
+                add(&traces.wall, r, &boundary.v[b], boundary.rho[b], &mut sums)
+            });
             let acceleration = Vector::<D>::from_fn(|k, _| sums[k] * speed / units.time) + system.gravity();
             let (force, rate) = sizes(&sim, a);
             let off = (acceleration - sim.system().fluid_acceleration(a)).norm() / force.max(1.0);
-            let off_rate = (sums[D] / units.time - sim.system().fluid_density_rate(a) / model.rho0).abs() / rate.max(1e-3);
+            let off_rate =
+                (sums[D] / units.time - sim.system().fluid_density_rate(a) / model.rho0).abs() / rate.max(1e-3);
             worst = worst.max(if plain { off } else { 0.0 }).max(off_rate);
         }
         // Double precision; the constants of both are rounded in other units.
@@ -463,7 +478,8 @@ fn traces_evaluate_to_the_sums_of_the_reference() {
 fn a_pair_takes_no_more_operations_than_before() {
     // Arithmetic of a pair in gather form after the differences, by the trace; these may only fall.
     let count = |model: Model, dimension: usize| {
-        let traces = if dimension == 2 { model.pair_traces::<2>().unwrap().0 } else { model.pair_traces::<3>().unwrap().0 };
+        let traces =
+            if dimension == 2 { model.pair_traces::<2>().unwrap().0 } else { model.pair_traces::<3>().unwrap().0 };
         [traces.fluid.count(), traces.wall.count(), traces.extrapolation.count()]
     };
     let of = |dimension| {
@@ -511,10 +527,12 @@ fn every_shader_is_valid_and_translates_to_metal_and_hlsl() {
             let all = [&texts.search, &texts.lists, &texts.sweep, &texts.step, &texts.solids];
             for text in all.into_iter().chain(&texts.gaps).chain(&texts.inputs).chain(&texts.moments) {
                 let module = front::wgsl::parse_str(text).expect("WGSL");
-                let mut validator = valid::Validator::new(valid::ValidationFlags::all(), valid::Capabilities::default());
+                let mut validator =
+                    valid::Validator::new(valid::ValidationFlags::all(), valid::Capabilities::default());
                 let info = validator.validate(&module).expect("a valid shader");
                 let options = back::msl::Options::default();
-                back::msl::write_string(&module, &info, &options, &back::msl::PipelineOptions::default()).expect("Metal");
+                back::msl::write_string(&module, &info, &options, &back::msl::PipelineOptions::default())
+                    .expect("Metal");
                 let mut out = String::new();
                 let (options, pipeline) = (back::hlsl::Options::default(), back::hlsl::PipelineOptions::default());
                 back::hlsl::Writer::new(&mut out, &options, &pipeline).write(&module, &info, None).expect("HLSL");

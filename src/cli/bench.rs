@@ -144,7 +144,11 @@ pub fn bench(args: &BenchArgs) -> Result<String> {
 #[cfg(feature = "gpu")]
 fn on_devices(args: &BenchArgs) -> Result<String> {
     let Some(name) = &args.device else {
-        let mut rows = vec![["", "device", "interface", "kind", "largest buffer, GB", "binding, GB", "driver"].map(String::from).to_vec()];
+        let mut rows = vec![
+            ["", "device", "interface", "kind", "largest buffer, GB", "binding, GB", "driver"]
+                .map(String::from)
+                .to_vec(),
+        ];
         let gb = |bytes: u64| format!("{:.2}", bytes as f64 / 1e9);
         rows.extend(bench::adapters().into_iter().map(|of| {
             let sizes = [gb(of.buffer_bytes), gb(of.binding_bytes)];
@@ -166,7 +170,18 @@ fn on_devices(args: &BenchArgs) -> Result<String> {
         let text = serde_json::to_string_pretty(&timings);
         return text.map(|t| t + "\n").map_err(|e| Error::new(ErrorKind::Usage, format!("no JSON: {e}")));
     }
-    let head = ["model", "", "water", "boundary", "ms a step", "M particle-steps/s", "M particle-passes/s", "B a particle", "with lists", "set-up, s"];
+    let head = [
+        "model",
+        "",
+        "water",
+        "boundary",
+        "ms a step",
+        "M particle-steps/s",
+        "M particle-passes/s",
+        "B a particle",
+        "with lists",
+        "set-up, s",
+    ];
     let mut rows = vec![head.map(String::from).to_vec()];
     rows.extend(timings.iter().map(|t| {
         vec![

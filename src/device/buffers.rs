@@ -137,7 +137,12 @@ pub(super) struct Counts {
 
 impl Counts {
     /// Those of `system`, for lists that reach `margin` beyond the support.
-    pub(super) fn new<const D: usize>(system: &System<D>, layout: &Layout, adapter: &Adapter, margin: f64) -> Result<Self> {
+    pub(super) fn new<const D: usize>(
+        system: &System<D>,
+        layout: &Layout,
+        adapter: &Adapter,
+        margin: f64,
+    ) -> Result<Self> {
         let (water, model) = (system.fluid().len(), system.model());
         let n = water + system.boundary().len();
         let (mut low, mut high) = ([0; D], [0; D]);
@@ -154,9 +159,12 @@ impl Counts {
         }
         let cells: f64 = size.iter().map(|&x| f64::from(x)).product();
         if cells > 4e8 {
-            return Err(Error::new(ErrorKind::Usage, format!("the particles are spread over {cells:.1e} cells of half a kernel support"))
-                .with_code(ErrorCode::NoDevice)
-                .help("start the solids nearer to the water, or leave --device out"));
+            return Err(Error::new(
+                ErrorKind::Usage,
+                format!("the particles are spread over {cells:.1e} cells of half a kernel support"),
+            )
+            .with_code(ErrorCode::NoDevice)
+            .help("start the solids nearer to the water, or leave --device out"));
         }
         let ratio = model.support_radius() * (1.0 + margin) / model.dp;
         let volume = if D == 2 { std::f64::consts::PI * ratio.powi(2) } else { 4.19 * ratio.powi(3) };
@@ -233,7 +241,13 @@ pub(super) struct SearchBuffers {
 
 impl Buffers {
     /// Arrays for `counts` particles and the shaders of `texts`; with the step before if `verlet`.
-    pub(super) fn new(gpu: &Gpu, counts: &Counts, chunks: &SolidChunks, texts: &ShaderTexts, verlet: bool) -> Result<Self> {
+    pub(super) fn new(
+        gpu: &Gpu,
+        counts: &Counts,
+        chunks: &SolidChunks,
+        texts: &ShaderTexts,
+        verlet: bool,
+    ) -> Result<Self> {
         let ([rows, input_rows, kept_rows], gaps) = (texts.rows, texts.gaps.is_some());
         let (n, boundary) = (counts.n, counts.n - counts.water);
         let history = if verlet { 16 * n } else { 16 };
@@ -311,12 +325,14 @@ impl Buffers {
 
     /// Memory, B.
     pub(super) fn bytes(&self) -> u64 {
-        let PairBuffers { positions, velocities, built, sums, rows, spans, walls, aways, gaps, local, chunks } = &self.pairs;
+        let PairBuffers { positions, velocities, built, sums, rows, spans, walls, aways, gaps, local, chunks } =
+            &self.pairs;
         let SearchBuffers { order, count, start, blocks, spare_places, spare, spare_rows } = &self.search;
         let pairs = [positions, velocities, built, sums, rows, spans, walls, aways, gaps, local, chunks];
         let search = [order, count, start, blocks, spare_places, spare, spare_rows];
         let solids = [&self.slot, &self.solids, &self.depths, &self.loads];
-        let all = pairs.into_iter().chain(search).chain(solids).chain(self.state()).chain(&self.backup).chain(&self.lists);
+        let all =
+            pairs.into_iter().chain(search).chain(solids).chain(self.state()).chain(&self.backup).chain(&self.lists);
         all.map(wgpu::Buffer::size).sum()
     }
 

@@ -166,7 +166,9 @@ impl Gpu {
     fn failed(&self, what: &str) -> Error {
         Error::new(ErrorKind::Usage, format!("{} failed: {what}", self.adapter.name))
             .with_code(ErrorCode::DeviceFailed)
-            .help("where memory ran out, use fewer particles or another device; without --device the processor computes")
+            .help(
+                "where memory ran out, use fewer particles or another device; without --device the processor computes",
+            )
     }
 
     /// A buffer of `bytes`, zeros.
@@ -212,7 +214,8 @@ impl Gpu {
             count: None,
         };
         let entries: Vec<_> = declared.iter().map(entry).collect();
-        let group = self.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries });
+        let group =
+            self.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries });
         let layouts = [Some(&group)];
         let pipeline = self.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: None,
@@ -233,10 +236,8 @@ impl Gpu {
             compilation_options: wgpu::PipelineCompilationOptions::default(),
             cache: None,
         });
-        let bound = |&binding: &u32| wgpu::BindGroupEntry {
-            binding,
-            resource: buffers[binding as usize].as_entire_binding(),
-        };
+        let bound =
+            |&binding: &u32| wgpu::BindGroupEntry { binding, resource: buffers[binding as usize].as_entire_binding() };
         let entries: Vec<_> = module.bindings.iter().map(bound).collect();
         let descriptor = wgpu::BindGroupDescriptor { label: None, layout: &module.group, entries: &entries };
         let group = self.device.create_bind_group(&descriptor);

@@ -111,7 +111,8 @@ fn sponge_statements<const D: usize>(system: &System<D>, layout: &Layout, units:
             return Err(refused("a sponge layer a million kernel supports from the origin"));
         }
         let from = layout.place(&layer.from, 0, 0);
-        let words = |part: &[u32], cast: fn(u32) -> String| part.iter().map(|x| cast(*x)).collect::<Vec<_>>().join(", ");
+        let words =
+            |part: &[u32], cast: fn(u32) -> String| part.iter().map(|x| cast(*x)).collect::<Vec<_>>().join(", ");
         let (hi, lo) = (words(&from[..4], |x| format!("{}", x as i32)), words(&from[4..], |x| format!("{x}u")));
         let way = layer.to - layer.from;
         let way = way * (units.length / way.norm_squared());
@@ -188,8 +189,20 @@ impl<const D: usize> Device<D> {
         let verlet = matches!(model.scheme, TimeScheme::Verlet { .. });
         let buffers = Buffers::new(&gpu, &counts, &chunks, &texts, verlet)?;
         let passes = Passes::new(&gpu, &texts, &counts, &chunks, &buffers, verlet)?;
-        let mut device =
-            Self { gpu, layout, units, texts, counts, chunks, buffers, passes, start: time, ticks: 0, steps: FIRST_STEPS, verlet };
+        let mut device = Self {
+            gpu,
+            layout,
+            units,
+            texts,
+            counts,
+            chunks,
+            buffers,
+            passes,
+            start: time,
+            ticks: 0,
+            steps: FIRST_STEPS,
+            verlet,
+        };
         device.load(system, stepper, time)?;
         Ok(device)
     }
@@ -210,8 +223,9 @@ impl<const D: usize> Device<D> {
         let (water, boundary) = (system.fluid(), system.boundary());
         let count = water.len();
         let of_water = (0..count).map(|i| (water.r[i], water.v[i], water.rho[i], u32::MAX));
-        let of_boundary = (0..boundary.len())
-            .map(|i| (boundary.r[i], boundary.v[i], boundary.rho[i], device_state::solid_of_boundary(system, i) as u32));
+        let of_boundary = (0..boundary.len()).map(|i| {
+            (boundary.r[i], boundary.v[i], boundary.rho[i], device_state::solid_of_boundary(system, i) as u32)
+        });
         let all: Vec<_> = of_water.chain(of_boundary).collect();
         let places: Vec<_> =
             all.iter().enumerate().map(|(i, (r, _, _, solid))| layout.place(r, i as u32, *solid)).collect();
@@ -409,7 +423,8 @@ impl<const D: usize> Device<D> {
     /// Gives the state back to `system` and `stepper`.
     pub(crate) fn fetch(&mut self, system: &mut System<D>, stepper: &mut Stepper<D>) -> Result<()> {
         let (n, water) = (self.counts.n, self.counts.water);
-        let [places, motion] = self.gpu.read::<u32, 2>([(&self.buffers.places, 8 * n), (&self.buffers.motion, 4 * n)])?;
+        let [places, motion] =
+            self.gpu.read::<u32, 2>([(&self.buffers.places, 8 * n), (&self.buffers.motion, 4 * n)])?;
         let mut slot = vec![0; n];
         places.chunks_exact(8).enumerate().for_each(|(k, place)| slot[place[3] as usize] = k);
         let layout = self.layout;

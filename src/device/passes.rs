@@ -211,16 +211,8 @@ fn rates(
         if start < counts.water {
             let water = threads.min(counts.water - start);
             if let Some(text) = &texts.moments {
-                let buffers = vec![
-                    params,
-                    &buffers.control,
-                    &first,
-                    &b.positions,
-                    &b.velocities,
-                    list,
-                    &b.spans,
-                    &b.rows,
-                ];
+                let buffers =
+                    vec![params, &buffers.control, &first, &b.positions, &b.velocities, list, &b.spans, &b.rows];
                 corrections.push(Maker::new(gpu, text, buffers)?.pass("sweep_moments", water)?);
             }
             sweeps.push(sweep.pass("sweep_water", water)?);

@@ -111,14 +111,22 @@ impl<const D: usize> ShaderInput<'_, D> {
             .replace("{{RATE}}", &D.to_string());
         let gaps = include_str!("shaders/gaps.wgsl")
             .replace("{{SLOPE}}", &indented(&statements(&self.traces.slope, "t", str::to_string)?, 4))
-            .replace("{{ADD}}", &(0..D).map(|k| format!("    sums[{k}u * params.n + k] += sum.{};\n", axis(&k.to_string()))).collect::<String>());
+            .replace(
+                "{{ADD}}",
+                &(0..D)
+                    .map(|k| format!("    sums[{k}u * params.n + k] += sum.{};\n", axis(&k.to_string())))
+                    .collect::<String>(),
+            );
         Some(ShaderTexts {
             gaps: self.gaps.then(|| with_head(&gaps)),
             search: with_head(include_str!("shaders/search.wgsl")),
             lists: with_head(include_str!("shaders/lists.wgsl")),
             sweep: with_head(&self.sweep(&properties, &eos)?),
             step: with_head(&step),
-            inputs: (self.traces.rows[0] > 0).then(|| self.input_rows(&properties)).flatten().map(|text| with_head(&text)),
+            inputs: (self.traces.rows[0] > 0)
+                .then(|| self.input_rows(&properties))
+                .flatten()
+                .map(|text| with_head(&text)),
             moments: self.moments(&properties).map(|text| with_head(&text)),
             rows: [self.traces.rows[1], self.traces.rows[0], self.kept_rows()],
             stress: self.traces.layout.stress,
@@ -193,15 +201,19 @@ impl<const D: usize> ShaderInput<'_, D> {
             // The results of the fit have the names of those of the pair.
             beside = format!("{{\n{wall}}}\n{{\n{}}}\n", &beside[wall.len()..]);
         }
-        let zeros = |name: &str, rows: usize| (0..rows).map(|row| format!("var {name}{row} = 0.0f;\n")).collect::<String>();
-        let store = |rows: usize| {
-            (0..rows).map(|row| format!("sums[{row}u * params.n + k] = sum{row};\n")).collect::<String>()
-        };
+        let zeros =
+            |name: &str, rows: usize| (0..rows).map(|row| format!("var {name}{row} = 0.0f;\n")).collect::<String>();
+        let store =
+            |rows: usize| (0..rows).map(|row| format!("sums[{row}u * params.n + k] = sum{row};\n")).collect::<String>();
         let target = statements(&wall_target(properties, eos), "w", |name| match name.strip_prefix("sum") {
             Some(row) => format!("fit{row}"),
             None => wall_input(name),
         })?;
-        let target = if relaxed { include_str!("shaders/wall_target.wgsl").replace("{{TARGET}}", &target) } else { String::new() };
+        let target = if relaxed {
+            include_str!("shaders/wall_target.wgsl").replace("{{TARGET}}", &target)
+        } else {
+            String::new()
+        };
         let text = include_str!("shaders/sweep.wgsl")
             .replace("{{ZERO_SUMS}}", &indented(&zeros("sum", sums), 8))
             .replace("{{ZERO_FIT}}", &indented(&zeros("fit", if relaxed { fit_rows } else { 0 }), 8))
@@ -409,7 +421,10 @@ fn wall_target<const D: usize>(properties: &FluidProperties<D>, eos: &EquationOf
         let away = fit.direction();
         for k in 0..3 {
             let of = if k < D { away[k] } else { recorder.constant(0.0) };
-            recorder.result(&format!("away{k}"), fit.weight_sum.select_below(recorder.constant(1e-9), recorder.constant(0.0), of));
+            recorder.result(
+                &format!("away{k}"),
+                fit.weight_sum.select_below(recorder.constant(1e-9), recorder.constant(0.0), of),
+            );
         }
     })
 }

@@ -53,7 +53,12 @@ impl SolidChunks {
     }
 
     /// The words of all solids.
-    pub(super) fn solids<const D: usize>(&self, system: &System<D>, layout: &Layout, units: &Units) -> Vec<[u32; SOLID_WORDS]> {
+    pub(super) fn solids<const D: usize>(
+        &self,
+        system: &System<D>,
+        layout: &Layout,
+        units: &Units,
+    ) -> Vec<[u32; SOLID_WORDS]> {
         let (rate, speed) = (units.time, units.time / units.length);
         let one = |i: usize| {
             let (solid, mut words) = (&system.solids()[i], [0; SOLID_WORDS]);

@@ -104,7 +104,13 @@ fn add<K: Kernel, T, W, L: Term<D>, const D: usize>(
         return 0.0;
     }
     let difference = b.side.compression - a.side.compression;
-    let pair = PairContribution::new::<K, L, true>((&laws.kernel, law), (r_ab, v_ab, r2, difference), laws.eta2, a.side, b.side);
+    let pair = PairContribution::new::<K, L, true>(
+        (&laws.kernel, law),
+        (r_ab, v_ab, r2, difference),
+        laws.eta2,
+        a.side,
+        b.side,
+    );
     let approach = pair.approach_rate(laws.reach2);
     pair.add_to(law, sum, &mut Accumulators::filled_with(0.0));
     approach

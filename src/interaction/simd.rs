@@ -363,14 +363,13 @@ impl<S: Simd, K: Kernel, const D: usize> SlabInput<'_, S, K, D> {
     fn particle_in_lane(&self, c: usize, l: usize) -> BroadcastParticle<S, D> {
         let PackedCluster { x, v, s } = &self.clusters[c];
         let all = |x: f32| f32x8::splat(self.simd, x);
-        let mut one =
-            BroadcastParticle {
-                cluster: c,
-                x: [i32x8::splat(self.simd, 0); D],
-                v: [self.zero; D],
-                compression_lo: all(s[1][l]),
-                side: self.pair_side::<true>(c, [all(s[0][l]), all(s[2][l]), all(s[3][l])], |row| all(row[l])),
-            };
+        let mut one = BroadcastParticle {
+            cluster: c,
+            x: [i32x8::splat(self.simd, 0); D],
+            v: [self.zero; D],
+            compression_lo: all(s[1][l]),
+            side: self.pair_side::<true>(c, [all(s[0][l]), all(s[2][l]), all(s[3][l])], |row| all(row[l])),
+        };
         for k in 0..D {
             one.x[k] = i32x8::splat(self.simd, x[k][l]);
             one.v[k] = all(v[k][l]);
@@ -454,7 +453,8 @@ impl<S: Simd, K: Kernel, const D: usize> SlabInput<'_, S, K, D> {
             let side = self.pair_side::<CORRECTED>(j, [load(&s[0]), load(&s[2]), load(&s[3])], load);
             let difference = (side.compression - one.side.compression) + (load(&s[1]) - one.compression_lo);
             let geometry = (r_ab, v_ab, r2, difference);
-            let pair = PairContribution::new::<K, L, CORRECTED>((&self.kernel, law), geometry, self.eta2, one.side, side);
+            let pair =
+                PairContribution::new::<K, L, CORRECTED>((&self.kernel, law), geometry, self.eta2, one.side, side);
             *closing = SimdBase::max(*closing, pair.approach_rate(self.reach2));
 
             let at = if j == one.cluster { nowhere } else { place * rows };

@@ -75,7 +75,12 @@ impl RowLayout {
 }
 
 /// A side of a pair, read as terms with needs `own` read it from the rows of terms with needs `all`.
-fn side<'a, const D: usize>(recorder: &'a Recorder, who: &str, own: RequiredSums, all: RequiredSums) -> PairSide<Traced<'a>, D> {
+fn side<'a, const D: usize>(
+    recorder: &'a Recorder,
+    who: &str,
+    own: RequiredSums,
+    all: RequiredSums,
+) -> PairSide<Traced<'a>, D> {
     let input = |name: &str| recorder.input(&format!("{who}_{name}"));
     let (zero, none) = (recorder.constant(0.0), [[recorder.constant(0.0); D]; D]);
     let mut side = PairSide {

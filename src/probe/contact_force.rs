@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Probe, ProbeReads, ProbeConfig, ProbeDefinition, ProbeScope, axes, find_solid, require_true};
+use super::{Probe, ProbeConfig, ProbeDefinition, ProbeReads, ProbeScope, axes, find_solid, require_true};
 use crate::{error::Result, math::Vector, simulation::Simulation, solid::ContactForce, system::System};
 
 /// Example of a section with a list of contacts.

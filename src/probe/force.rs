@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Probe, ProbeReads, ProbeDefinition, ProbeScope, axes, find_solid};
+use super::{Probe, ProbeDefinition, ProbeReads, ProbeScope, axes, find_solid};
 use crate::{error::Result, simulation::Simulation, system::System};
 
 /// Plan of a probe of the force and torque of the water on a solid.

@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Probe, ProbeReads, ProbeDefinition, ProbeScope, axes};
+use super::{Probe, ProbeDefinition, ProbeReads, ProbeScope, axes};
 use crate::{
     error::Result,
     simulation::{Simulation, find_by_name},

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Probe, ProbeReads, ProbeDefinition, ProbeScope};
+use super::{Probe, ProbeDefinition, ProbeReads, ProbeScope};
 use crate::{
     error::Result,
     simulation::{Simulation, find_by_name},

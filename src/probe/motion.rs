@@ -7,7 +7,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Probe, ProbeReads, ProbeDefinition, ProbeScope, axes, find_solid};
+use super::{Probe, ProbeDefinition, ProbeReads, ProbeScope, axes, find_solid};
 use crate::{
     error::Result,
     math::{Matrix, Vector},

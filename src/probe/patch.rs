@@ -6,7 +6,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Probe, ProbeReads, ProbeDefinition, ProbeScope, axes, find_solid, pressure::pressure};
+use super::{Probe, ProbeDefinition, ProbeReads, ProbeScope, axes, find_solid, pressure::pressure};
 use crate::{
     error::{Error, Result},
     math::{Bounds, BoxConfig, Vector},

@@ -3,8 +3,7 @@
 use std::{path::PathBuf, time::Instant};
 
 use super::{
-    FinalBodyState, Progress, RunObserver, RunOrigin, RunOutcome, RunStart,
-    device,
+    FinalBodyState, Progress, RunObserver, RunOrigin, RunOutcome, RunStart, device,
     energy_drift::DriftMonitor,
     lock::Lock,
     outputs::{Outputs, series_folder},

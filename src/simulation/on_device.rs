@@ -74,8 +74,7 @@ pub(super) fn place<const D: usize>(mut sim: Simulation<D>, name: &str) -> Resul
     let device = Device::new(name, &sim.system, &sim.stepper, sim.clock.time)?;
     let all_fixed = sim.system.solids().iter().all(|solid| matches!(solid.spec.role, Role::Fixed));
     device_state::set_on_device(&mut sim.system, true);
-    sim.device =
-        Some(OnDevice { device, host_is_current: true, loads_are_current: true, all_fixed, next_state: 0 });
+    sim.device = Some(OnDevice { device, host_is_current: true, loads_are_current: true, all_fixed, next_state: 0 });
     Ok(sim)
 }
 
@@ -122,7 +121,12 @@ pub(super) fn fetch_loads<const D: usize>(sim: &mut Simulation<D>) -> Result<()>
 }
 
 /// Advances as [`advance`], and goes back to a good state at the first alarm.
-pub(super) fn steps<const D: usize>(sim: &mut Simulation<D>, most: (u64, f64), end: f64, hook: &mut Hook<D>) -> Result<()> {
+pub(super) fn steps<const D: usize>(
+    sim: &mut Simulation<D>,
+    most: (u64, f64),
+    end: f64,
+    hook: &mut Hook<D>,
+) -> Result<()> {
     let start = Instant::now();
     store_state(sim)?;
     let outcome = advance(sim, most, end, hook).or_else(|error| sim.roll_back(error));
@@ -131,7 +135,12 @@ pub(super) fn steps<const D: usize>(sim: &mut Simulation<D>, most: (u64, f64), e
 }
 
 /// Advances by up to `most` steps until time `pause` (s) is reached, not past `end` (s); the state stays on the device.
-fn advance<const D: usize>(sim: &mut Simulation<D>, (most, pause): (u64, f64), end: f64, hook: &mut Hook<D>) -> Result<()> {
+fn advance<const D: usize>(
+    sim: &mut Simulation<D>,
+    (most, pause): (u64, f64),
+    end: f64,
+    hook: &mut Hook<D>,
+) -> Result<()> {
     let all_fixed = sim.device.as_ref().is_some_and(|own| own.all_fixed);
     let longest = sim.host_step_limit();
     let done = if all_fixed {
@@ -148,7 +157,12 @@ fn advance<const D: usize>(sim: &mut Simulation<D>, (most, pause): (u64, f64), e
 }
 
 /// One step of a scene whose solids move.
-fn body_step<const D: usize>(sim: &mut Simulation<D>, longest: f64, end: f64, hook: &mut Hook<D>) -> Result<Option<DeviceSteps>> {
+fn body_step<const D: usize>(
+    sim: &mut Simulation<D>,
+    longest: f64,
+    end: f64,
+    hook: &mut Hook<D>,
+) -> Result<Option<DeviceSteps>> {
     let Simulation { device: Some(own), system, bodies, clock, .. } = sim else { return Ok(None) };
     (own.host_is_current, own.loads_are_current) = (false, true);
     let start: Vec<_> = system.solids.iter().map(|solid| solid.kinematics).collect();

@@ -27,11 +27,7 @@ impl EquationOfState {
     /// P/ρ₀ (m²/s²) at excess density `x` (–). For γ = 7 the binomial in x.
     #[inline(always)]
     pub(crate) fn pressure(&self, x: f64) -> f64 {
-        if self.gamma == 7.0 {
-            binomial(self.stiffness, x)
-        } else {
-            self.stiffness * (self.gamma * x.ln_1p()).exp_m1()
-        }
+        if self.gamma == 7.0 { binomial(self.stiffness, x) } else { self.stiffness * (self.gamma * x.ln_1p()).exp_m1() }
     }
 
     /// Excess density (–) at P/ρ₀ (m²/s²), the inverse of [`EquationOfState::pressure`].

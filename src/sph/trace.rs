@@ -46,9 +46,12 @@ impl Operation {
         let (count, all) = match self {
             Self::Input(_) | Self::Constant(_) => (0, [0; 4]),
             Self::Neg(a) | Self::Abs(a) | Self::Sqrt(a) => (1, [a, 0, 0, 0]),
-            Self::Add(a, b) | Self::Sub(a, b) | Self::Mul(a, b) | Self::Div(a, b) | Self::Max(a, b) | Self::Min(a, b) => {
-                (2, [a, b, 0, 0])
-            }
+            Self::Add(a, b)
+            | Self::Sub(a, b)
+            | Self::Mul(a, b)
+            | Self::Div(a, b)
+            | Self::Max(a, b)
+            | Self::Min(a, b) => (2, [a, b, 0, 0]),
             Self::Fma(a, b, c) => (3, [a, b, c, 0]),
             Self::SelectBelow(a, b, c, d) => (4, [a, b, c, d]),
         };
@@ -191,8 +194,10 @@ impl Trace {
     pub fn count(&self) -> usize {
         let needed = self.needed();
         let all = self.operations.iter().zip(needed);
-        all.filter(|(operation, needed)| *needed && operation.is_arithmetic() && !matches!(operation, Operation::Neg(_)))
-            .count()
+        all.filter(|(operation, needed)| {
+            *needed && operation.is_arithmetic() && !matches!(operation, Operation::Neg(_))
+        })
+        .count()
     }
 
     /// The results for the values that `input` has by name, in double precision.

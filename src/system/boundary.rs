@@ -18,7 +18,9 @@ use crate::{
     model::{Model, Walls},
     particles::{PARTICLES_PER_TASK, Particles, optional_bytes},
     solid::{Kinematics, Role, Solid, SolidDivision, SolidSpec, boundary_motion},
-    sph::boundary::{DynamicBoundary, Slip, SupportCoverage, WallExtrapolation, WallTarget, no_slip_velocity, promptness},
+    sph::boundary::{
+        DynamicBoundary, Slip, SupportCoverage, WallExtrapolation, WallTarget, no_slip_velocity, promptness,
+    },
 };
 
 /// The boundary particles of all solids, one solid after the other.

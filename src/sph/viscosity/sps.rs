@@ -35,7 +35,12 @@ impl Sps {
 
     /// ρ₀ τ/ρ² (m²/s²) from the strain rate (1/s; `[i][j]` with j ≤ i is read) and the specific volume `s` = ρ₀/ρ of
     /// a particle.
-    pub fn stress<N: Num, const D: usize>(&self, strain: &[[N; D]; D], s: N, medium: &FluidProperties<D>) -> [[N; D]; D] {
+    pub fn stress<N: Num, const D: usize>(
+        &self,
+        strain: &[[N; D]; D],
+        s: N,
+        medium: &FluidProperties<D>,
+    ) -> [[N; D]; D] {
         let of = |x: f64| s.constant(x);
         let strain: [[N; D]; D] = std::array::from_fn(|i| std::array::from_fn(|j| strain[i.max(j)][i.min(j)]));
         let length2 = medium.dp * medium.dp / D as f64;

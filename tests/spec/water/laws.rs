@@ -54,7 +54,9 @@ fn pair(random: &mut Random) -> [Pair<f64, 3>; 2] {
     let v: [f64; 3] = std::array::from_fn(|_| random.number() - 0.5);
     let r2 = r.iter().map(|x| x * x).sum();
     let kernel = Wendland::new(0.017, 3);
-    let make = |r, v, a, b| Pair::new((r, v, r2, b.compression - a.compression), kernel.w(r2), properties().eta2(), a, b);
+    let make = |r, v, a: PairSide<f64, 3>, b: PairSide<f64, 3>| {
+        Pair::new((r, v, r2, b.compression - a.compression), kernel.w(r2), properties().eta2(), a, b)
+    };
     [make(r, v, a, b), make(r.map(|x: f64| -x), v.map(|x: f64| -x), b, a)]
 }
 
@@ -269,10 +271,10 @@ fn fit(p: impl Fn(&Vector<3>) -> f64) -> WallExtrapolation<f64, 3> {
 fn a_linear_pressure_is_extrapolated_to_the_wall_exactly() {
     let pull = Vector::from([1.0, -2.0, -9.81]);
     // ∇P = ρ₀ (g − a): linear.
-    let p = fit(|r| 7.0 + pull.dot(r)).pressure(&pull, &pull, 0.01);
+    let p = fit(|r| 7.0 + pull.dot(r)).pressure(&pull.into(), &pull.into(), 0.01);
     assert!((p - 7.0).abs() < 1e-12, "{p}");
     assert_eq!(
-        WallExtrapolation::<f64, 3>::filled_with(0.0).pressure(&pull, &pull, 0.01),
+        WallExtrapolation::<f64, 3>::filled_with(0.0).pressure(&pull.into(), &pull.into(), 0.01),
         0.0,
         "without fluid neighbours the pressure is zero"
     );
