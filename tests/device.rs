@@ -317,6 +317,24 @@ fn lists_that_are_too_short_are_made_longer() {
 }
 
 #[test]
+fn an_alarm_goes_back_and_halves_the_step() {
+    // The water of a dam break passes 0.06 c0 in any case: the second alarm, with half the step, ends the run.
+    let mut setup = dam(Model::water(2, 0.02, 0.3), [0.8, 0.3]);
+    setup.limits = setup.limits.speed(0.06);
+    let last = |mut sim: Simulation<2>| {
+        let error = (0..2000).find_map(|_| sim.step().err()).expect("an alarm");
+        (error.fault.expect("a fault").time, sim.steps(), sim.rollbacks().len())
+    };
+    let reference = last(under(&setup, PairLoopKind::Reference, None));
+    let found = last(Simulation::new(setup).unwrap().on_device(&device()).unwrap());
+    println!("{found:?}, reference {reference:?}");
+    assert_eq!(found.2, 1, "one rollback");
+    assert!((found.0 / reference.0 - 1.0).abs() < 1e-3, "{found:?} against {reference:?}");
+    // The device stores its state at step 0 and later ones than the processor: half steps from there to the alarm.
+    assert!(found.1.abs_diff(reference.1) <= 2, "{found:?} against {reference:?}");
+}
+
+#[test]
 fn what_no_device_computes_is_refused_with_the_remedy() {
     let refused = |model: Model| {
         let error = Simulation::new(dam(model, [0.8, 0.3])).unwrap().on_device(&device()).map(|_| ()).unwrap_err();

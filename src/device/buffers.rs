@@ -35,6 +35,7 @@ impl Control {
     pub(super) const MOVED: usize = 20;
     pub(super) const FAULT: usize = 23;
     pub(super) const LONGEST: usize = 24;
+    pub(super) const FACTOR: usize = 27;
 
     /// A displacement that asks for new lists.
     pub(super) const FAR: u32 = 0x7f00_0000;

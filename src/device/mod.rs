@@ -66,6 +66,24 @@ pub(crate) struct Device<const D: usize> {
     verlet: bool,
 }
 
+/// What limits the steps of a device.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct StepRequest {
+    /// Longest step, s.
+    pub(crate) longest: f64,
+    /// Part of the step of the water that is taken, –.
+    pub(crate) factor: f64,
+    /// Time at which the device pauses, s.
+    pub(crate) pause: f64,
+    /// Time that it does not pass, s.
+    pub(crate) end: f64,
+}
+
+impl StepRequest {
+    /// No limit.
+    const NONE: Self = Self { longest: f64::INFINITY, factor: 1.0, pause: f64::INFINITY, end: f64::INFINITY };
+}
+
 /// What a device has done.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct DeviceSteps {
@@ -279,13 +297,12 @@ impl<const D: usize> Device<D> {
         (dt / self.units.time * TICKS).min(1e9) as u32
     }
 
-    /// Makes up to `most` steps, none longer than `longest` (s), until the water has reached time `pause` (s), and not past time `end`
-    /// (s); of a system whose solids are fixed.
-    pub(crate) fn run(&mut self, most: u64, longest: f64, pause: f64, end: f64) -> Result<DeviceSteps> {
+    /// Makes up to `most` steps until the water has reached the time of the pause; of a system whose solids are fixed.
+    pub(crate) fn run(&mut self, most: u64, request: &StepRequest) -> Result<DeviceSteps> {
         let started = std::time::Instant::now();
         let count = most.min(self.steps as u64) as usize;
         loop {
-            self.begin(longest, pause, end);
+            self.begin(request);
             let saved = self.buffers.backups();
             let steps = std::iter::repeat_n(&self.passes.step, count).flatten();
             self.gpu.run(&saved, steps.map(AsRef::as_ref));
@@ -294,18 +311,20 @@ impl<const D: usize> Device<D> {
                 let taken = started.elapsed().as_secs_f64();
                 let wanted = count as f64 * SUBMISSION / taken.max(1e-6);
                 self.steps = (wanted as usize).clamp(1, MOST_STEPS).min(4 * self.steps);
-                return Ok(self.outcome(&control, end));
+                return Ok(self.outcome(&control, request.end));
             }
         }
     }
 
     /// Lets the device go on, from where it halted.
-    fn begin(&self, longest: f64, pause: f64, end: f64) {
+    fn begin(&self, request: &StepRequest) {
+        let StepRequest { longest, factor, pause, end } = *request;
         let two = |ticks: u64| [ticks as u32, (ticks >> 32) as u32];
         let ([e0, e1], [p0, p1]) = (two(self.ticks_at(end)), two(self.ticks_at(pause)));
         self.gpu.write(&self.buffers.control, Control::HALT * 4, &[0u32]);
         self.gpu.write(&self.buffers.control, Control::END * 4, &[e0, e1, p0, p1, self.limit(longest), 0]);
         self.gpu.write(&self.buffers.control, Control::PASSES * 4, &[0u32]);
+        self.gpu.write(&self.buffers.control, Control::FACTOR * 4, &[factor as f32]);
         self.gpu.write(&self.buffers.control, Control::FAULT * 4, &[u32::MAX]);
     }
 
@@ -354,16 +373,16 @@ impl<const D: usize> Device<D> {
 
     /// Makes the first half of a step: the rates, the step's length and, of the symplectic scheme, the way of half a step. Returns
     /// the length (s), or why there is none.
-    pub(crate) fn first_half(&mut self, longest: f64, end: f64) -> Result<std::result::Result<f64, DeviceSteps>> {
+    pub(crate) fn first_half(&mut self, request: &StepRequest) -> Result<std::result::Result<f64, DeviceSteps>> {
         loop {
-            self.begin(longest, f64::INFINITY, end);
+            self.begin(request);
             let saved = self.buffers.backups();
             self.gpu.run(&saved, self.passes.first.iter().map(AsRef::as_ref));
             let control = self.control()?;
             if !self.grow_lists(&control)? {
                 return Ok(match control.halt() {
                     0 => Ok(f64::from(control.dt()) * self.units.time),
-                    _ => Err(self.outcome(&control, end)),
+                    _ => Err(self.outcome(&control, request.end)),
                 });
             }
         }
@@ -394,7 +413,7 @@ impl<const D: usize> Device<D> {
     /// Makes a force pass at the present state; returns acceleration (m/s²) and rate of the excess density (1/s) of each water
     /// particle, in the order of the host, and the largest values that limit a step.
     pub(crate) fn rates(&mut self, system: &System<D>) -> Result<(Vec<PairSums<D>>, StepLimits)> {
-        self.begin(f64::INFINITY, f64::INFINITY, f64::INFINITY);
+        self.begin(&StepRequest::NONE);
         self.gpu.run(&[], self.passes.rates.iter().map(AsRef::as_ref));
         let (n, water) = (self.counts.n, self.counts.water);
         let control = self.control()?;

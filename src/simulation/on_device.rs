@@ -5,7 +5,7 @@ use std::time::Instant;
 use super::{Simulation, StoredState};
 use crate::{
     coupling::{Hook, Interval, drift_half_step},
-    device::{Adapter, Device, DeviceSteps, StepsEnd},
+    device::{Adapter, Device, DeviceSteps, StepRequest, StepsEnd},
     error::{Error, ErrorCode, ErrorKind, Result},
     interaction::{PairSums, StepLimits},
     model::TimeScheme,
@@ -142,13 +142,14 @@ fn advance<const D: usize>(
     hook: &mut Hook<D>,
 ) -> Result<()> {
     let all_fixed = sim.device.as_ref().is_some_and(|own| own.all_fixed);
-    let longest = sim.host_step_limit();
+    let factor = sim.rollback.step_factor(sim.clock.time);
+    let request = StepRequest { longest: sim.host_step_limit(), factor, pause, end };
     let done = if all_fixed {
         let Some(own) = &mut sim.device else { return Ok(()) };
         (own.host_is_current, own.loads_are_current) = (false, false);
-        own.device.run(most, longest, pause, end)?
+        own.device.run(most, &request)?
     } else {
-        match body_step(sim, longest, end, hook)? {
+        match body_step(sim, &StepRequest { pause: f64::INFINITY, ..request }, hook)? {
             Some(done) => done,
             None => return Ok(()),
         }
@@ -159,15 +160,14 @@ fn advance<const D: usize>(
 /// One step of a scene whose solids move.
 fn body_step<const D: usize>(
     sim: &mut Simulation<D>,
-    longest: f64,
-    end: f64,
+    request: &StepRequest,
     hook: &mut Hook<D>,
 ) -> Result<Option<DeviceSteps>> {
     let Simulation { device: Some(own), system, bodies, clock, .. } = sim else { return Ok(None) };
     (own.host_is_current, own.loads_are_current) = (false, true);
     let start: Vec<_> = system.solids.iter().map(|solid| solid.kinematics).collect();
     let (over, done, loads) = loop {
-        let dt = match own.device.first_half(longest, end)? {
+        let dt = match own.device.first_half(request)? {
             Ok(dt) => dt,
             Err(done) => return Ok(Some(done)),
         };
@@ -175,7 +175,7 @@ fn body_step<const D: usize>(
         if system.model().scheme == TimeScheme::Symplectic {
             drift_half_step(system, over);
         }
-        if let Some((done, loads)) = own.device.second_half(system, end)? {
+        if let Some((done, loads)) = own.device.second_half(system, request.end)? {
             break (over, done, loads);
         }
         system.solids.iter_mut().zip(&start).for_each(|(solid, start)| solid.kinematics = *start);

@@ -73,7 +73,7 @@ fn limit() {
     let force = sqrt(bitcast<f32>(force2));
     let by_force = select(1e30f, sqrt(SMOOTHING / force), force > 0.0f);
     let by_sound = SMOOTHING / (SOUND + SMOOTHING * bitcast<f32>(approach));
-    let allowed = min(COURANT * min(by_force, by_sound), LONGEST);
+    let allowed = min(COURANT * control.factor * min(by_force, by_sound), LONGEST);
     var ticks = min(u32(allowed * TICKS), control.limit);
     if (force2 >= 0x7f800000u || approach >= 0x7f800000u || ticks == 0u) {
         control.halt = 3u;
