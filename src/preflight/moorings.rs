@@ -90,7 +90,8 @@ pub(super) fn summaries<const D: usize>(
             MooredSurge { name: solid.spec.name.clone(), stiffness_npm: stiffness, period_s: period }
         })
     };
-    (lines, context.solids().iter().enumerate().filter_map(surge).collect())
+    let surges = context.solids().iter().enumerate().filter_map(surge).collect();
+    (lines, surges)
 }
 
 /// Steps of a line in a step of the water from which on a note names them.

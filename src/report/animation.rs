@@ -420,16 +420,16 @@ fn encode_boundaries(
     })
 }
 
-/// Adds the nodes of the mooring lines in the `kept` frames to `blob`. Returns `None` if no frame contains a line.
+/// Adds the nodes of the mooring lines in the frames `numbers` to `blob`. Returns `None` if no frame contains a line.
 fn encode_lines(
     film: &FrameSequence,
-    kept: &[usize],
+    numbers: &[usize],
     dimension: usize,
     dp: f32,
     blob: &mut BinaryData,
 ) -> Result<Option<LineAnimation>> {
     let (mut shown, mut nodes) = (Vec::new(), Vec::new());
-    for &number in kept {
+    for &number in numbers {
         let lines = film.moorings(number)?;
         let x = (0..dimension).map(|c| lines.iter().flatten().map(|x| x[c]).collect()).collect();
         let own: Vec<usize> = lines.iter().map(Vec::len).collect();

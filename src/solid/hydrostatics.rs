@@ -3,7 +3,7 @@
 use crate::{
     error::{Error, Result},
     geometry::{Shape, hollow::Hollow},
-    math::{Bivector, Pose, Vector, format::four_digits},
+    math::{Bivector, Bounds, Pose, Vector, format::four_digits},
     solid::FreeBody,
 };
 
