@@ -284,8 +284,8 @@ fn the_report_of_a_3d_run_rotates_and_shows_a_cut() {
 fn the_report_draws_mooring_lines_from_fairlead_to_anchor() {
     let folder = folder("moored");
     let line = "\n[[line_type]]\nname = \"chain\"\ndiameter = 0.004\nmass_per_length = 0.1\nstiffness = 500.0\n\
-                [[mooring]]\nbetween = [\"box\"]\nfrom = [0.5, 0.3]\nto = [0.1, 0.0]\nlength = 0.55\nline = \"chain\"\n\
-                [[mooring]]\nsince = 0.09\nbetween = [\"box\"]\nfrom = [0.5, 0.3]\nto = [0.7, 0.0]\nlength = 0.4\nline = \"chain\"\n";
+                [[mooring]]\nname = \"bow\"\nbetween = [\"box\"]\nfrom = [0.5, 0.3]\nto = [0.1, 0.0]\nlength = 0.55\nline = \"chain\"\n\
+                [[mooring]]\nname = \"stern\"\nsince = 0.09\nbetween = [\"box\"]\nfrom = [0.5, 0.3]\nto = [0.7, 0.0]\nlength = 0.4\nline = \"chain\"\n";
     let run = run_scene(&folder, "bay", &format!("{BAY}{line}"), &[]);
     if chromium().is_none() {
         return;

@@ -155,7 +155,6 @@ fn a_box_driven_in_heave_meets_the_added_mass_and_damping_of_linear_theory() -> 
     let samples = driven_box(&law, omega)?;
     let [added_mass, damping] = coefficients(&samples, 1, [amplitude, omega, 1000.0 * 9.81 * 0.2]);
     // Vortices at the sharp edges damp beside the waves. The bounds of the project for a disc, 10 % and 8 %: the damping misses.
-    println!("heave {added_mass} {damping}");
     assert!((added_mass / 13.77 - 1.0).abs() < 0.1, "added mass {added_mass} kg/m, exact 13.77");
     assert!((damping / 81.83 - 1.0).abs() < 0.3, "damping {damping} kg/(m s), exact 81.83");
     Ok(())
