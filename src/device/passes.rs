@@ -113,7 +113,7 @@ impl Passes {
             let rest = step.pass("whole_step", n)?;
             first = [&rates[..], &[limit, first_half]].concat();
             whole = [&first[..], &rates, &[rest.clone(), finish.clone()]].concat();
-            second = [&[place.clone()], &rates[..], &[loads.clone(), rest, finish]].concat();
+            second = [std::slice::from_ref(&place), &rates[..], &[loads.clone(), rest, finish]].concat();
         }
         Ok(Self { derive, rates, step: whole, first, second, place, loads })
     }

@@ -419,13 +419,11 @@ fn wall_target<const D: usize>(properties: &FluidProperties<D>, eos: &EquationOf
         recorder.result("prompt_decrease", target.prompt_decrease);
         recorder.result("prompt_increase", target.prompt_increase);
         let away = fit.direction();
-        for k in 0..3 {
-            let of = if k < D { away[k] } else { recorder.constant(0.0) };
-            recorder.result(
-                &format!("away{k}"),
-                fit.weight_sum.select_below(recorder.constant(1e-9), recorder.constant(0.0), of),
-            );
-        }
+        let none = recorder.constant(0.0);
+        (0..3).for_each(|k| {
+            let of = away.get(k).copied().unwrap_or(none);
+            recorder.result(&format!("away{k}"), fit.weight_sum.select_below(recorder.constant(1e-9), none, of));
+        });
     })
 }
 

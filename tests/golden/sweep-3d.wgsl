@@ -33,7 +33,8 @@ struct Control {
     longest: atomic<u32>,
     age: u32,        // force passes since the gradients were corrected
     correct: u32,
-    pad: array<u32, 5>,
+    factor: f32,     // part of the step of the water that is taken, after a rollback
+    pad: array<u32, 4>,
 };
 struct Solid {
     origin: Place,           // of its frame; hi.w: 1 if water beside it is not shifted
