@@ -330,7 +330,7 @@ fn an_alarm_goes_back_and_halves_the_step() {
     println!("{found:?}, reference {reference:?}");
     assert_eq!(found.2, 1, "one rollback");
     assert!((found.0 / reference.0 - 1.0).abs() < 1e-3, "{found:?} against {reference:?}");
-    // The device stores its state at step 0 and later ones than the processor: half steps from there to the alarm.
+    // Both go back to the start, and take half steps from there to the alarm.
     assert!(found.1.abs_diff(reference.1) <= 2, "{found:?} against {reference:?}");
 }
 
