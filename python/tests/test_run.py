@@ -83,8 +83,8 @@ def test_results_are_arrays_with_units(tank: pt.Scene, tmp_path: Path) -> None:
     assert run.series["level"].values[0] == pytest.approx(0.5, abs=0.03)
     assert [frame.number for frame in run.frames] == [0, 1, 2, 3]
     frame = run.frames.at(0.21)
-    # A frame and a row that are due at the same time are written after the same step.
-    assert frame.time == heave.t[20] >= 0.2 and frame.water.position.shape == (run.manifest["particles"]["fluid"], 2)
+    # A frame is written after the step that reaches its time.
+    assert 0.2 <= frame.time < 0.205 and frame.water.position.shape == (run.manifest["particles"]["fluid"], 2)
     assert frame.water.density.mean() == pytest.approx(1000.0, rel=0.02)
     assert run.frames[-1].solids.position.shape[1] == 2
     with pytest.raises(IndexError):
