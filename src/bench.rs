@@ -53,6 +53,8 @@ pub struct BenchCase {
     pub dry: f64,
     /// Simulated time before the timing, in units of √(depth/g).
     pub spin_up: f64,
+    /// Whether the model is the shipped default, and not the standard one.
+    pub default_model: bool,
 }
 
 /// The result of a timing.
@@ -124,6 +126,7 @@ impl BenchCase {
             probes_toml: watched,
             dry: 1.0,
             spin_up: 0.0,
+            default_model: false,
         }
     }
 
@@ -139,6 +142,9 @@ impl BenchCase {
 
     /// Returns the scene of the case.
     fn scene(&self) -> Result<Scene> {
+        if self.default_model {
+            return self.scene_with("");
+        }
         self.scene_with(&format!(
             "model = {{ h_over_dp = {:?}, walls = \"dbc\", slip = \"partial\", c0_factor = 20.0 }}\n\
              time = {{ scheme = {{ verlet = {{ euler_every = 50 }} }}, cfl = 0.2 }}",
@@ -185,8 +191,8 @@ impl BenchCase {
 /// # Errors
 /// `Usage` if this program was built without the dimension.
 pub fn default_viscosity(dimension: usize, water: usize) -> Result<DefaultViscosity> {
-    let case = BenchCase::standard(dimension, water);
-    let scene = case.scene_with("")?;
+    let case = BenchCase { default_model: true, ..BenchCase::standard(dimension, water) };
+    let scene = case.scene()?;
     let (model, depth_m) = match dimension {
         #[cfg(feature = "dim2")]
         2 => scene.layout::<2>().map(|layout| (layout.model, layout.still_water.depth))?,

@@ -424,8 +424,12 @@ impl Model {
     /// The units in which the pair loop computes, and its instructions; SI and `None` for the reference.
     fn units<const D: usize>(&self) -> (Units, Option<Level>) {
         let level = self.pair_loop.instruction_set();
-        let length = NeighbourLists::<D>::length_unit(self.support_radius());
-        (level.map_or(Units::SI, |_| Units { length, time: self.h / self.c0 }), level)
+        (level.map_or(Units::SI, |_| self.single_precision_units::<D>()), level)
+    }
+
+    /// The units in which single precision computes: that of integer positions, and the time in which sound crosses h.
+    pub(crate) fn single_precision_units<const D: usize>(&self) -> Units {
+        Units { length: NeighbourLists::<D>::length_unit(self.support_radius()), time: self.h / self.c0 }
     }
 
     /// A pair loop of your own terms under the Wendland kernel, for [`Simulation::with_pair_loop`]: `terms` gets the fluid
@@ -446,8 +450,7 @@ impl Model {
     /// The traces of the terms that this model names, and the units in which they compute.
     #[cfg(feature = "gpu")]
     pub fn pair_traces<const D: usize>(&self) -> Option<(interaction::PairTraces, Units)> {
-        let length = NeighbourLists::<D>::length_unit(self.support_radius());
-        let units = Units { length, time: self.h / self.c0 };
+        let units = self.single_precision_units::<D>();
         Some((self.build_pair_loop_in::<D>(units, None).traces()?, units))
     }
 

@@ -62,6 +62,9 @@ pub struct Simulation<const D: usize> {
     stepping: Duration,
     #[cfg(feature = "gpu")]
     device: Option<OnDevice<D>>,
+    /// Whether the pair loop has terms that the model does not name.
+    #[cfg(feature = "gpu")]
+    custom_terms: bool,
 }
 
 /// Wall time by part, since the start.
@@ -122,7 +125,10 @@ impl<const D: usize> Simulation<D> {
     where
         Dim<D>: Dimension<D>,
     {
-        Self::with_bodies(setup, pair_loop, false)
+        let simulation = Self::with_bodies(setup, pair_loop, false)?;
+        #[cfg(feature = "gpu")]
+        let simulation = Self { custom_terms: true, ..simulation };
+        Ok(simulation)
     }
 
     /// Sets up a simulation whose free solids the engine moves, or an `external` program.
@@ -161,6 +167,8 @@ impl<const D: usize> Simulation<D> {
             stepping,
             #[cfg(feature = "gpu")]
             device: None,
+            #[cfg(feature = "gpu")]
+            custom_terms: false,
         };
         simulation.guard()?;
         Ok(simulation)
@@ -180,6 +188,11 @@ impl<const D: usize> Simulation<D> {
     /// # Errors
     /// As [`Simulation::step`].
     pub fn step_to(&mut self, end: f64) -> Result<()> {
+        #[cfg(feature = "gpu")]
+        if self.device.is_some() {
+            on_device::steps(self, (1, end), end, None)?;
+            return self.fetch_from_device();
+        }
         self.step_with_hook(end, &mut |_| Ok(()))
     }
 
@@ -187,7 +200,7 @@ impl<const D: usize> Simulation<D> {
     fn step_with_hook(&mut self, end: f64, hook: &mut Hook<D>) -> Result<()> {
         #[cfg(feature = "gpu")]
         if self.device.is_some() {
-            on_device::steps(self, (1, end), end, hook)?;
+            on_device::steps(self, (1, end), end, Some(hook))?;
             return self.fetch_from_device();
         }
         let start = Instant::now();
@@ -206,7 +219,7 @@ impl<const D: usize> Simulation<D> {
     #[cfg(feature = "gpu")]
     pub(crate) fn step_to_pause(&mut self, pause: f64, end: f64) -> Result<()> {
         match self.device {
-            Some(_) => on_device::steps(self, (u64::MAX, pause), end, &mut |_| Ok(())),
+            Some(_) => on_device::steps(self, (u64::MAX, pause), end, None),
             None => self.step_to(end),
         }
     }
@@ -459,6 +472,15 @@ impl<const D: usize> Simulation<D> {
             let kinematics = &mut self.system.solids[solid].kinematics;
             (kinematics.velocity, kinematics.spin) = (*velocity, *spin);
             self.system.place_boundary(solid);
+            self.note_change_by_hand();
+        }
+    }
+
+    /// The state was changed by hand: a device gets it before the next step.
+    fn note_change_by_hand(&mut self) {
+        #[cfg(feature = "gpu")]
+        if let Some(own) = &mut self.device {
+            own.host_changed = true;
         }
     }
 
@@ -467,6 +489,7 @@ impl<const D: usize> Simulation<D> {
         let fluid = &mut self.system.fluid.particles;
         fluid.v.par_iter_mut().zip(&fluid.r).for_each(|(v, r)| *v = field(r));
         self.system.fluid.update_reflected_images();
+        self.note_change_by_hand();
     }
 
     /// Gives each water particle the density (kg/m³) that `field` says for its place (m).
@@ -474,6 +497,7 @@ impl<const D: usize> Simulation<D> {
         let fluid = &mut self.system.fluid.particles;
         fluid.rho.par_iter_mut().zip(&fluid.r).for_each(|(rho, r)| *rho = field(r));
         self.system.fluid.update_reflected_images();
+        self.note_change_by_hand();
     }
 
     /// Contact forces in the last step, pair by pair.

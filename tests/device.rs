@@ -14,6 +14,7 @@ use pontoon::{
     simulation::{Setup, Simulation},
     solid::{Dim, PrescribedMotion, SolidSpec, TimeFunction},
     sph::{
+        continuity::Continuity,
         density_diffusion::Molteni,
         particle_shifting::Shift,
         trace::Trace,
@@ -22,8 +23,24 @@ use pontoon::{
     system::SpongeLayer,
 };
 
+#[path = "spec/water/beside_reference.rs"]
+mod beside_reference;
+use beside_reference::{run, sizes, under};
+
 fn device() -> String {
     std::env::var("PONTOON_DEVICE").unwrap_or_else(|_| "llvmpipe".into())
+}
+
+/// The same setup with the reference pair loop.
+trait WithReference {
+    fn with_reference(self) -> Self;
+}
+
+impl<const D: usize> WithReference for Setup<D> {
+    fn with_reference(mut self) -> Self {
+        self.model.pair_loop = PairLoopKind::Reference;
+        self
+    }
 }
 
 /// A dam break in a tank.
@@ -41,62 +58,12 @@ fn dam_with<const D: usize>(model: Model, size: [f64; D], bodies: impl IntoItera
     setup.fill_box([0.0; D], column).expect("water")
 }
 
-/// The simulation of `setup` with this pair loop, in `state` if there is one.
-fn under<const D: usize>(setup: &Setup<D>, pair_loop: PairLoopKind, state: Option<&[u8]>) -> Simulation<D>
-where
-    Dim<D>: Dimension<D>,
-{
-    let mut setup = setup.clone();
-    setup.model.pair_loop = pair_loop;
-    let mut sim = Simulation::new(setup).expect("a sound setup");
-    state.into_iter().for_each(|state| sim.restore(state).expect("the same scene"));
-    sim.update_rates();
-    sim
-}
-
-fn run<const D: usize>(setup: &Setup<D>, until: f64) -> Vec<u8>
-where
-    Dim<D>: Dimension<D>,
-{
-    let mut sim = Simulation::new(setup.clone()).expect("a sound setup");
-    while sim.time() < until {
-        sim.step().expect("a sound run");
-    }
-    sim.save().expect("a state")
-}
-
-/// Sums of the magnitudes of all terms of a water particle: of its acceleration and of its density rate.
-fn sizes<const D: usize>(sim: &Simulation<D>, a: usize) -> (f64, f64) {
-    let system = sim.system();
-    let (h, c0, rho0, dp) = (system.model().h, system.model().c0, system.model().rho0, system.model().dp);
-    let (fluid, boundary) = (system.fluid(), system.boundary());
-    let (mut force, mut rate) = (0.0, 0.0);
-    let mut meet = |r: &Vector<D>, v: &Vector<D>, rho: f64| {
-        let (r, v) = (fluid.r[a] - r, fluid.v[a] - v);
-        let q = r.norm() / h;
-        let alpha = if D == 2 { 7.0 / (4.0 * std::f64::consts::PI) } else { 21.0 / (16.0 * std::f64::consts::PI) };
-        let grad = 5.0 * alpha / h.powi(D as i32 + 1) * q * (1.0 - 0.5 * q).powi(3) * dp.powi(D as i32);
-        let pressure = (system.pressure(fluid.rho[a]).abs() + system.pressure(rho).abs()) / rho0;
-        let viscous = 0.02 * c0 * h * v.norm() / r.norm().max(0.1 * h);
-        force += (pressure + viscous) * grad;
-        let differences = (rho - fluid.rho[a]).abs() / rho0 + system.gravity().dot(&r).abs() / (c0 * c0);
-        rate += (v.norm() + 0.2 * c0 * h * differences / r.norm().max(0.1 * h)) * grad;
-    };
-    system.visit_fluid_near(&fluid.r[a], &mut |b, _, _| {
-        if b != a {
-            meet(&fluid.r[b], &fluid.v[b], fluid.rho[b]);
-        }
-    });
-    system.visit_boundary_near(&fluid.r[a], &mut |b, _, _| meet(&boundary.r[b], &boundary.v[b], boundary.rho[b]));
-    (force, rate)
-}
-
 /// Asserts that a force pass on the device agrees with the reference on one state, by the bounds of the SIMD pair loop.
 fn assert_rates_agree<const D: usize>(name: &str, setup: &Setup<D>, state: &[u8])
 where
     Dim<D>: Dimension<D>,
 {
-    let reference = under(setup, PairLoopKind::Reference, Some(state));
+    let reference = under(setup, PairLoopKind::Reference, state);
     let expected = reference.system();
     let n = expected.fluid().len();
     let sizes: Vec<(f64, f64)> = (0..n).map(|i| sizes(&reference, i)).collect();
@@ -110,7 +77,7 @@ where
     let (mut worst, mut worst_rate) = (0.0f64, 0.0f64);
     for (i, size) in sizes.iter().enumerate() {
         let dv = (rates[i].acceleration - expected.fluid_acceleration(i)).norm();
-        let drho = (rates[i].compression_rate - expected.fluid_density_rate(i) / expected.model().rho0).abs();
+        let drho = (rates[i].compression_rate * expected.model().rho0 - expected.fluid_density_rate(i)).abs();
         worst = worst.max(dv / (2e-5 * size.0 + 2e-6 * most.0));
         worst_rate = worst_rate.max(drho / (2e-5 * size.1 + 2e-6 * most.1));
     }
@@ -193,8 +160,8 @@ where
     Dim<D>: Dimension<D>,
 {
     let state = run(setup, start);
-    let mut reference = under(setup, PairLoopKind::Reference, Some(&state));
-    let mut on_device = under(setup, PairLoopKind::Fast, Some(&state)).on_device(&device()).expect("a device");
+    let mut reference = under(setup, PairLoopKind::Reference, &state);
+    let mut on_device = under(setup, PairLoopKind::Fast, &state).on_device(&device()).expect("a device");
     for _ in 0..steps {
         reference.step().expect("a sound run");
         on_device.step().expect("a sound run");
@@ -325,7 +292,7 @@ fn an_alarm_goes_back_and_halves_the_step() {
         let error = (0..2000).find_map(|_| sim.step().err()).expect("an alarm");
         (error.fault.expect("a fault").time, sim.steps(), sim.rollbacks().len())
     };
-    let reference = last(under(&setup, PairLoopKind::Reference, None));
+    let reference = last(Simulation::new(setup.clone().with_reference()).unwrap());
     let found = last(Simulation::new(setup).unwrap().on_device(&device()).unwrap());
     println!("{found:?}, reference {reference:?}");
     assert_eq!(found.2, 1, "one rollback");
@@ -346,6 +313,41 @@ fn what_no_device_computes_is_refused_with_the_remedy() {
     assert!(refused(water().gamma(5.0)).contains("gamma"));
     let error = Simulation::new(dam(water(), [0.8, 0.3])).unwrap().on_device("no such card").map(|_| ()).unwrap_err();
     assert!(error.message.contains("no such card"), "{error}");
+}
+
+#[test]
+fn what_is_set_by_hand_reaches_the_device_and_hooks_are_called() {
+    let setup = dam(Model::water(2, 0.04, 0.3), [0.8, 0.28]);
+    let mut on_device = Simulation::new(setup.clone()).unwrap().on_device(&device()).unwrap();
+    let mut reference = Simulation::new(setup.with_reference()).unwrap();
+    let mut calls = 0;
+    for sim in [&mut on_device, &mut reference] {
+        sim.step().unwrap();
+        sim.set_water_velocity(|r| Vector::from([0.2 * r[1], 0.0]));
+        let end = sim.time() + 1.0;
+        sim.step_with(end, |step| {
+            calls += 1;
+            assert!(step.loads()[0].force.norm() > 0.0);
+            Ok(())
+        })
+        .unwrap();
+        sim.step().unwrap();
+    }
+    assert_eq!(calls, 2, "one call a simulation");
+    let [r, v] = distances(&on_device, &reference);
+    assert!(r < 1e-6 && v < 1e-6, "{r} dp, {v} c0 off");
+    on_device.enable_energy_budget();
+    let error = on_device.step().unwrap_err();
+    assert!(error.message.contains("energy budgets"), "{error}");
+}
+
+#[test]
+fn pair_terms_of_your_own_are_refused() {
+    let setup = dam(Model::water(2, 0.05, 0.3), [0.8, 0.3]);
+    let own = setup.model.custom_pair_loop::<_, _, 2>(|_, _| (Continuity, Continuity));
+    let sim = Simulation::with_pair_loop(setup, own).unwrap();
+    let error = sim.on_device(&device()).map(|_| ()).unwrap_err();
+    assert!(error.message.contains("pair terms of your own"), "{error}");
 }
 
 #[test]
@@ -412,7 +414,7 @@ where
         let (traces, units) = model.pair_traces::<D>().expect("traces");
         // Sums of the first pass: there is no stress yet, and gradients are corrected where few neighbours are.
         let plain = model.gradient == PressureGradient::Plain;
-        let sim = under(&dam(model.clone(), size), PairLoopKind::Reference, None);
+        let sim = Simulation::new(dam(model.clone(), size).with_reference()).expect("a sound setup");
         let system = sim.system();
         let (fluid, boundary) = (system.fluid(), system.boundary());
         let (length, speed) = (units.length, units.length / units.time);
@@ -517,15 +519,21 @@ fn a_pair_takes_no_more_operations_than_before() {
 const COUNTS: [[[usize; 3]; 2]; 2] = [[[43, 36, 17], [41, 36, 17]], [[47, 40, 20], [45, 40, 20]]];
 
 #[test]
-fn the_shader_of_the_defaults_is_the_recorded_one() {
+fn the_traced_equations_of_the_defaults_are_the_recorded_ones() {
     let setup = dam(Model::water(3, 0.05, 0.3), [0.6, 0.2, 0.3]);
-    let text = pontoon::device::shaders_of(Simulation::new(setup).unwrap().system()).unwrap().sweep;
-    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/sweep-3d.wgsl");
+    let shader = pontoon::device::shaders_of(Simulation::new(setup).unwrap().system()).unwrap().sweep;
+    // Only traces have names of a letter and a number.
+    let is_traced = |line: &&str| {
+        let name = line.strip_prefix("let ").and_then(|rest| rest.split(' ').next()).unwrap_or("");
+        name.starts_with("out_") || name.len() > 1 && name[1..].bytes().all(|c| c.is_ascii_digit())
+    };
+    let text: String = shader.lines().map(str::trim).filter(is_traced).map(|line| format!("{line}\n")).collect();
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/traces-3d.wgsl");
     if std::env::var_os("UPDATE_GOLDEN").is_some() {
         std::fs::write(&path, &text).unwrap();
     }
     let recorded = std::fs::read_to_string(&path).unwrap_or_default();
-    assert!(text == recorded, "the shader has changed: UPDATE_GOLDEN=1 records it");
+    assert!(text == recorded, "the equations have changed: UPDATE_GOLDEN=1 records them");
 }
 
 /// Other makers' languages.

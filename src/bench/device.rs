@@ -52,7 +52,7 @@ pub fn adapters() -> Vec<Adapter> {
 impl BenchCase {
     /// Returns the standard case with the shipped defaults.
     pub fn with_defaults(dimension: usize, water: usize) -> Self {
-        Self { name: "defaults".into(), ..Self::standard(dimension, water) }
+        Self { name: "defaults".into(), default_model: true, ..Self::standard(dimension, water) }
     }
 }
 
@@ -75,8 +75,7 @@ where
     Dim<D>: Dimension<D>,
 {
     let start = Instant::now();
-    let scene = if case.name == "defaults" { case.scene_with("")? } else { case.scene()? };
-    let BuiltScene { setup, .. } = scene.build::<D>()?;
+    let BuiltScene { setup, .. } = case.scene()?.build::<D>()?;
     let sim = Simulation::new(setup)?.without_rollback();
     let on_host = start.elapsed().as_secs_f64();
     let start = Instant::now();

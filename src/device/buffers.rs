@@ -1,4 +1,4 @@
-//! The arrays on a device, the passes over them, and the words by which a device and the host talk.
+//! The arrays on a device, their sizes, and the words by which a device and the host talk.
 
 use super::{
     gpu::{Adapter, Gpu},
@@ -20,22 +20,22 @@ pub(super) struct Control(pub(super) [u32; WORDS]);
 impl Control {
     pub(super) const HALT: usize = 0;
     const DT: usize = 2;
+    const SPAN: usize = 3;
+    const EULER: usize = 5;
     const TIME: usize = 6;
     pub(super) const END: usize = 8;
-    const EULER: usize = 5;
-    const SPAN: usize = 3;
     const STEPS: usize = 13;
-    const FORCE: usize = 21;
-    const APPROACH: usize = 22;
-    const SINCE_EULER: usize = 15;
-    const FOLDINGS: usize = 16;
-    const DT_BEFORE: usize = 17;
-    pub(super) const PASSES: usize = 18;
-    const STARTED: usize = 19;
-    pub(super) const MOVED: usize = 20;
-    pub(super) const FAULT: usize = 23;
-    pub(super) const LONGEST: usize = 24;
-    pub(super) const FACTOR: usize = 27;
+    const SINCE_EULER: usize = 14;
+    const FOLDINGS: usize = 15;
+    const DT_BEFORE: usize = 16;
+    pub(super) const PASSES: usize = 17;
+    const STARTED: usize = 18;
+    pub(super) const MOVED: usize = 19;
+    const FORCE: usize = 20;
+    const APPROACH: usize = 21;
+    pub(super) const FAULT: usize = 22;
+    pub(super) const LONGEST: usize = 23;
+    pub(super) const FACTOR: usize = 26;
 
     /// A displacement that asks for new lists.
     pub(super) const FAR: u32 = 0x7f00_0000;

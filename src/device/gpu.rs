@@ -29,6 +29,9 @@ pub struct Adapter {
     pub is_software: bool,
 }
 
+/// Arrays of the shader with most of them, the search.
+const STORAGE_BUFFERS: u32 = 16;
+
 /// A remedy where no card can be used.
 const DRIVERS: &str = "install the driver of the card: on Linux its Vulkan driver and the loader (libvulkan1); `pontoon bench \
     --devices` lists what is found. Without --device the processor computes";
@@ -83,12 +86,11 @@ pub(super) struct Pass {
     groups: usize,
 }
 
-/// A shader, compiled, and the layout of its bindings.
-pub(super) struct Module {
-    shader: wgpu::ShaderModule,
+/// A shader, compiled: the layout of its bindings, and the pipelines of its functions.
+pub(super) struct Shader {
     group: wgpu::BindGroupLayout,
-    pipeline: wgpu::PipelineLayout,
     bindings: Vec<u32>,
+    pipelines: Vec<(&'static str, wgpu::ComputePipeline)>,
 }
 
 /// The bindings that a shader declares, one a line: number, and whether it is a uniform, read, or read and written.
@@ -133,6 +135,11 @@ impl Gpu {
             return unavailable(format!("there is no device {name:?}"), help);
         };
         let limits = raw.limits();
+        let storage = limits.max_storage_buffers_per_shader_stage;
+        if storage < STORAGE_BUFFERS {
+            let what = format!("{} lets a shader read {storage} arrays; {STORAGE_BUFFERS} are needed", adapter.name);
+            return unavailable(what, DRIVERS.into());
+        }
         let descriptor = wgpu::DeviceDescriptor { required_limits: limits, ..Default::default() };
         let (device, queue) = match pollster::block_on(raw.request_device(&descriptor)) {
             Ok(opened) => opened,
@@ -202,47 +209,52 @@ impl Gpu {
         }
     }
 
-    /// Compiles a shader.
-    pub(super) fn module(&self, text: &str) -> Result<Module> {
+    /// Compiles the functions `entries` of a shader.
+    pub(super) fn shader(&self, text: &str, entries: &[&'static str]) -> Result<Shader> {
         let source = wgpu::ShaderSource::Wgsl(text.into());
-        let shader = self.device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source });
+        let module = self.device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source });
         let declared = declared_bindings(text);
-        let entry = |&(binding, ty): &(u32, wgpu::BufferBindingType)| wgpu::BindGroupLayoutEntry {
+        let binding = |&(binding, ty): &(u32, wgpu::BufferBindingType)| wgpu::BindGroupLayoutEntry {
             binding,
             visibility: wgpu::ShaderStages::COMPUTE,
             ty: wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None },
             count: None,
         };
-        let entries: Vec<_> = declared.iter().map(entry).collect();
-        let group =
-            self.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries });
-        let layouts = [Some(&group)];
-        let pipeline = self.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        let bindings: Vec<_> = declared.iter().map(binding).collect();
+        let descriptor = wgpu::BindGroupLayoutDescriptor { label: None, entries: &bindings };
+        let group = self.device.create_bind_group_layout(&descriptor);
+        let layout = self.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: None,
-            bind_group_layouts: &layouts,
+            bind_group_layouts: &[Some(&group)],
             immediate_size: 0,
         });
+        let pipeline = |&entry: &&'static str| {
+            let pipeline = self.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                label: Some(entry),
+                layout: Some(&layout),
+                module: &module,
+                entry_point: Some(entry),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                cache: None,
+            });
+            (entry, pipeline)
+        };
+        let pipelines = entries.iter().map(pipeline).collect();
         self.check()?;
-        Ok(Module { shader, group, pipeline, bindings: declared.into_iter().map(|(binding, _)| binding).collect() })
+        Ok(Shader { group, bindings: declared.into_iter().map(|(binding, _)| binding).collect(), pipelines })
     }
 
-    /// A pass by the function `entry` over `threads`; `buffers` are all of the shader, by their bindings.
-    pub(super) fn pass(&self, module: &Module, entry: &str, threads: usize, buffers: &[&wgpu::Buffer]) -> Result<Pass> {
-        let pipeline = self.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some(entry),
-            layout: Some(&module.pipeline),
-            module: &module.shader,
-            entry_point: Some(entry),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            cache: None,
-        });
+    /// A pass by the function `entry` of a shader over `threads`; `buffers` are all of the shader, by their bindings.
+    pub(super) fn pass(&self, shader: &Shader, entry: &str, threads: usize, buffers: &[&wgpu::Buffer]) -> Result<Pass> {
+        let compiled = shader.pipelines.iter().find(|(name, _)| *name == entry);
+        let Some((_, pipeline)) = compiled else { return Err(self.failed(&format!("no shader has {entry}"))) };
         let bound =
             |&binding: &u32| wgpu::BindGroupEntry { binding, resource: buffers[binding as usize].as_entire_binding() };
-        let entries: Vec<_> = module.bindings.iter().map(bound).collect();
-        let descriptor = wgpu::BindGroupDescriptor { label: None, layout: &module.group, entries: &entries };
+        let entries: Vec<_> = shader.bindings.iter().map(bound).collect();
+        let descriptor = wgpu::BindGroupDescriptor { label: None, layout: &shader.group, entries: &entries };
         let group = self.device.create_bind_group(&descriptor);
         self.check()?;
-        Ok(Pass { pipeline, group, groups: threads.div_ceil(GROUP).max(1) })
+        Ok(Pass { pipeline: pipeline.clone(), group, groups: threads.div_ceil(GROUP).max(1) })
     }
 
     /// Runs `passes` in their order after the `copies` of whole buffers.

@@ -2,7 +2,7 @@
 //! numbers.
 
 use super::shaders::EXCESS;
-use crate::{math::Vector, sph::Units};
+use crate::{math::Vector, model::Model};
 
 /// Units of a place in the kernel's support: 2⁴⁰.
 const FINE: f64 = (1u64 << 40) as f64;
@@ -24,9 +24,10 @@ pub(super) struct Layout {
 pub(super) type Place = [u32; 8];
 
 impl Layout {
-    /// For a kernel of this `support` (m), with the units of the pair loop and ρ₀ (kg/m³).
-    pub(super) fn new(support: f64, units: &Units, rho0: f64) -> Self {
-        Self { inv_fine: FINE / support, support, speed: units.length / units.time, rho0 }
+    /// For the particles of `model`.
+    pub(super) fn new<const D: usize>(model: &Model) -> Self {
+        let (support, units) = (model.support_radius(), model.single_precision_units::<D>());
+        Self { inv_fine: FINE / support, support, speed: units.length / units.time, rho0: model.rho0 }
     }
 
     /// Whether there is a place for `r` (m).

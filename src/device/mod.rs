@@ -22,7 +22,7 @@ pub use shaders::ShaderTexts;
 use buffers::{Buffers, Control, Counts, WORDS};
 use gpu::Gpu;
 use layout::Layout;
-use passes::Passes;
+use passes::{Passes, Shaders};
 use shaders::{ShaderInput, TICKS, entries};
 use solids::SolidChunks;
 
@@ -52,7 +52,8 @@ pub(crate) struct Device<const D: usize> {
     gpu: Gpu,
     layout: Layout,
     units: Units,
-    texts: ShaderTexts,
+    shaders: Shaders,
+    rows: RowCounts,
     counts: Counts,
     chunks: SolidChunks,
     buffers: Buffers,
@@ -64,6 +65,13 @@ pub(crate) struct Device<const D: usize> {
     steps: usize,
     /// Whether steps are Verlet's, and not symplectic.
     verlet: bool,
+}
+
+/// Rows of additional inputs of the pair loop, and the first of them with the stress of the water, if it is kept.
+#[derive(Clone, Copy, Debug)]
+struct RowCounts {
+    inputs: usize,
+    stress: Option<usize>,
 }
 
 /// What limits the steps of a device.
@@ -115,7 +123,7 @@ pub(crate) enum StepsEnd {
 }
 
 /// The refusal of `what` on a device.
-fn refused(what: &str) -> Error {
+pub(crate) fn refused(what: &str) -> Error {
     Error::new(ErrorKind::Usage, format!("a device does not compute {what} yet"))
         .with_code(ErrorCode::NoDevice)
         .help("leave --device (model.device) out: the processor computes all of this scene")
@@ -145,12 +153,20 @@ fn sponge_statements<const D: usize>(system: &System<D>, layout: &Layout, units:
     Ok(text)
 }
 
+/// The texts of the shaders for `system`, without a device.
+///
+/// # Errors
+/// `Usage` if no device computes the system yet.
+#[doc(hidden)]
+pub fn shaders_of<const D: usize>(system: &System<D>) -> Result<ShaderTexts> {
+    shader_texts(system, &Layout::new::<D>(system.model()), &SolidChunks::new(system))
+}
+
 /// The texts of the shaders for the present state of `system`.
-fn shader_texts<const D: usize>(
-    system: &System<D>,
-    layout: &Layout,
-    chunks: &SolidChunks,
-) -> Result<(ShaderTexts, Units)> {
+fn shader_texts<const D: usize>(system: &System<D>, layout: &Layout, chunks: &SolidChunks) -> Result<ShaderTexts> {
+    if let Some(what) = device_state::unsupported_on_device(system) {
+        return Err(refused(what));
+    }
     let model = system.model();
     let (traces, units) = model.pair_traces::<D>().ok_or_else(|| refused("this pair loop"))?;
     let domain = system.domain();
@@ -168,59 +184,29 @@ fn shader_texts<const D: usize>(
         sponge: sponge_statements(system, layout, &units)?,
         gaps: device_state::has_free_solids(system) && model.walls == Walls::RelaxedAdami,
     };
-    let texts = input.texts().ok_or_else(|| refused("numbers of this size in single precision"))?;
-    Ok((texts, units))
-}
-
-/// The texts of the shaders for `system`, without a device.
-///
-/// # Errors
-/// `Usage` if no device computes the system yet.
-#[doc(hidden)]
-pub fn shaders_of<const D: usize>(system: &System<D>) -> Result<ShaderTexts> {
-    if let Some(what) = device_state::unsupported_on_device(system) {
-        return Err(refused(what));
-    }
-    let model = system.model();
-    let (_, units) = model.pair_traces::<D>().ok_or_else(|| refused("this pair loop"))?;
-    let layout = Layout::new(model.support_radius(), &units, model.rho0);
-    Ok(shader_texts(system, &layout, &SolidChunks::new(system))?.0)
+    input.texts().ok_or_else(|| refused("numbers of this size in single precision"))
 }
 
 impl<const D: usize> Device<D> {
     /// Puts the particles of `system` on the device `name`, at `time` (s).
     pub(crate) fn new(name: &str, system: &System<D>, stepper: &Stepper<D>, time: f64) -> Result<Self> {
-        if let Some(what) = device_state::unsupported_on_device(system) {
-            return Err(refused(what));
-        }
-        let gpu = Gpu::open(name)?;
-        let model = system.model();
-        let (_, units) = model.pair_traces::<D>().ok_or_else(|| refused("this pair loop"))?;
-        let layout = Layout::new(model.support_radius(), &units, model.rho0);
-        let everything = system.fluid().r.iter().chain(system.boundary().r);
-        if !everything.clone().all(|r| layout.reaches(r)) {
+        let (model, chunks) = (system.model(), SolidChunks::new(system));
+        let layout = Layout::new::<D>(model);
+        let texts = shader_texts(system, &layout, &chunks)?;
+        if !system.fluid().r.iter().chain(system.boundary().r).all(|r| layout.reaches(r)) {
             return Err(refused("places a million kernel supports from the origin"));
         }
-        let chunks = SolidChunks::new(system);
+        let gpu = Gpu::open(name)?;
         let counts = Counts::new(system, &layout, &gpu.adapter, MARGIN)?;
-        let (texts, units) = shader_texts(system, &layout, &chunks)?;
         let verlet = matches!(model.scheme, TimeScheme::Verlet { .. });
+        let shaders = Shaders::new(&gpu, &texts, verlet)?;
         let buffers = Buffers::new(&gpu, &counts, &chunks, &texts, verlet)?;
-        let passes = Passes::new(&gpu, &texts, &counts, &chunks, &buffers, verlet)?;
-        let mut device = Self {
-            gpu,
-            layout,
-            units,
-            texts,
-            counts,
-            chunks,
-            buffers,
-            passes,
-            start: time,
-            ticks: 0,
-            steps: FIRST_STEPS,
-            verlet,
-        };
+        let passes = Passes::new(&gpu, &shaders, &counts, &chunks, &buffers)?;
+        let (units, rows) =
+            (model.single_precision_units::<D>(), RowCounts { stress: texts.stress, inputs: texts.rows[1] });
+        let (start, ticks, steps) = (time, 0, FIRST_STEPS);
+        let mut device =
+            Self { gpu, layout, units, shaders, rows, counts, chunks, buffers, passes, start, ticks, steps, verlet };
         device.load(system, stepper, time)?;
         Ok(device)
     }
@@ -228,6 +214,11 @@ impl<const D: usize> Device<D> {
     /// What computes, for a message.
     pub(crate) fn adapter(&self) -> &Adapter {
         &self.gpu.adapter
+    }
+
+    /// Number of particles, water and boundary.
+    pub(crate) fn particle_count(&self) -> usize {
+        self.counts.n
     }
 
     /// Memory of the arrays, B: all, and of these the neighbour lists.
@@ -250,7 +241,7 @@ impl<const D: usize> Device<D> {
         let motion: Vec<_> = all.iter().map(|(_, v, rho, _)| layout.motion(v, *rho)).collect();
         gpu.write(&buffers.places, 0, &places);
         gpu.write(&buffers.motion, 0, &motion);
-        if let (Some(row), Some(stress)) = (self.texts.stress, device_state::fluid_stress(system)) {
+        if let (Some(row), Some(stress)) = (self.rows.stress, device_state::fluid_stress(system)) {
             let scale = (self.units.time / self.units.length).powi(2);
             for (row, (i, j)) in (row..).zip(entries(D)) {
                 let values: Vec<f32> = stress.iter().map(|stress| (stress[(i, j)] * scale) as f32).collect();
@@ -342,13 +333,11 @@ impl<const D: usize> Device<D> {
         }
         self.counts.set_list_length(longest + longest / 8, &self.gpu.adapter);
         self.buffers.make_lists(&self.gpu, &self.counts)?;
-        self.passes = Passes::new(&self.gpu, &self.texts, &self.counts, &self.chunks, &self.buffers, self.verlet)?;
+        self.passes = Passes::new(&self.gpu, &self.shaders, &self.counts, &self.chunks, &self.buffers)?;
         let copies = self.buffers.restores();
         self.gpu.run(&copies, [self.passes.derive.as_ref()]);
         self.gpu.write(&self.buffers.control, Control::MOVED * 4, &[Control::FAR]);
         self.gpu.write(&self.buffers.control, Control::LONGEST * 4, &[0u32]);
-        self.gpu.write(&self.buffers.control, Control::HALT * 4, &[1u32]);
-        self.gpu.run(&[], [self.passes.derive.as_ref()]);
         Ok(true)
     }
 
@@ -453,8 +442,8 @@ impl<const D: usize> Device<D> {
             (layout.position(place), layout.velocity(motion), layout.density(motion))
         };
         device_state::take_from_device(system, of_water, |i| layout.density(of(water + i).1));
-        if let Some(first) = self.texts.stress {
-            let [rows] = self.gpu.read::<f32, 1>([(&self.buffers.pairs.rows, self.texts.rows[1] * n)])?;
+        if let Some(first) = self.rows.stress {
+            let [rows] = self.gpu.read::<f32, 1>([(&self.buffers.pairs.rows, self.rows.inputs * n)])?;
             let scale = (self.units.length / self.units.time).powi(2);
             let entry = |i: usize, row: usize, column: usize| {
                 let (a, b) = (row.max(column), row.min(column));

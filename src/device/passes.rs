@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::{
     buffers::{Buffers, Counts},
-    gpu::{Gpu, Module, Pass},
+    gpu::{Gpu, Pass, Shader},
     shaders::{GROUP, ShaderTexts},
     solids::SolidChunks,
 };
@@ -28,41 +28,84 @@ pub(super) struct Passes {
     pub(super) loads: Arc<Pass>,
 }
 
-/// Makes passes of one shader.
+/// The shaders of a scene.
+pub(super) struct Shaders {
+    search: Shader,
+    lists: Shader,
+    sweep: Shader,
+    step: Shader,
+    solids: Shader,
+    gaps: Option<Shader>,
+    inputs: Option<Shader>,
+    moments: Option<Shader>,
+    /// Whether the stress of the water is kept.
+    stress: bool,
+    verlet: bool,
+}
+
+const SEARCH: [&str; 10] =
+    ["decide", "clear", "tally", "scan", "scan_blocks", "scan_add", "scatter", "settle", "gather", "put_back"];
+
+impl Shaders {
+    /// Compiles the functions that the scene needs, for steps of Verlet's scheme or the symplectic one.
+    pub(super) fn new(gpu: &Gpu, texts: &ShaderTexts, verlet: bool) -> Result<Self> {
+        let schemes: &[&'static str] = if verlet {
+            &["limit", "finish", "derive", "verlet"]
+        } else {
+            &["limit", "finish", "derive", "first_half", "whole_step"]
+        };
+        let optional = |text: &Option<String>, entries: &[&'static str]| {
+            text.as_ref().map(|text| gpu.shader(text, entries)).transpose()
+        };
+        Ok(Self {
+            search: gpu.shader(&texts.search, &SEARCH)?,
+            lists: gpu.shader(&texts.lists, &["list_pairs"])?,
+            sweep: gpu.shader(&texts.sweep, &["sweep_water", "sweep_boundary"])?,
+            step: gpu.shader(&texts.step, schemes)?,
+            solids: gpu.shader(&texts.solids, &["place_moving", "add_loads"])?,
+            gaps: optional(&texts.gaps, &["find_gaps", "add_gaps"])?,
+            inputs: optional(&texts.inputs, &["fill_rows", "close_stress"])?,
+            moments: optional(&texts.moments, &["sweep_moments"])?,
+            stress: texts.stress.is_some(),
+            verlet,
+        })
+    }
+}
+
+/// Makes passes of one shader with its buffers.
 struct Maker<'a> {
     gpu: &'a Gpu,
-    module: Module,
+    shader: &'a Shader,
     /// All buffers of the shader, by their bindings.
     buffers: Vec<&'a wgpu::Buffer>,
 }
 
 impl<'a> Maker<'a> {
-    fn new(gpu: &'a Gpu, text: &str, buffers: Vec<&'a wgpu::Buffer>) -> Result<Self> {
-        Ok(Self { gpu, module: gpu.module(text)?, buffers })
+    fn new(gpu: &'a Gpu, shader: &'a Shader, buffers: Vec<&'a wgpu::Buffer>) -> Self {
+        Self { gpu, shader, buffers }
     }
 
     /// The pass by the function `entry`.
     fn pass(&self, entry: &str, threads: usize) -> Result<Arc<Pass>> {
-        Ok(Arc::new(self.gpu.pass(&self.module, entry, threads, &self.buffers)?))
+        Ok(Arc::new(self.gpu.pass(self.shader, entry, threads, &self.buffers)?))
     }
 }
 
 impl Passes {
     pub(super) fn new(
         gpu: &Gpu,
-        texts: &ShaderTexts,
+        shaders: &Shaders,
         counts: &Counts,
         chunks: &SolidChunks,
         buffers: &Buffers,
-        verlet: bool,
     ) -> Result<Self> {
         let params = gpu.uniform(&counts.words());
-        let rates = rates(gpu, texts, counts, buffers, &params)?;
+        let rates = rates(gpu, shaders, counts, buffers, &params)?;
         let n = counts.n;
         let b = &buffers.pairs;
         let solids = Maker::new(
             gpu,
-            &texts.solids,
+            &shaders.solids,
             vec![
                 &params,
                 &buffers.control,
@@ -78,12 +121,12 @@ impl Passes {
                 &b.sums,
                 &buffers.loads,
             ],
-        )?;
+        );
         let place = solids.pass("place_moving", chunks.moving * GROUP)?;
         let loads = solids.pass("add_loads", chunks.owners.len() * GROUP)?;
         let step = Maker::new(
             gpu,
-            &texts.step,
+            &shaders.step,
             vec![
                 &params,
                 &buffers.control,
@@ -98,12 +141,12 @@ impl Passes {
                 &b.built,
                 &buffers.slot,
             ],
-        )?;
+        );
         let limit = step.pass("limit", 1)?;
         let finish = step.pass("finish", 1)?;
         let derive = step.pass("derive", n)?;
         let (whole, first, second);
-        if verlet {
+        if shaders.verlet {
             let verlet = step.pass("verlet", n)?;
             whole = [&rates[..], &[limit.clone(), verlet.clone(), finish.clone()]].concat();
             first = [&rates[..], &[limit, loads.clone()]].concat();
@@ -122,7 +165,7 @@ impl Passes {
 /// A force pass: new lists where they are needed, and the sums over pairs.
 fn rates(
     gpu: &Gpu,
-    texts: &ShaderTexts,
+    shaders: &Shaders,
     counts: &Counts,
     buffers: &Buffers,
     params: &wgpu::Buffer,
@@ -131,7 +174,7 @@ fn rates(
     let total = 2 * cells + 1;
     let search = Maker::new(
         gpu,
-        &texts.search,
+        &shaders.search,
         vec![
             params,
             &buffers.control,
@@ -151,7 +194,7 @@ fn rates(
             &b.rows,
             &searched.spare_rows,
         ],
-    )?;
+    );
     let mut passes = vec![
         search.pass("decide", 1)?,
         search.pass("clear", total)?,
@@ -170,7 +213,7 @@ fn rates(
         let first = gpu.uniform(&[start as u32, counts.part as u32, 0, 0]);
         let lists = Maker::new(
             gpu,
-            &texts.lists,
+            &shaders.lists,
             vec![
                 params,
                 &buffers.control,
@@ -185,11 +228,11 @@ fn rates(
                 &b.sums,
                 &buffers.before,
             ],
-        )?;
+        );
         passes.push(lists.pass("list_pairs", counts.part.min(n - start))?);
         let sweep = Maker::new(
             gpu,
-            &texts.sweep,
+            &shaders.sweep,
             vec![
                 params,
                 &buffers.control,
@@ -206,14 +249,14 @@ fn rates(
                 &b.aways,
                 &b.rows,
             ],
-        )?;
+        );
         let threads = counts.part.min(n - start);
         if start < counts.water {
             let water = threads.min(counts.water - start);
-            if let Some(text) = &texts.moments {
+            if let Some(text) = &shaders.moments {
                 let buffers =
                     vec![params, &buffers.control, &first, &b.positions, &b.velocities, list, &b.spans, &b.rows];
-                corrections.push(Maker::new(gpu, text, buffers)?.pass("sweep_moments", water)?);
+                corrections.push(Maker::new(gpu, text, buffers).pass("sweep_moments", water)?);
             }
             sweeps.push(sweep.pass("sweep_water", water)?);
         }
@@ -221,7 +264,7 @@ fn rates(
             sweeps.push(sweep.pass("sweep_boundary", threads)?);
         }
     }
-    if let Some(text) = &texts.gaps {
+    if let Some(text) = &shaders.gaps {
         let gaps = Maker::new(
             gpu,
             text,
@@ -239,13 +282,13 @@ fn rates(
                 &b.sums,
                 &b.built,
             ],
-        )?;
+        );
         let boundary = n - counts.water;
         passes.push(gaps.pass("find_gaps", boundary)?);
         sweeps.push(gaps.pass("add_gaps", boundary)?);
     }
     let mut close = None;
-    if let Some(text) = &texts.inputs {
+    if let Some(text) = &shaders.inputs {
         let inputs = Maker::new(
             gpu,
             text,
@@ -259,9 +302,9 @@ fn rates(
                 &b.sums,
                 &buffers.solids,
             ],
-        )?;
+        );
         passes.push(inputs.pass("fill_rows", n)?);
-        if texts.stress.is_some() {
+        if shaders.stress {
             close = Some(inputs.pass("close_stress", counts.water)?);
         }
     }

@@ -6,7 +6,7 @@ use crate::{
     model::{Model, PressureGradient, TimeScheme, Walls},
     sph::{
         AuxiliarySums, FluidProperties, Num as _, Units,
-        boundary::{Cover, WallExtrapolation, WallTarget},
+        boundary::{Cover, RELAXATION_TIME, WallExtrapolation, WallTarget},
         equation_of_state::EquationOfState,
         gradient_correction,
         pressure::repulsion,
@@ -71,8 +71,6 @@ pub struct ShaderTexts {
     pub rows: [usize; 3],
     /// The first row of the stress of the water, if it is kept.
     pub stress: Option<usize>,
-    /// Whether walls relax.
-    pub relaxed: bool,
 }
 
 /// Width of a cell in 2⁻⁸ of the support: two cells span the reach of the lists, which is `margin` beyond the support.
@@ -130,7 +128,6 @@ impl<const D: usize> ShaderInput<'_, D> {
             moments: self.moments(&properties).map(|text| with_head(&text)),
             rows: [self.traces.rows[1], self.traces.rows[0], self.kept_rows()],
             stress: self.traces.layout.stress,
-            relaxed: self.model.walls == Walls::RelaxedAdami,
             solids: with_head(&include_str!("shaders/solids.wgsl").replace("{{FORCE}}", &force)),
         })
     }
@@ -138,7 +135,6 @@ impl<const D: usize> ShaderInput<'_, D> {
     fn constants(&self, properties: &FluidProperties<D>) -> String {
         let Self { model, units, limits, domain, margin, chunks, .. } = self;
         let support = model.support_radius() / units.length;
-        let crossing = model.h / model.c0;
         let (euler_every, growth) = match model.scheme {
             TimeScheme::Verlet { euler_every } => {
                 (euler_every, (model.diffusion.damping() + model.viscosity.damping()) * model.c0 / model.h * units.time)
@@ -167,7 +163,7 @@ impl<const D: usize> ShaderInput<'_, D> {
             format!("const SOUND: f32 = {};", float(properties.c0)),
             format!("const COURANT: f32 = {};", float(model.cfl)),
             format!("const LONGEST: f32 = {};", float(longest.min(0.9))),
-            format!("const PER_CROSSING: f32 = {};", float(units.time / crossing)),
+            format!("const RELAXATION_TIME: f32 = {};", float(RELAXATION_TIME)),
             format!("const EULER_EVERY: u32 = {}u;", euler_every.max(1)),
             format!("const FOLDINGS: f32 = {};", float(FOLDINGS)),
             format!("const GROWTH: f32 = {};", float(growth)),
@@ -186,41 +182,32 @@ impl<const D: usize> ShaderInput<'_, D> {
         let relaxed = self.model.walls == Walls::RelaxedAdami;
         let fluid = pair_body(&self.traces.fluid, "t")?;
         let wall = pair_body(&self.traces.wall, "u")?;
-        let fit = statements(&self.traces.extrapolation, "f", |name| match name.strip_prefix("sum") {
-            Some(row) => format!("fit{row}"),
-            None => extrapolation_input(name),
-        })?;
-        let fit_rows = self.traces.extrapolation.results.len();
         let mut beside = wall.clone();
+        let (mut fit_rows, mut target) = (0, String::new());
         if relaxed {
-            beside += &fit;
-            for (name, _) in &self.traces.extrapolation.results {
-                let row = name.trim_start_matches("sum");
-                beside += &format!("fit{row} = out_sum{row};\n");
-            }
-            // The results of the fit have the names of those of the pair.
-            beside = format!("{{\n{wall}}}\n{{\n{}}}\n", &beside[wall.len()..]);
+            let trace = &self.traces.extrapolation;
+            let read = |other: fn(&str) -> String| {
+                move |name: &str| name.strip_prefix("sum").map_or_else(|| other(name), |row| format!("fit{row}"))
+            };
+            let mut fit = statements(trace, "f", read(extrapolation_input))?;
+            fit_rows = trace.results.len();
+            (0..fit_rows).for_each(|row| fit += &format!("fit{row} = out_sum{row};\n"));
+            // The results of the extrapolation have the names of those of the pair.
+            beside = format!("{{\n{wall}}}\n{{\n{fit}}}\n");
+            let equations = statements(&wall_target(properties, eos), "w", read(wall_input))?;
+            target = include_str!("shaders/wall_target.wgsl").replace("{{TARGET}}", &equations);
         }
         let zeros =
             |name: &str, rows: usize| (0..rows).map(|row| format!("var {name}{row} = 0.0f;\n")).collect::<String>();
-        let store =
-            |rows: usize| (0..rows).map(|row| format!("sums[{row}u * params.n + k] = sum{row};\n")).collect::<String>();
-        let target = statements(&wall_target(properties, eos), "w", |name| match name.strip_prefix("sum") {
-            Some(row) => format!("fit{row}"),
-            None => wall_input(name),
-        })?;
-        let target = if relaxed {
-            include_str!("shaders/wall_target.wgsl").replace("{{TARGET}}", &target)
-        } else {
-            String::new()
-        };
+        let store: String = (0..sums).map(|row| format!("sums[{row}u * params.n + k] = sum{row};\n")).collect();
         let text = include_str!("shaders/sweep.wgsl")
             .replace("{{ZERO_SUMS}}", &indented(&zeros("sum", sums), 8))
-            .replace("{{ZERO_FIT}}", &indented(&zeros("fit", if relaxed { fit_rows } else { 0 }), 8))
+            .replace("{{ZERO_FIT}}", &indented(&zeros("fit", fit_rows), 8))
+            .replace("{{NEIGHBOUR}}", &indented(include_str!("shaders/neighbour.wgsl"), 12))
             .replace("{{FLUID}}", &indented(&fluid, 12))
             .replace("{{WALL}}", &indented(&wall, 12))
             .replace("{{BESIDE}}", &indented(&beside, 12))
-            .replace("{{STORE}}", &indented(&store(sums), 8))
+            .replace("{{STORE}}", &indented(&store, 8))
             .replace("{{TARGET}}", &indented(&target, 8))
             .replace("{{FORCE}}", &vector::<D>(|k| format!("sum{k}"), "0.0f"));
         Some(text)

@@ -42,7 +42,7 @@ impl SolidChunks {
                 chunks_of_moving = owners.len();
             }
         }
-        let unit = crate::neighbours::NeighbourLists::<D>::length_unit(system.model().support_radius());
+        let unit = system.model().single_precision_units::<D>().length;
         let mut local = vec![[0.0; 4]; system.boundary().len()];
         for &solid in &moving {
             for (i, r) in system.solids()[solid].boundary.clone().zip(device_state::local_boundary(system, solid)) {

@@ -186,6 +186,7 @@ const EXAMPLES: &[(&str, &str)] = &[
     ("gradient", "gradient = \"near_surface\" # or \"plain\", \"corrected\""),
     ("slip", "slip = \"none\"         # or \"free\", \"partial\""),
     ("sweep", "sweep = \"fast\""),
+    ("device", "device = \"gpu\"        # or the number of a device as a text, \"0\"; \"cpu\" is the processor"),
     ("time", "[time]\nscheme = \"symplectic\""),
     ("scheme", "scheme = { verlet = { euler_every = 50 } }"),
     ("probe", "[[probe]]\nmotion = \"box\""),

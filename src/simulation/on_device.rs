@@ -2,11 +2,11 @@
 
 use std::time::Instant;
 
-use super::{Simulation, StoredState};
+use super::Simulation;
 use crate::{
     coupling::{Hook, Interval, drift_half_step},
-    device::{Adapter, Device, DeviceSteps, StepRequest, StepsEnd},
-    error::{Error, ErrorCode, ErrorKind, Result},
+    device::{Adapter, Device, DeviceSteps, StepRequest, StepsEnd, refused},
+    error::{ErrorCode, Result},
     interaction::{PairSums, StepLimits},
     model::TimeScheme,
     solid::Role,
@@ -24,6 +24,8 @@ pub(super) struct OnDevice<const D: usize> {
     all_fixed: bool,
     /// Steps after which a state for a rollback is stored.
     next_state: u64,
+    /// Whether the state of the host was changed by hand, and must go to the device.
+    pub(super) host_changed: bool,
 }
 
 impl<const D: usize> OnDevice<D> {
@@ -41,12 +43,6 @@ impl<const D: usize> OnDevice<D> {
     pub(super) fn needs_state(&self, steps: u64) -> bool {
         steps >= self.next_state
     }
-
-    fn refused(what: &str) -> Error {
-        Error::new(ErrorKind::Usage, format!("a device does not compute {what} yet"))
-            .with_code(ErrorCode::NoDevice)
-            .help("leave --device (model.device) out: the processor computes all of this scene")
-    }
 }
 
 /// Steps from one state for a rollback to the next.
@@ -60,22 +56,31 @@ const STATE_EVERY: u64 = 500;
 /// # Errors
 /// `Usage` if there is no such device, or the simulation has something that no device computes yet: names both and the remedy.
 pub(super) fn place<const D: usize>(mut sim: Simulation<D>, name: &str) -> Result<Simulation<D>> {
+    refuse_unsupported(&sim)?;
+    let device = Device::new(name, &sim.system, &sim.stepper, sim.clock.time)?;
+    let all_fixed = sim.system.solids().iter().all(|solid| matches!(solid.spec.role, Role::Fixed));
+    device_state::leave_to_device(&mut sim.system);
+    let (host_is_current, loads_are_current) = (true, true);
+    let own = OnDevice { device, host_is_current, loads_are_current, all_fixed, next_state: 0, host_changed: false };
+    sim.device = Some(own);
+    Ok(sim)
+}
+
+/// Refuses a simulation with something that no device computes yet.
+fn refuse_unsupported<const D: usize>(sim: &Simulation<D>) -> Result<()> {
     let bodies = &sim.bodies;
+    let count = sim.system.fluid().len() + sim.system.boundary().len();
+    let other_count = sim.device.as_ref().is_some_and(|own| own.device.particle_count() != count);
     let cases = [
+        (sim.custom_terms, "pair terms of your own"),
         (!bodies.added_masses().is_empty(), "light bodies"),
         (!bodies.moorings.is_empty(), "mooring lines"),
         (bodies.accounting.is_some(), "load breakdowns and energy budgets"),
         (bodies.has_external_bodies(), "bodies that an external program moves"),
         (bodies.constraints().due_removals(f64::MAX).next().is_some(), "solids that are removed during the run"),
+        (other_count, "solids that are added or removed during the run"),
     ];
-    if let Some((_, what)) = cases.into_iter().find(|(has, _)| *has) {
-        return Err(OnDevice::<D>::refused(what));
-    }
-    let device = Device::new(name, &sim.system, &sim.stepper, sim.clock.time)?;
-    let all_fixed = sim.system.solids().iter().all(|solid| matches!(solid.spec.role, Role::Fixed));
-    device_state::set_on_device(&mut sim.system, true);
-    sim.device = Some(OnDevice { device, host_is_current: true, loads_are_current: true, all_fixed, next_state: 0 });
-    Ok(sim)
+    cases.into_iter().find(|(has, _)| *has).map_or(Ok(()), |(_, what)| Err(refused(what)))
 }
 
 /// Makes a force pass on the device at the present state; returns acceleration (m/s²) and rate of the excess density (1/s) of each
@@ -84,15 +89,16 @@ pub(super) fn rates<const D: usize>(sim: &mut Simulation<D>) -> Result<Option<(V
     let Simulation { device: Some(own), system, .. } = sim else { return Ok(None) };
     let rates = own.device.rates(system)?;
     let loads = own.device.loads(system)?;
-    system.solids.iter_mut().zip(loads).for_each(|(solid, load)| solid.load = load);
+    device_state::set_loads(system, loads);
     Ok(Some(rates))
 }
 
 /// Gives the state of the host, which was changed, to the device.
 pub(super) fn load<const D: usize>(sim: &mut Simulation<D>) -> Result<()> {
     let Simulation { device: Some(own), system, stepper, clock, .. } = sim else { return Ok(()) };
+    device_state::place_solids(system);
     own.device.load(system, stepper, clock.time)?;
-    (own.host_is_current, own.loads_are_current) = (true, true);
+    (own.host_is_current, own.loads_are_current, own.host_changed) = (true, true, false);
     own.next_state = own.next_state.min(clock.steps + STATE_EVERY);
     Ok(())
 }
@@ -115,7 +121,7 @@ pub(super) fn fetch_loads<const D: usize>(sim: &mut Simulation<D>) -> Result<()>
     let Simulation { device: Some(own), system, .. } = sim else { return Ok(()) };
     if !std::mem::replace(&mut own.loads_are_current, true) {
         let loads = own.device.loads(system)?;
-        system.solids.iter_mut().zip(loads).for_each(|(solid, load)| solid.load = load);
+        device_state::set_loads(system, loads);
     }
     Ok(())
 }
@@ -125,34 +131,42 @@ pub(super) fn steps<const D: usize>(
     sim: &mut Simulation<D>,
     most: (u64, f64),
     end: f64,
-    hook: &mut Hook<D>,
+    hook: Option<&mut Hook<D>>,
 ) -> Result<()> {
     let start = Instant::now();
+    refuse_unsupported(sim)?;
+    if sim.device.as_ref().is_some_and(|own| own.host_changed) {
+        load(sim)?;
+    }
     store_state(sim)?;
     let outcome = advance(sim, most, end, hook).or_else(|error| sim.roll_back(error));
     sim.stepping += start.elapsed();
     outcome
 }
 
-/// Advances by up to `most` steps until time `pause` (s) is reached, not past `end` (s); the state stays on the device.
+/// Advances by up to `most` steps until time `pause` (s) is reached, not past `end` (s); the state stays on the device. Makes one step
+/// if a solid moves or there is a `hook`.
 fn advance<const D: usize>(
     sim: &mut Simulation<D>,
     (most, pause): (u64, f64),
     end: f64,
-    hook: &mut Hook<D>,
+    hook: Option<&mut Hook<D>>,
 ) -> Result<()> {
     let all_fixed = sim.device.as_ref().is_some_and(|own| own.all_fixed);
     let factor = sim.rollback.step_factor(sim.clock.time);
     let request = StepRequest { longest: sim.host_step_limit(), factor, pause, end };
-    let done = if all_fixed {
+    let done = if all_fixed && hook.is_none() {
         let Some(own) = &mut sim.device else { return Ok(()) };
         (own.host_is_current, own.loads_are_current) = (false, false);
         own.device.run(most, &request)?
     } else {
-        match body_step(sim, &StepRequest { pause: f64::INFINITY, ..request }, hook)? {
-            Some(done) => done,
-            None => return Ok(()),
-        }
+        let request = StepRequest { pause: f64::INFINITY, ..request };
+        let done = match hook {
+            Some(hook) => body_step(sim, &request, hook)?,
+            None => body_step(sim, &request, &mut |_| Ok(()))?,
+        };
+        let Some(done) = done else { return Ok(()) };
+        done
     };
     take_steps(sim, &done)
 }
@@ -181,7 +195,7 @@ fn body_step<const D: usize>(
         system.solids.iter_mut().zip(&start).for_each(|(solid, start)| solid.kinematics = *start);
         own.device.move_solids(system);
     };
-    system.solids.iter_mut().zip(loads).for_each(|(solid, load)| solid.load = load);
+    device_state::set_loads(system, loads);
     if let StepsEnd::Fault(_) | StepsEnd::NoStep = done.end {
         return Ok(Some(done));
     }
@@ -216,7 +230,7 @@ fn store_state<const D: usize>(sim: &mut Simulation<D>) -> Result<()> {
     if sim.needs_rollback_state() {
         fetch(sim)?;
         sim.rollback.drop_oldest_state();
-        let state: StoredState = sim.rollback_state()?;
+        let state = sim.rollback_state()?;
         sim.rollback.store(sim.clock.steps, sim.clock.time, state);
         if let Some(own) = &mut sim.device {
             own.next_state = sim.clock.steps + STATE_EVERY;

@@ -48,6 +48,7 @@ pub(crate) struct Boundary<const D: usize> {
     /// Poses of the solids when the neighbour lists were built; `None` if they must be built anew.
     pub(super) poses_at_rebuild: Option<Vec<Pose<D>>>,
     /// Whether a device has the particles: the host places none.
+    #[cfg(feature = "gpu")]
     pub(super) on_device: bool,
 }
 
@@ -82,6 +83,7 @@ impl<const D: usize> Boundary<D> {
             local_bounds: Vec::new(),
             mirrored: Vec::new(),
             poses_at_rebuild: None,
+            #[cfg(feature = "gpu")]
             on_device: false,
         }
     }
@@ -269,6 +271,7 @@ impl<const D: usize> Boundary<D> {
 impl<const D: usize> System<D> {
     /// Puts the boundary particles of solid `i` where its kinematics say.
     pub(crate) fn place_boundary(&mut self, i: usize) {
+        #[cfg(feature = "gpu")]
         if self.boundary.on_device {
             return;
         }

@@ -4,7 +4,7 @@ use super::{Escape, ParticleLimits, System};
 use crate::{
     math::{Matrix, Vector},
     model::Slip,
-    solid::{Role, Solid},
+    solid::{Load, Role, Solid},
 };
 
 /// What this system has that no device computes yet, if anything.
@@ -83,9 +83,9 @@ pub(crate) fn solid_of_boundary<const D: usize>(system: &System<D>, i: usize) ->
     system.owner(i)
 }
 
-/// Says whether the particles are on a device: the host then places no boundary particles.
-pub(crate) fn set_on_device<const D: usize>(system: &mut System<D>, on_device: bool) {
-    system.boundary.on_device = on_device;
+/// The particles are on a device from now on: the host places no boundary particles.
+pub(crate) fn leave_to_device<const D: usize>(system: &mut System<D>) {
+    system.boundary.on_device = true;
 }
 
 /// Acceleration (1/s²) that an arm of solid number `solid` gives a point of it: α + Ω².
@@ -108,13 +108,20 @@ pub(crate) fn take_from_device<const D: usize>(
     for (i, rho) in system.boundary.particles.rho.iter_mut().enumerate() {
         *rho = boundary_density(i);
     }
-    system.boundary.on_device = false;
-    for i in 0..system.solids.len() {
-        system.place_boundary(i);
-    }
-    system.boundary.on_device = true;
+    place_solids(system);
     system.neighbours.set_fluid_positions(&system.fluid.particles.r);
     system.boundary.poses_at_rebuild = Some(system.solids.iter().map(|solid| solid.kinematics.pose).collect());
     (system.rates.current, system.rates.corrections_current) = (false, false);
     system.check_water();
+}
+
+/// Places the boundary particles of all solids on the host.
+pub(crate) fn place_solids<const D: usize>(system: &mut System<D>) {
+    let System { boundary, solids, fluid, .. } = system;
+    solids.iter().enumerate().for_each(|(i, solid)| boundary.place(i, solid, &fluid.images));
+}
+
+/// Sets the load of the water on each solid.
+pub(crate) fn set_loads<const D: usize>(system: &mut System<D>, loads: Vec<Load<D>>) {
+    system.solids.iter_mut().zip(loads).for_each(|(solid, load)| solid.load = load);
 }

@@ -386,8 +386,7 @@ pub(crate) fn prescribed_discharge<const D: usize>(system: &System<D>, i: usize,
     face.velocity.as_ref()?;
     let own = buffer.faces.iter().zip(&particles.r[system.particle_count()..]).filter(|(face, _)| **face as usize == i);
     let speeds = own.filter_map(|(_, r)| face.outward_velocity(r, t)).sum::<f64>();
-    let volume = system.particle_mass() / system.properties.rho0;
-    Some(speeds * volume * system.water_multiplicity() / buffer_length(&system.model))
+    Some(speeds * system.properties.particle_volume() * system.water_multiplicity() / buffer_length(&system.model))
 }
 
 /// The face in whose buffer moving solid number `i` has an end at `pose`.

@@ -1,4 +1,5 @@
-// What all shaders share. A place has 64 bits, in 2^-40 of the support: the middle 32 are what the pair loop sees. `hi.w` is the index of the particle on the host, boundary particles after the water; `lo.w` the solid.
+// What all shaders share. A place has 64 bits, in 2^-40 of the support: the middle 32 are what the pair loop sees. `hi.w` is the
+// index of the particle on the host, boundary particles after the water; `lo.w` the solid.
 struct Params {
     n: u32,          // particles, water first
     water: u32,      // water particles
@@ -20,7 +21,6 @@ struct Control {
     stop: vec2<u32>,
     limit: u32,      // the longest step that the host allows, ticks
     steps: u32,
-    rebuilds: u32,
     since_euler: u32,
     foldings: f32,
     dt_before: f32,
@@ -34,7 +34,7 @@ struct Control {
     age: u32,        // force passes since the gradients were corrected
     correct: u32,
     factor: f32,     // part of the step of the water that is taken, after a rollback
-    pad: array<u32, 4>,
+    pad: array<u32, 5>,
 };
 struct Solid {
     origin: Place,           // of its frame; hi.w: 1 if water beside it is not shifted

@@ -74,8 +74,10 @@ fn add_gaps(@builtin(global_invocation_id) id: vec3<u32>) {
     }
 {{ADD}}}
 
-// The cell of a boundary particle at the last lists.
+// The cell of a boundary particle at the last lists. Of its place then the middle 32 bits are known, and it was near.
 fn gap_cell(k: u32) -> vec4<i32> {
-    let way = built[k].xyz - middle(places[k]);
-    return cell_of(vec4<i32>(places[k].hi.xyz + (way >> vec3<u32>(16u)), 0));
+    let way = (built[k].xyz >> vec3<u32>(16u)) - (middle(places[k]) >> vec3<u32>(16u));
+    // Whole numbers of 16 bits, with their sign.
+    let short = (way << vec3<u32>(16u)) >> vec3<u32>(16u);
+    return cell_of(vec4<i32>(places[k].hi.xyz + short, 0));
 }

@@ -27,7 +27,6 @@ fn cell(i: u32) -> u32 {
 fn decide() {
     control.rebuild = select(0u, 1u, control.halt == 0u && atomicLoad(&control.moved2) >= MARGIN2);
     if (control.halt == 0u) {
-        control.rebuilds += control.rebuild;
         control.passes += 1u;
         control.age += 1u;
         control.correct = select(0u, 1u, control.rebuild != 0u || control.age >= CORRECT_EVERY);

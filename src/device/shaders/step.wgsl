@@ -43,9 +43,19 @@ fn whole(x: f32) -> i32 { return i32(round(clamp(x, -0.4f, 0.4f) * 2147483648.0f
 
 var<workgroup> furthest: atomic<u32>;
 
-fn note_move(k: u32, position: vec3<i32>) {
-    let way = vec3<f32>(position - built[k].xyz);
+// Places a water particle, and makes what the pair loop reads of it.
+fn set_water(k: u32, place: Place, v: vec3<f32>, excess: i32) {
+    places[k] = place;
+    positions[k] = vec4<i32>(middle(place), excess);
+    velocities[k] = vec4<f32>(v, pressure(f32(excess) * EXCESS));
+    let way = vec3<f32>(positions[k].xyz - built[k].xyz);
     atomicMax(&furthest, bitcast<u32>(dot(way, way)));
+}
+
+// What the pair loop reads of the density of a boundary particle.
+fn set_boundary(k: u32, excess: i32) {
+    positions[k].w = excess;
+    velocities[k].w = pressure(f32(excess) * EXCESS);
 }
 
 // What the pair loop reads of a state that the host has written.
@@ -102,11 +112,12 @@ fn limit() {
     control.span = control.dt + select(control.dt_before, 0.0f, euler);
 }
 
-fn relax(k: u32, bare: i32, relaxation: f32) -> i32 {
+// The excess density of a boundary particle after `dt`, of which continuity alone makes `bare`.
+fn relax(k: u32, bare: i32, dt: f32) -> i32 {
     if (!RELAXED) { return max(bare, 0); }
     let wall = walls[k - params.water];
     let own = max(bare, min(whole(wall.x), 0));
-    return own + whole(wall_change(wall, f32(own) * EXCESS, relaxation));
+    return own + whole(wall_change(wall, f32(own) * EXCESS, 1.0f - exp(-dt / RELAXATION_TIME)));
 }
 
 @compute @workgroup_size(128)
@@ -117,15 +128,9 @@ fn first_half(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invoc
         let start = motion[k];
         let bare = bitcast<i32>(start.w) + whole(compression_rate(k) * step);
         if (k < params.water) {
-            let place = moved(places[k], start.xyz * step);
-            places[k] = place;
-            positions[k] = vec4<i32>(middle(place), bare);
-            velocities[k] = vec4<f32>(start.xyz + acceleration(k) * step, pressure(f32(bare) * EXCESS));
-            note_move(k, positions[k].xyz);
+            set_water(k, moved(places[k], start.xyz * step), start.xyz + acceleration(k) * step, bare);
         } else {
-            let x = relax(k, bare, 1.0f - exp(-0.1f * step * PER_CROSSING));
-            positions[k].w = x;
-            velocities[k].w = pressure(f32(x) * EXCESS);
+            set_boundary(k, relax(k, bare, step));
         }
     }
     workgroupBarrier();
@@ -155,17 +160,13 @@ fn whole_step(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invoc
             let way = undamped * (0.5f * control.dt) + shift(k, length(velocities[k].xyz), control.dt);
             let place = moved(places[k], way);
             let v = undamped * kept(place, control.dt);
-            places[k] = place;
             motion[k] = vec4<f32>(v, bitcast<f32>(bare));
-            positions[k] = vec4<i32>(middle(place), bare);
-            velocities[k] = vec4<f32>(v, pressure(f32(bare) * EXCESS));
-            note_move(k, positions[k].xyz);
+            set_water(k, place, v, bare);
             guard(k, place, v, bare);
         } else {
-            let x = relax(k, bare, 1.0f - exp(-0.1f * control.dt * PER_CROSSING));
+            let x = relax(k, bare, control.dt);
             motion[k].w = bitcast<f32>(x);
-            positions[k].w = x;
-            velocities[k].w = pressure(f32(x) * EXCESS);
+            set_boundary(k, x);
         }
     }
     workgroupBarrier();
@@ -188,17 +189,13 @@ fn verlet(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocatio
             let left = kept(place, dt);
             let v = (from_.xyz + a * control.span) * left;
             before[k] = vec4<f32>(now.xyz * left, now.w);
-            places[k] = place;
             motion[k] = vec4<f32>(v, bitcast<f32>(bare));
-            positions[k] = vec4<i32>(middle(place), bare);
-            velocities[k] = vec4<f32>(v, pressure(f32(bare) * EXCESS));
-            note_move(k, positions[k].xyz);
+            set_water(k, place, v, bare);
             guard(k, place, v, bare);
         } else {
-            let x = relax(k, bare, 1.0f - exp(-0.1f * control.span * PER_CROSSING));
+            let x = relax(k, bare, control.span);
             motion[k].w = bitcast<f32>(x);
-            positions[k].w = x;
-            velocities[k].w = pressure(f32(x) * EXCESS);
+            set_boundary(k, x);
         }
     }
     workgroupBarrier();

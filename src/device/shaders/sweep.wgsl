@@ -30,27 +30,9 @@ fn sweep_water(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invo
         let span = min(spans[k], vec2<u32>(params.most));
         var approach = 0.0f;
 {{ZERO_SUMS}}        for (var m = 0u; m < span.x; m++) {
-            let j = list[m * first.y + local];
-            let other = positions[j];
-            let other_velocity = velocities[j];
-            let r = vec3<f32>(position.xyz - other.xyz);
-            let v = velocity.xyz - other_velocity.xyz;
-            let difference = f32(other.w - position.w) * EXCESS;
-            let b_compression = f32(other.w) * EXCESS;
-            let b_volume = 1.0f / (1.0f + b_compression);
-            let b_pressure = other_velocity.w;
-{{FLUID}}        }
+{{NEIGHBOUR}}{{FLUID}}        }
         for (var m = span.x; m < span.y; m++) {
-            let j = list[m * first.y + local];
-            let other = positions[j];
-            let other_velocity = velocities[j];
-            let r = vec3<f32>(position.xyz - other.xyz);
-            let v = velocity.xyz - other_velocity.xyz;
-            let difference = f32(other.w - position.w) * EXCESS;
-            let b_compression = f32(other.w) * EXCESS;
-            let b_volume = 1.0f / (1.0f + b_compression);
-            let b_pressure = other_velocity.w;
-{{WALL}}        }
+{{NEIGHBOUR}}{{WALL}}        }
 {{STORE}}        let force = vec3<f32>({{FORCE}}) + GRAVITY;
         atomicMax(&most_force, bitcast<u32>(dot(force, force)));
         atomicMax(&most_approach, bitcast<u32>(approach));
@@ -76,15 +58,6 @@ fn sweep_boundary(@builtin(global_invocation_id) id: vec3<u32>) {
         let a_pressure = velocity.w;
         var approach = 0.0f;
 {{ZERO_SUMS}}{{ZERO_FIT}}        for (var m = 0u; m < end; m++) {
-            let j = list[m * first.y + local];
-            let other = positions[j];
-            let other_velocity = velocities[j];
-            let r = vec3<f32>(position.xyz - other.xyz);
-            let v = velocity.xyz - other_velocity.xyz;
-            let difference = f32(other.w - position.w) * EXCESS;
-            let b_compression = f32(other.w) * EXCESS;
-            let b_volume = 1.0f / (1.0f + b_compression);
-            let b_pressure = other_velocity.w;
-{{BESIDE}}        }
+{{NEIGHBOUR}}{{BESIDE}}        }
 {{STORE}}{{TARGET}}    }
 }

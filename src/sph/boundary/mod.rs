@@ -6,6 +6,8 @@ mod repulsion;
 mod slip;
 
 pub(crate) use dynamic::DynamicBoundary;
+#[cfg(feature = "gpu")]
+pub(crate) use relaxed_adami::RELAXATION_TIME;
 #[doc(hidden)]
 pub use relaxed_adami::{Cover, SupportCoverage, WallExtrapolation, WallTarget, promptness, relaxation};
 pub use repulsion::Repulsion;

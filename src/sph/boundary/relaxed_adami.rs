@@ -17,7 +17,7 @@
 use crate::sph::Num;
 
 /// τ over h/c₀, –: at 40 a gap of 0.05 to 0.07 dp stays, at 0 water strays into the faces.
-const RELAXATION_TIME: f64 = 10.0;
+pub(crate) const RELAXATION_TIME: f64 = 10.0;
 
 /// Approach of the water over c₀, –, up to which walls take its pressure at once; from twice this on they relax within τ. A
 /// float of draft d in water of depth 10 d has c₀ = 32 √(g d): its own motions are slower than 0.01 c₀, impacts are faster.

@@ -1,5 +1,6 @@
 //! The water: equations, pair loop, neighbours, time integration, and water at rest.
 
+mod beside_reference;
 mod gradient_correction;
 mod gravity;
 mod kernels;

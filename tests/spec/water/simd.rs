@@ -24,48 +24,8 @@ use pontoon::{
     },
 };
 
+use super::beside_reference::{run, sizes, under};
 use crate::common::{self, Random};
-
-/// The simulation of `setup` in `state` with this pair loop.
-fn under<const D: usize>(setup: &Setup<D>, pair_loop: PairLoopKind, state: &[u8]) -> Simulation<D>
-where
-    Dim<D>: Dimension<D>,
-{
-    let mut setup = setup.clone();
-    setup.model.pair_loop = pair_loop;
-    let mut sim = Simulation::new(setup).expect("a sound setup");
-    sim.restore(state).expect("the same scene");
-    sim.update_rates();
-    sim
-}
-
-/// Sums of the magnitudes of all terms of a fluid particle: of its acceleration and of its density rate.
-fn sizes<const D: usize>(sim: &Simulation<D>, a: usize) -> (f64, f64) {
-    let system = sim.system();
-    let (h, c0, rho0, dp) = (system.model().h, system.model().c0, system.model().rho0, system.model().dp);
-    let (fluid, boundary) = (system.fluid(), system.boundary());
-    let (mut force, mut rate) = (0.0, 0.0);
-    let mut meet = |r: &Vector<D>, v: &Vector<D>, rho: f64| {
-        let (r, v) = (fluid.r[a] - r, fluid.v[a] - v);
-        let q = r.norm() / h;
-        // |∇W| of the Wendland kernel.
-        let alpha = if D == 2 { 7.0 / (4.0 * std::f64::consts::PI) } else { 21.0 / (16.0 * std::f64::consts::PI) };
-        let grad = 5.0 * alpha / h.powi(D as i32 + 1) * q * (1.0 - 0.5 * q).powi(3) * dp.powi(D as i32);
-        let pressure = (system.pressure(fluid.rho[a]).abs() + system.pressure(rho).abs()) / rho0;
-        let viscous = 0.02 * c0 * h * v.norm() / r.norm().max(0.1 * h);
-        force += (pressure + viscous) * grad;
-        // Diffusion: the difference of densities and, subtracted from it, the hydrostatic one.
-        let differences = (rho - fluid.rho[a]).abs() / rho0 + system.gravity().dot(&r).abs() / (c0 * c0);
-        rate += (v.norm() + 0.2 * c0 * h * differences / r.norm().max(0.1 * h)) * grad * rho0;
-    };
-    system.visit_fluid_near(&fluid.r[a], &mut |b, _, _| {
-        if b != a {
-            meet(&fluid.r[b], &fluid.v[b], fluid.rho[b]);
-        }
-    });
-    system.visit_boundary_near(&fluid.r[a], &mut |b, _, _| meet(&boundary.r[b], &boundary.v[b], boundary.rho[b]));
-    (force, rate)
-}
 
 /// Asserts that the SIMD pair loop agrees with the reference on one state.
 fn assert_agrees<const D: usize>(name: &str, setup: &Setup<D>, state: &[u8])
@@ -101,17 +61,6 @@ where
     let (a, b) = (found.step_limits(), expected.step_limits());
     assert!((a.acceleration / b.acceleration - 1.0).abs() < 1e-4, "{name}: {a:?} {b:?}");
     assert!((a.approach_rate - b.approach_rate).abs() <= 1e-4 * b.approach_rate + 1e-6, "{name}: {a:?} {b:?}");
-}
-
-fn run<const D: usize>(setup: &Setup<D>, until: f64) -> Vec<u8>
-where
-    Dim<D>: Dimension<D>,
-{
-    let mut sim = Simulation::new(setup.clone()).expect("a sound setup");
-    while sim.time() < until {
-        sim.step().expect("a sound run");
-    }
-    sim.save().expect("a state")
 }
 
 fn dam<const D: usize>(model: Model, size: [f64; D], origin: f64) -> Setup<D> {

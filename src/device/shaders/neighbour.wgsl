@@ -1,0 +1,9 @@
+let j = list[m * first.y + local];
+let other = positions[j];
+let other_velocity = velocities[j];
+let r = vec3<f32>(position.xyz - other.xyz);
+let v = velocity.xyz - other_velocity.xyz;
+let difference = f32(other.w - position.w) * EXCESS;
+let b_compression = f32(other.w) * EXCESS;
+let b_volume = 1.0f / (1.0f + b_compression);
+let b_pressure = other_velocity.w;
