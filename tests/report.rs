@@ -292,8 +292,9 @@ fn the_report_draws_mooring_lines_from_fairlead_to_anchor() {
     }
     let result = evaluate(
         &run.join(report::REPORT_FILE),
-        "const view = deck.views[0], shown = () => { const { canvas } = view, at = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
-           return at.data; };
+        "const view = deck.views[0], shown = () => { const { canvas } = view, [width, height] = [canvas.width, canvas.height];
+           const copy = Object.assign(document.createElement('canvas'), { width, height }).getContext('2d', { willReadFrequently: true });
+           copy.drawImage(canvas, 0, 0); return copy.getImageData(0, 0, width, height).data; };
          result.lines = []; for (const t of [0, 0.05, 0.2]) { deck.seek(t); result.lines.push(films[0].lines().map(line => [line.length, line[0], line.at(-1)])); }
          const drawn = shown(), none = (films[0].moorings = null, deck.draw(), shown());
          result.pixels = none.filter((x, i) => x !== drawn[i]).length;",
