@@ -112,31 +112,31 @@ impl<N: Num, const D: usize> Accumulators<N, D> {
         }
         visit(D, &mut self.compression_rate);
     }
+}
 
-    /// Calls `visit` with each auxiliary sum that the terms with needs `own` compute and its row; terms with needs `all` share
-    /// the rows.
-    #[inline(always)]
-    pub(super) fn for_each_auxiliary(
-        &mut self,
-        own: RequiredSums,
-        all: RequiredSums,
-        mut visit: impl FnMut(usize, &mut N),
-    ) {
-        if own.shift {
-            for (k, grad) in self.auxiliary.concentration_gradient.iter_mut().enumerate() {
-                visit(D + 1 + k, grad);
-            }
-            visit(2 * D + 1, &mut self.auxiliary.position_divergence);
+/// Calls `visit` with each auxiliary sum that the terms with needs `own` compute and its row; terms with needs `all` share the
+/// rows.
+#[inline(always)]
+pub(super) fn for_each_auxiliary<N, const D: usize>(
+    sums: &mut AuxiliarySums<N, D>,
+    own: RequiredSums,
+    all: RequiredSums,
+    mut visit: impl FnMut(usize, &mut N),
+) {
+    if own.shift {
+        for (k, gradient) in sums.concentration_gradient.iter_mut().enumerate() {
+            visit(D + 1 + k, gradient);
         }
-        if own.suppression {
-            visit(all.held_at(D), &mut self.auxiliary.shifting_suppressed);
-        }
-        if own.stress {
-            for_each_symmetric_entry(&mut self.auxiliary.strain, all.strain_at(D), &mut visit);
-        }
-        if own.renormalization {
-            for_each_symmetric_entry(&mut self.auxiliary.renormalization, all.moment_at(D), &mut visit);
-        }
+        visit(2 * D + 1, &mut sums.position_divergence);
+    }
+    if own.suppression {
+        visit(all.held_at(D), &mut sums.shifting_suppressed);
+    }
+    if own.stress {
+        for_each_symmetric_entry(&mut sums.strain, all.strain_at(D), &mut visit);
+    }
+    if own.renormalization {
+        for_each_symmetric_entry(&mut sums.renormalization, all.moment_at(D), &mut visit);
     }
 }
 

@@ -13,7 +13,7 @@ use rayon::prelude::*;
 
 use super::{
     PairLoop, PairLoopInput, PairSums, RequestedSums, StepLimits,
-    accumulators::{Accumulators, RequiredSums, for_each_symmetric_entry},
+    accumulators::{Accumulators, RequiredSums, for_each_auxiliary, for_each_symmetric_entry},
     boundary_sums::{self, BoundarySums},
     compiled::{CompiledTerms, PairTerms},
     pair_contribution::PairContribution,
@@ -110,20 +110,18 @@ impl<const D: usize> SimdPairLoop<D> {
     }
 
     /// The auxiliary sums of the particle in `slot`, in SI.
+    #[inline(always)]
     fn auxiliary_sums_of(&self, slot: u32, needs: RequiredSums) -> AuxiliarySums<f64, D> {
-        let (sum, mut sums) = (self.of_slot(slot, needs.sum_rows(D)), Accumulators::filled_with(0.0));
-        sums.for_each_auxiliary(needs, needs, |row, x| *x = sum(row));
-        let Units { length, time } = self.units;
-        let AuxiliarySums { concentration_gradient, position_divergence, shifting_suppressed, strain, renormalization } =
-            sums.auxiliary;
-        let strain = strain.map(|row| row.map(|x| x / time));
-        AuxiliarySums {
-            concentration_gradient: concentration_gradient.map(|x| x / length),
-            position_divergence,
-            shifting_suppressed,
-            strain,
-            renormalization,
+        let (sum, mut sums) = (self.of_slot(slot, needs.sum_rows(D)), AuxiliarySums::filled_with(0.0));
+        for_each_auxiliary(&mut sums, needs, needs, |row, x| *x = sum(row));
+        let [per_length, per_time] = [1.0 / self.units.length, 1.0 / self.units.time];
+        if needs.shift {
+            sums.concentration_gradient.iter_mut().for_each(|x| *x *= per_length);
         }
+        if needs.stress {
+            for_each_symmetric_entry(&mut sums.strain, 0, &mut |_, x| *x *= per_time);
+        }
+        sums
     }
 }
 
@@ -367,7 +365,9 @@ impl<K: Kernel, T: Term<D>, W: Term<D>, const D: usize> SimdTask for SlabTask<'_
                 let mine = &mut sums[(c - first) * given.sum_rows..][..given.sum_rows];
                 sum.for_each_rate(|row, sum| mine[row].0[l] += simd::sum_lanes(*sum));
                 if given.auxiliary {
-                    sum.for_each_auxiliary(needs, needs, |row, sum| mine[row].0[l] += simd::sum_lanes(*sum));
+                    for_each_auxiliary(&mut sum.auxiliary, needs, needs, |row, sum| {
+                        mine[row].0[l] += simd::sum_lanes(*sum)
+                    });
                 }
             }
         }
@@ -482,9 +482,9 @@ impl<S: Simd, K: Kernel, const D: usize> SlabInput<'_, S, K, D> {
             pair.add_rates(sum, &mut b);
             b.for_each_rate(|row, b| b.store_array(&mut theirs[row].0));
             if self.auxiliary && own.any_auxiliary() {
-                b.for_each_auxiliary(own, self.needs, |row, b| *b = load(&theirs[row].0));
+                for_each_auxiliary(&mut b.auxiliary, own, self.needs, |row, b| *b = load(&theirs[row].0));
                 pair.add_auxiliary(law, sum, &mut b);
-                b.for_each_auxiliary(own, self.needs, |row, b| b.store_array(&mut theirs[row].0));
+                for_each_auxiliary(&mut b.auxiliary, own, self.needs, |row, b| b.store_array(&mut theirs[row].0));
             }
         }
     }

@@ -5,7 +5,7 @@
 //! input of that name and |v_ab·r_ab|/(r² + η²).
 
 use super::{
-    accumulators::{Accumulators, RequiredSums, for_each_symmetric_entry},
+    accumulators::{Accumulators, RequiredSums, for_each_auxiliary, for_each_symmetric_entry},
     boundary_sums,
     compiled::CompiledTerms,
     pair_contribution::PairContribution,
@@ -133,7 +133,7 @@ fn inputs<const D: usize>(
     let mut sums = Accumulators::filled_with(recorder.constant(0.0));
     let others = sums;
     sums.for_each_rate(|row, sum| *sum = input("sum", row));
-    sums.for_each_auxiliary(own, all, |row, sum| *sum = input("sum", row));
+    for_each_auxiliary(&mut sums.auxiliary, own, all, |row, sum| *sum = input("sum", row));
     let [eta2, reach2] = [eta2, reach2].map(|x| recorder.constant(x));
     PairInputs { geometry, sides, eta2, reach2, sums, others }
 }
@@ -149,7 +149,7 @@ fn results<const D: usize>(
     recorder.result("approach", Num::max(recorder.input("approach"), approach));
     let mut result = |row: usize, sum: &mut Traced| recorder.result(&format!("sum{row}"), *sum);
     sums.for_each_rate(&mut result);
-    sums.for_each_auxiliary(own, all, &mut result);
+    for_each_auxiliary(&mut sums.auxiliary, own, all, &mut result);
 }
 
 /// The trace of a pair under the law `law`.
