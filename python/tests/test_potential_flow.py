@@ -169,12 +169,12 @@ def test_capytaine_has_the_same_stiffness_and_the_coefficients_of_theory(tmp_pat
     assert computed.added_mass("heave")[1] == pytest.approx(3.040, rel=0.03)
     assert computed.damping("heave")[1] == pytest.approx(14.25, rel=0.03)
     # In a long wave a body moves as the water of the surface: up and down with it, and to and fro by coth(k d), a quarter of a
-    # period ahead. The wave is 9 m long, sixty radii.
+    # period behind. The wave is 19 m long, 126 radii.
     heave, surge = computed.rao("heave"), computed.rao("surge")
     k = potential_flow.wave_number(low, DEPTH, bodies.gravity)
     assert heave.amplitude[0] == pytest.approx(1.0, abs=0.02) and abs(heave.phase[0]) < 3.0
     assert surge.amplitude[0] == pytest.approx(1.0 / math.tanh(k * DEPTH), rel=0.05)
-    assert surge.phase[0] == pytest.approx(90.0, abs=3.0) and surge.unit == "m/m"
+    assert surge.phase[0] == pytest.approx(-90.0, abs=3.0) and surge.unit == "m/m"
     assert computed.rao("pitch").unit == "°/m"
 
     measured = potential_flow.ForcedMotion("heave", 8.0, 0.03, 3.2, 15.0, 0.0, 0.0)

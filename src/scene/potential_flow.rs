@@ -208,9 +208,11 @@ impl SceneParts<3> {
             },
             None => true,
         };
-        let coarse = wetted_panels(shape, pose, level, COARSE * shape.bounds().size().max(), is_wet);
+        let of_size = |size: f64| wetted_panels(shape, pose, level, size, is_wet);
+        let coarse = of_size(COARSE * shape.bounds().size().max());
         let size = (2.0 * panel_area(&coarse) / panel_count as f64).sqrt();
-        let panels = wetted_panels(shape, pose, level, size, is_wet);
+        // Rows of a round shape have as many panels at its ends as in its middle.
+        let panels = of_size(size * (of_size(size).len() as f64 / panel_count as f64).sqrt());
         let body: Option<FreeBody<3>> = spec.initial_body();
         let reference = body.as_ref().map_or(pose.position, |body| pose.point(&body.centre));
         let weight = self.model.rho0 * gravity;

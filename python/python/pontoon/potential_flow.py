@@ -215,9 +215,10 @@ class PotentialFlow:
 
         Its phase is that by which the load leads the wave at the reference point.
         """
-        load = self.dataset.excitation_force.sel(influenced_dof=motion.capitalize())
         self._index(motion)
-        return np.conj(load.isel(wave_direction=0).values * self._shift())
+        load = self.dataset.excitation_force.sel(influenced_dof=motion.capitalize()).isel(wave_direction=0)
+        leading: NDArray[np.complex128] = np.conj(load.values * self._shift())
+        return leading
 
     def _shift(self) -> NDArray[np.complex128]:
         """Returns the factor that moves the reference of the wave from the origin to the body: (N,)."""
