@@ -61,12 +61,12 @@ pub struct InitialWater<const D: usize> {
 /// All parts of a simulation except for the particles.
 pub(crate) struct SceneParts<const D: usize> {
     /// The scene with all defaults.
-    scene: Scene,
-    water: Vec<WaterBody<D>>,
-    still: StillWaterLevel,
+    pub(super) scene: Scene,
+    pub(super) water: Vec<WaterBody<D>>,
+    pub(super) still: StillWaterLevel,
     gravity_law: Vec<TimeFunction>,
-    model: Model,
-    placed: PlacedSolids<D>,
+    pub(super) model: Model,
+    pub(super) placed: PlacedSolids<D>,
     constraints: Constraints<D>,
     domain: Option<Bounds<D>>,
     periodic: Periodic<D>,

@@ -21,6 +21,7 @@ mod mesh;
 #[cfg(any(feature = "cli", test))]
 pub(crate) mod moordyn;
 mod overrides;
+mod potential_flow;
 mod record;
 mod resolve;
 mod schema;
@@ -100,6 +101,7 @@ pub use {
     crate::probe::{GaugeConfig, GaugeSurface, PatchConfig, PointRowConfig, PointsConfig, ProbePlan, SectionConfig},
     build::SceneLayout,
     build::SizeEstimate,
+    potential_flow::{PanelledBody, PanelledScene, WaterForPanels},
     resolve::ResolvedValue,
     section::analysis::{CheckConfig, RaoConfig, StatisticConfig},
     section::domain::{GuardConfig, PeriodicConfig, SymmetryConfig},
