@@ -91,6 +91,16 @@ pub struct Progress {
     pub energy: Option<EnergyDrift>,
 }
 
+/// A request of an observer to a run, fulfilled between two steps.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum RunRequest {
+    /// Write a checkpoint.
+    Checkpoint,
+    /// Write a checkpoint and stop.
+    Stop,
+}
+
 /// An observer of a run. Every `FnMut(&Progress) -> bool` implements this trait.
 pub trait RunObserver: Send {
     /// Receives the start of the run, once, before the first step.
@@ -111,6 +121,12 @@ pub trait RunObserver: Send {
     /// Receives the progress before the first step and after each step. If it returns `false`, the run writes a
     /// checkpoint and stops.
     fn step(&mut self, now: &Progress) -> bool;
+
+    /// Returns what the run is to do before its next step, or `None` to go on. The run asks again after each request. An
+    /// observer that waits here pauses the run.
+    fn request(&mut self) -> Option<RunRequest> {
+        None
+    }
 }
 
 impl<F: FnMut(&Progress) -> bool + Send> RunObserver for F {

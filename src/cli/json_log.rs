@@ -48,6 +48,10 @@ impl CliObserver for JsonLog {
     fn close(&mut self) -> Option<PathBuf> {
         self.folder.take()
     }
+
+    fn live_address(&mut self, address: &str) {
+        write_event(&json!({ "event": "live_page", "address": address }));
+    }
 }
 
 impl RunObserver for JsonLog {

@@ -49,12 +49,19 @@ pub struct ProgressDisplay {
 pub trait CliObserver: RunObserver {
     /// Ends what is shown; the folder of the run, if one has begun.
     fn close(&mut self) -> Option<PathBuf>;
+
+    /// Says where the live page of the run is.
+    fn live_address(&mut self, address: &str);
 }
 
 impl CliObserver for ProgressDisplay {
     fn close(&mut self) -> Option<PathBuf> {
         self.bar.finish_and_clear();
         self.folder.take()
+    }
+
+    fn live_address(&mut self, address: &str) {
+        print_error(&format!("live page: {address}\n"));
     }
 }
 

@@ -3,7 +3,7 @@
 use std::{path::PathBuf, time::Instant};
 
 use super::{
-    FinalBodyState, Progress, RunObserver, RunOrigin, RunOutcome, RunStart, device,
+    FinalBodyState, Progress, RunObserver, RunOrigin, RunOutcome, RunRequest, RunStart, device,
     energy_drift::DriftMonitor,
     lock::Lock,
     outputs::{Outputs, series_folder},
@@ -158,7 +158,7 @@ impl<const D: usize> Runner<D> {
             self.outputs.write_due(&self.sim)?;
         }
         let until = self.manifest.until_s;
-        let mut going = watch.step(&self.progress());
+        let mut going = self.report_step(watch)?;
         while going && self.sim.time() < until {
             if self.sim.needs_rollback_state() {
                 self.rollback_positions.retain(|(time, _)| self.sim.has_rollback_state(*time));
@@ -186,7 +186,7 @@ impl<const D: usize> Runner<D> {
                 self.update_manifest();
                 self.manifest.write(&self.folder)?;
             }
-            going = watch.step(&self.progress());
+            going = self.report_step(watch)?;
         }
         if self.sim.time() < until {
             self.save_checkpoint()?;
@@ -197,6 +197,23 @@ impl<const D: usize> Runner<D> {
         self.outputs.finish(&self.sim)?;
         self.write_removed()?;
         Ok(RunStatus::Finished)
+    }
+
+    /// Reports the progress to `watch` and fulfils its requests. Returns whether the run goes on.
+    fn report_step(&mut self, watch: &mut dyn RunObserver) -> Result<bool> {
+        let mut going = watch.step(&self.progress());
+        while going && let Some(request) = watch.request() {
+            match request {
+                RunRequest::Checkpoint => {
+                    self.save_checkpoint()?;
+                    self.write_removed()?;
+                    self.update_manifest();
+                    self.manifest.write(&self.folder)?;
+                }
+                RunRequest::Stop => going = false,
+            }
+        }
+        Ok(going)
     }
 
     /// Follows the simulation back if it has been rescued more often than the `known` times: tells whoever watches, and the
