@@ -22,7 +22,7 @@ use std::{
 
 use serde_json::{Value, json};
 
-use crate::run::{Progress, RunRequest};
+use crate::run::{Control, Progress, RunRequest};
 
 /// How often a paused run looks whether Ctrl-C was pressed.
 const LOOK: Duration = Duration::from_millis(100);
@@ -44,6 +44,8 @@ struct LiveNow {
     /// Whether the run waits between two steps.
     held: bool,
     requests: Vec<RunRequest>,
+    /// The numbers that may be changed.
+    controls: Vec<Control>,
     /// The number of rollbacks since the start.
     rollbacks: usize,
     /// The simulated time of the last checkpoint that a page asked for, s.
@@ -98,9 +100,23 @@ impl LiveState {
 }
 
 impl LiveNow {
+    /// Adds a request; one of the same kind that still waits is replaced, so that they do not gather.
+    fn request(&mut self, request: RunRequest) {
+        let same = |other: &RunRequest| match (other, &request) {
+            (RunRequest::Set { control: a, .. }, RunRequest::Set { control: b, .. }) => a == b,
+            (a, b) => a == b,
+        };
+        self.requests.retain(|other| !same(other));
+        self.requests.push(request);
+    }
+
     /// Returns the state for the scripts of the page.
     fn to_json(&self) -> Value {
-        let mut state = json!({ "paused": self.paused, "held": self.held, "checkpoint": self.checkpoint });
+        let control = |Control { plan, value }: &Control| json!({ "key": plan.key, "unit": plan.unit, "min": plan.min, "max": plan.max, "value": value });
+        let controls: Vec<Value> = self.controls.iter().map(control).collect();
+        let mut state = json!({
+            "paused": self.paused, "held": self.held, "checkpoint": self.checkpoint, "controls": controls,
+        });
         if let Some(now) = &self.progress {
             state["t"] = json!(now.time);
             state["until"] = json!(now.until);

@@ -11,6 +11,7 @@ use std::{
 
 use crate::{
     math::format::{duration, metric_prefix, three_digits},
+    plan::ControlChange,
     run::{Progress, RunObserver, RunStart},
     simulation::Rollback,
     solid::ConstraintEvent,
@@ -140,6 +141,12 @@ impl RunObserver for ProgressDisplay {
     fn event(&mut self, event: &ConstraintEvent) {
         if !self.quiet {
             self.bar.suspend(|| print_error(&format!("note: {event}\n")));
+        }
+    }
+
+    fn control_changed(&mut self, change: &ControlChange) {
+        if !self.quiet {
+            self.bar.suspend(|| print_error(&format!("note: {change}\n")));
         }
     }
 

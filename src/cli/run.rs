@@ -141,15 +141,15 @@ fn report_outcome(outcome: Result<u8>, said: &LogArgs) -> Result<u8> {
 }
 
 /// Who follows a run, as the user wants it, and the server of its live page if there is one.
-fn make_observer(said: &LogArgs) -> Result<(Box<dyn CliObserver>, Option<LiveServer>)> {
-    let stop = match said.log {
+fn make_observer(log_args: &LogArgs) -> Result<(Box<dyn CliObserver>, Option<LiveServer>)> {
+    let stop = match log_args.log {
         LogFormat::Text => interrupt_flag()?,
         LogFormat::Json => interrupt_flag_with_message(json_log::STOPPING)?,
     };
-    let live = said.live.map(|port| LiveServer::bind(port, LiveState::new(stop.clone()))).transpose()?;
-    let follow: Box<dyn CliObserver> = match said.log {
-        LogFormat::Text => Box::new(ProgressDisplay::new(said.quiet, stop)),
-        LogFormat::Json => Box::new(JsonLog::new(said.quiet, stop)),
+    let live = log_args.live.map(|port| LiveServer::bind(port, LiveState::new(stop.clone()))).transpose()?;
+    let follow: Box<dyn CliObserver> = match log_args.log {
+        LogFormat::Text => Box::new(ProgressDisplay::new(log_args.quiet, stop)),
+        LogFormat::Json => Box::new(JsonLog::new(log_args.quiet, stop)),
     };
     Ok(match live {
         Some(live) => (Box::new(LiveObserver::new(follow, live.clone())), Some(live)),
@@ -163,11 +163,11 @@ fn finish(
     outcome: Result<RunOutcome>,
     mut follow: Box<dyn CliObserver>,
     live: Option<LiveServer>,
-    said: &LogArgs,
+    log_args: &LogArgs,
 ) -> Result<u8> {
-    let (folder, json) = (follow.close(), said.log == LogFormat::Json);
+    let (folder, json) = (follow.close(), log_args.log == LogFormat::Json);
     match &outcome {
-        _ if said.quiet => {}
+        _ if log_args.quiet => {}
         Ok(outcome) if json => {
             outcome.end_warnings.iter().for_each(|text| json_log::warn(text));
             json_log::ended(outcome);
@@ -178,15 +178,15 @@ fn finish(
         }
         Err(_) => {}
     }
-    if let Some(folder) = folder.filter(|_| !said.no_report) {
+    if let Some(folder) = folder.filter(|_| !log_args.no_report) {
         let told = |why: &Error| {
             let text = format!("the page of the run was not written: {why}");
             if json { json_log::warn(&text) } else { print_error(&format!("warning: {text}\n")) }
         };
-        report_page::write_after_run(&folder, said.quiet || json, told);
+        report_page::write_after_run(&folder, log_args.quiet || json, told);
     }
     if let Some(live) = live {
-        live.close(&outcome, !said.no_report);
+        live.close(&outcome, !log_args.no_report);
     }
     let outcome = outcome?;
     Ok(match outcome.manifest.status {

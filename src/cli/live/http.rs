@@ -209,7 +209,10 @@ mod tests {
         let head = "POST /pause?token=ab&from=1.2 HTTP/1.1\r\nHost: 127.0.0.1:80\r\nOrigin:  http://x ";
         let request = Request::parse(head).unwrap();
         assert_eq!((request.method.as_str(), request.path.as_str()), ("POST", "/pause"));
-        assert_eq!([request.query("token"), request.query("from"), request.query("x")], [Some("ab"), Some("1.2"), None]);
+        assert_eq!(
+            [request.query("token"), request.query("from"), request.query("x")],
+            [Some("ab"), Some("1.2"), None]
+        );
         assert_eq!([request.header("host"), request.header("origin")], [Some("127.0.0.1:80"), Some("http://x")]);
         let malformed = [
             "",

@@ -5,6 +5,7 @@ use std::{path::PathBuf, sync::Arc};
 use super::{LiveServer, LiveState};
 use crate::{
     cli::{print_error, progress::CliObserver},
+    plan::ControlChange,
     run::{Progress, RunObserver, RunRequest, RunStart},
     simulation::Rollback,
     solid::ConstraintEvent,
@@ -41,6 +42,7 @@ impl CliObserver for LiveObserver {
 impl RunObserver for LiveObserver {
     fn start(&mut self, start: &RunStart) {
         self.inner.start(start);
+        self.state.lock().controls = start.controls.to_vec();
         self.folder = Some(start.folder.to_owned());
         self.inner.live_address(&self.server.address());
     }
@@ -52,6 +54,15 @@ impl RunObserver for LiveObserver {
 
     fn event(&mut self, event: &ConstraintEvent) {
         self.inner.event(event);
+    }
+
+    fn control_changed(&mut self, change: &ControlChange) {
+        self.state.change(|now| {
+            if let Some(control) = now.controls.get_mut(change.control) {
+                control.value = change.value;
+            }
+        });
+        self.inner.control_changed(change);
     }
 
     fn step(&mut self, now: &Progress) -> bool {

@@ -26,7 +26,7 @@ use crate::{
         self,
         live::{FeedPosition, LiveRun},
     },
-    run::{RunOutcome, RunRequest},
+    run::{Control, RunOutcome, RunRequest},
 };
 
 /// Most connections at one time.
@@ -71,7 +71,8 @@ impl LiveServer {
                 io::ErrorKind::PermissionDenied => "choose a port from 1024 on, or leave it to --live alone",
                 _ => "leave the choice to --live alone, or run without it",
             };
-            Error::new(ErrorKind::Usage, format!("port {port} of 127.0.0.1 cannot serve the live page: {why}")).help(help)
+            Error::new(ErrorKind::Usage, format!("port {port} of 127.0.0.1 cannot serve the live page: {why}"))
+                .help(help)
         })?;
         let (token, state) = (Token::random()?, Arc::new(state));
         let (run, connections, closed) = Default::default();
@@ -179,11 +180,11 @@ impl Server {
         match (request.method.as_str(), request.path.as_str()) {
             ("GET", "/") => self.page(run, stream),
             ("GET", "/events") => self.events(run, &request, stream),
-            ("POST", path) => match self.act(path) {
+            ("POST", path) => match self.act(path, &request.body) {
                 Ok(state) => http::answer(stream, 200, "application/json", &state.to_string()),
                 Err(refusal) => http::refuse(stream, &refusal),
             },
-            (_, "/" | "/events" | "/pause" | "/resume" | "/checkpoint") => {
+            (_, "/" | "/events" | "/pause" | "/resume" | "/checkpoint" | "/set") => {
                 http::refuse(stream, &Refusal(405, "this address has another method"))
             }
             _ => http::refuse(stream, &NOT_FOUND),
@@ -251,21 +252,36 @@ impl Server {
         }
     }
 
-    /// Does what a button asks for, and returns the state of the run.
-    fn act(&self, path: &str) -> std::result::Result<Value, Refusal> {
-        if self.state.lock().ended.is_some() {
+    /// Does what a button or a control asks for, and returns the state of the run.
+    fn act(&self, path: &str, body: &[u8]) -> std::result::Result<Value, Refusal> {
+        let mut now = self.state.lock();
+        if now.ended.is_some() {
             return Err(Refusal(409, "the run has ended"));
         }
-        self.state.change(|now| match path {
+        match path {
             "/pause" => now.paused = true,
             "/resume" => now.paused = false,
-            "/checkpoint" if !now.requests.contains(&RunRequest::Checkpoint) => now.requests.push(RunRequest::Checkpoint),
-            _ => {}
-        });
-        match path {
-            "/pause" | "/resume" | "/checkpoint" => Ok(self.state.lock().to_json()),
-            _ => Err(NOT_FOUND),
+            "/checkpoint" => now.request(RunRequest::Checkpoint),
+            "/set" => {
+                let request = set_request(&now.controls, body)?;
+                now.request(request);
+            }
+            _ => return Err(NOT_FOUND),
         }
+        self.state.changed.notify_all();
+        Ok(now.to_json())
+    }
+}
+
+/// Returns what `body` asks for: an object with the `key` of a control and its `value`.
+fn set_request(controls: &[Control], body: &[u8]) -> std::result::Result<RunRequest, Refusal> {
+    let body: Value = serde_json::from_slice(body).map_err(|_| Refusal(400, "the body is no JSON"))?;
+    let control = controls.iter().position(|control| body["key"] == control.plan.key);
+    let control = control.ok_or(Refusal(400, "the scene has no such [[control]]"))?;
+    let plan = &controls[control].plan;
+    match body["value"].as_f64() {
+        Some(value) if (plan.min..=plan.max).contains(&value) => Ok(RunRequest::Set { control, value }),
+        _ => Err(Refusal(400, "the value is no number from min to max of the control")),
     }
 }
 

@@ -162,12 +162,27 @@ class Live {
     this.message = make("div", { className: "message", role: "status" });
     this.pause = make("button", { type: "button", onclick: () => this.ask(this.state.paused ? "resume" : "pause") }, "Pause the run");
     this.checkpoint = make("button", { type: "button", onclick: () => { this.message.textContent = "The checkpoint is being written."; this.ask("checkpoint"); } }, "Write a checkpoint");
-    this.home.append(make("div", { className: "live" }, this.pause, this.checkpoint, this.bar, this.figures, this.message));
+    this.controls = this.told.live.state.controls.map(({ key, unit, min, max, value }) => {
+      const input = labelled(make("input", { type: "number", min, max, step: "any", value, onchange: () => this.set(key, input) }), `${key}, ${unit}`);
+      input.title = `from ${plain(min)} to ${plain(max)} ${unit}`;
+      return { key, input, element: make("label", {}, key, input, unit) };
+    });
+    this.home.append(make("div", { className: "live" }, this.pause, this.checkpoint, this.bar, this.figures, ...this.controls.map(control => control.element), this.message));
   }
 
-  async ask(what) {
+  /** Changes a control to the value of its input. */
+  set(key, input) {
+    if (!input.value || !input.checkValidity()) {
+      this.message.textContent = `${key} is a number ${input.title}.`;
+      return;
+    }
+    this.message.textContent = "";
+    this.ask("set", JSON.stringify({ key, value: +input.value }));
+  }
+
+  async ask(what, body) {
     try {
-      const answer = await fetch(`${what}?token=${this.token}`, { method: "POST" });
+      const answer = await fetch(`${what}?token=${this.token}`, { method: "POST", body });
       if (!answer.ok) throw new Error(await answer.text());
       this.show(await answer.json());
     } catch (why) {
@@ -177,11 +192,18 @@ class Live {
 
   show(state) {
     const written = state.checkpoint !== null && state.checkpoint !== this.state?.checkpoint;
+    const before = this.state;
     this.state = state;
     if (written) this.message.textContent = `A checkpoint was written at ${said(state.checkpoint)} s.`;
     this.pause.textContent = state.paused ? "Let the run go on" : "Pause the run";
     this.badge.textContent = state.held ? "paused" : state.paused ? "pausing after this step" : "running";
     this.badge.className = state.paused ? "badge odd" : "badge good";
+    // What is being typed stays.
+    state.controls.forEach(({ value }, i) => {
+      const { key, input } = this.controls[i];
+      if (before && before.controls[i].value !== value) this.message.textContent = `${key} is ${said(value)} from ${said(state.t)} s on.`;
+      if (document.activeElement !== input && input.checkValidity()) input.value = value;
+    });
     if (state.t === undefined) return;
     this.bar.value = state.t / state.until;
     this.figures.textContent = [`t = ${state.t.toFixed(3)} of ${state.until} s`, `step ${state.steps}`, `Δt ${said(state.dt)} s`, state.energy].filter(Boolean).join(", ");
@@ -237,7 +259,7 @@ class Live {
   end({ status, error, report }) {
     this.badge.textContent = status;
     this.badge.className = `badge ${status === "finished" ? "good" : status === "failed" ? "bad" : "odd"}`;
-    this.pause.disabled = this.checkpoint.disabled = true;
+    for (const input of [this.pause, this.checkpoint, ...this.controls.map(control => control.input)]) input.disabled = true;
     const where = report ? ` The page of the whole run is ${report}.` : "";
     this.message.textContent = (status === "finished" ? "The run has finished." : status === "failed" ? `The run could not go on: ${error}` : "The run was interrupted; pontoon resume goes on with it.") + where;
     this.ended = status;

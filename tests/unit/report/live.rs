@@ -8,7 +8,9 @@ fn a_position_is_read_as_it_is_written() {
         let position = FeedPosition { frames, tables };
         assert_eq!((position.to_string().as_str(), text.parse()), (text, Ok(position)));
     }
-    assert!(["", "a", "1.x", "-1.2", "1.99999999999999999999"].iter().all(|text| text.parse::<FeedPosition>().is_err()));
+    assert!(
+        ["", "a", "1.x", "-1.2", "1.99999999999999999999"].iter().all(|text| text.parse::<FeedPosition>().is_err())
+    );
 }
 
 #[test]
