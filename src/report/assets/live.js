@@ -47,8 +47,8 @@ class Growth {
       const own = before > 1 ? film.ranges[field] : null;
       film.ranges[field] = own ? [Math.min(own[0], part.ranges[field][0]), Math.max(own[1], part.ranges[field][1])] : [...part.ranges[field]];
     }
-    const values = film.frames.reduce((sum, frame) => sum + frame.length * frame[0].length, 0);
-    if (film.times.length > MOST.frames || values > MOST.values) this.thin();
+    const values = () => film.frames.reduce((sum, frame) => sum + frame.length * frame[0].length, 0);
+    while (film.times.length > 2 && (film.times.length > MOST.frames || values() > MOST.values)) this.thin();
     return true;
   }
 
@@ -133,8 +133,9 @@ class GrowingTable {
 /** Follows the run. */
 class Live {
   constructor(home, told, { deck, films, charts }) {
-    Object.assign(this, { home, told, deck, charts, events: 0, token: new URLSearchParams(location.search).get("token") });
+    Object.assign(this, { home, told, deck, charts, events: 0, waiting: 0, token: new URLSearchParams(location.search).get("token") });
     this.growth = films.map(film => new Growth(film));
+    this.bounds = JSON.stringify(films[0]?.bounds);
     this.tables = this.join(told.runs[0], charts);
     this.build();
     this.show(told.live.state);
@@ -213,9 +214,13 @@ class Live {
     const source = this.source = new EventSource(`events?token=${this.token}&from=${from}`);
     // One after the other: frames are unpacked asynchronously.
     let last = Promise.resolve();
-    source.addEventListener("tick", e => { last = last.then(() => this.tick(JSON.parse(e.data))); });
+    const follow = step => {
+      this.waiting++;
+      last = last.then(step).catch(why => { this.message.textContent = `An event of the run cannot be shown: ${why.message}`; }).then(() => { this.waiting--; });
+    };
+    source.addEventListener("tick", e => follow(() => this.tick(JSON.parse(e.data))));
     source.addEventListener("reload", () => { source.close(); location.reload(); });
-    source.addEventListener("end", e => { source.close(); last = last.then(() => this.end(JSON.parse(e.data))); });
+    source.addEventListener("end", e => { source.close(); follow(() => this.end(JSON.parse(e.data))); });
     source.onopen = () => { if (this.lost) this.message.textContent = this.lost = ""; };
     source.onerror = () => { this.message.textContent = this.lost = "The connection to the run is lost; the page tries again."; };
   }
@@ -223,7 +228,8 @@ class Live {
   async tick({ state, added }) {
     this.show(state);
     for (const name in added.rows) if (this.tables.get(name)?.t) this.tables.get(name).add(added.rows[name]);
-    if (added.reel && this.deck) {
+    // A page that is behind leaves out frames.
+    if (added.reel && this.deck && this.waiting < 5) {
       const run = this.told.runs[0], part = new Film({ reel: added.reel, stage: run.stage, name: run.name }, await unpack(added.blob));
       if (this.growth[0].add(part)) this.extend();
     }
@@ -233,16 +239,14 @@ class Live {
 
   /** Lets the player know of new frames. It goes on to the newest if it shows the last one and does not play. */
   extend() {
-    const { deck, growth: [{ film }] } = this, follows = !deck.playing && deck.t >= deck.until - 1e-9, size = JSON.stringify(deck.views[0].extent());
+    const { deck, growth: [{ film }] } = this, follows = !deck.playing && deck.t >= deck.until - 1e-9, bounds = JSON.stringify(film.bounds);
     const usual = JSON.stringify(deck.look.range) === JSON.stringify(deck.ranges[deck.look.field]);
     deck.until = film.times.at(-1);
     deck.times = [...film.times];
     for (const field of deck.fields) deck.ranges[field] = [...film.ranges[field]];
     if (usual && deck.fields.length) deck.look.range = [...deck.ranges[deck.look.field]];
     if (document.hidden) { if (follows) deck.t = deck.until; return; }
-    this.extent ??= size;
-    const now = JSON.stringify(deck.views[0].extent());
-    if (now !== this.extent) { this.extent = now; deck.views.forEach(view => view.fit()); }
+    if (bounds !== this.bounds) { this.bounds = bounds; deck.views.forEach(view => view.fit()); }
     if (follows) deck.seek(deck.until); else deck.draw();
   }
 
