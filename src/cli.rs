@@ -10,6 +10,7 @@ mod export;
 mod import_moordyn;
 mod inspect;
 mod json_log;
+mod live;
 mod report_page;
 mod progress;
 mod console_text;

@@ -71,15 +71,14 @@ pub(crate) fn page_head(run: &RunData) -> String {
         facts(run).iter().map(|(k, x)| format!("<div><dt>{k}</dt><dd>{}</dd></div>", escape(x))).collect::<String>();
     format!(
         "<p class=\"over\">pontoon · {}</p>\n<h1>{}</h1>\n<p><span class=\"badge {class}\">{word}</span></p>\n\
-         <dl class=\"facts\">{facts}</dl>\n{}",
+         <dl class=\"facts\">{facts}</dl>\n",
         escape(&run.name),
-        escape(&run.manifest.title),
-        failure(&run.manifest)
+        escape(&run.manifest.title)
     )
 }
 
 /// Returns the reason for the early end of a run, with the report on the particle or body.
-fn failure(m: &Manifest) -> String {
+pub(crate) fn failure(m: &Manifest) -> String {
     let reached = format!("It reached t = {} s of {} s.", four_digits(m.simulated_s), m.until_s);
     let said = match m.status {
         RunStatus::Finished => return String::new(),

@@ -25,7 +25,7 @@ use crate::{
     },
     math::{Bounds, Pose, Vector},
     model::{Model, TimeScheme},
-    plan::{FramesPlan, Plan},
+    plan::{ControlPlan, FramesPlan, Plan},
     simulation::{Driving, OpenBoundary, Setup},
     solid::{Constraints, Role, SolidSpec, TimeFunction},
     system::{Periodic, buffer_length, check_open_boundary, periodic},
@@ -304,8 +304,21 @@ impl Scene {
             statistics: statistics
                 .map(|(i, statistic)| statistic.build(ctx, &format!("statistic.{i}"), &series, still))
                 .collect::<Result<_>>()?,
+            controls: self.controls(ctx)?,
             folder: self.origin.folder.clone(),
         })
+    }
+
+    /// Returns the numbers that may be changed during a run.
+    pub(super) fn controls(&self, ctx: &Context) -> Result<Vec<ControlPlan>> {
+        let controls = self.control.iter().enumerate();
+        let built: Vec<ControlPlan> = controls
+            .map(|(i, control)| control.build(ctx, &format!("control.{i}"), &self.joint, &self.force))
+            .collect::<Result<_>>()?;
+        match (1..built.len()).find(|&i| built[..i].iter().any(|other| other.target == built[i].target)) {
+            Some(i) => Err(ctx.error_at(&format!("control.{i}.key"), format!("{} is controlled twice", built[i].key))),
+            None => Ok(built),
+        }
     }
 }
 
