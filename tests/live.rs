@@ -623,8 +623,10 @@ fn the_live_page_grows_pauses_and_hears_of_the_end_in_a_browser() {
     // Curves and frames grow, and the player shows the newest frame.
     browser.wait_for("!!window.pontoon?.live && pontoon.live.events > 0 && pontoon.charts.all.some(chart => chart.u && chart.what.lines[0].of)");
     let first = browser.evaluate(SIZES);
-    browser
-        .wait_for(&format!("(s => s.drawn > {} + 20 && s.frames > {} + 5)({SIZES})", first["drawn"], first["frames"]));
+    browser.wait_for(&format!(
+        "(s => s.rows > {} && s.drawn > {} + 20 && s.frames > {} + 5)({SIZES})",
+        first["rows"], first["drawn"], first["frames"]
+    ));
     let later = browser.evaluate(SIZES);
     for name in ["rows", "row", "drawnTo", "frame", "steps"] {
         assert!(size(&later, name) > size(&first, name), "{name} grows: {first}, then {later}");

@@ -100,7 +100,7 @@ impl Passes {
         buffers: &Buffers,
     ) -> Result<Self> {
         let params = gpu.uniform(&counts.words());
-        let (rates, close_stress) = rates(gpu, shaders, counts, buffers, &params)?;
+        let [rates, close_stress] = rates(gpu, shaders, counts, buffers, &params)?;
         let n = counts.n;
         let b = &buffers.pairs;
         let solids = Maker::new(
@@ -171,7 +171,7 @@ fn rates(
     counts: &Counts,
     buffers: &Buffers,
     params: &wgpu::Buffer,
-) -> Result<(Vec<Arc<Pass>>, Vec<Arc<Pass>>)> {
+) -> Result<[Vec<Arc<Pass>>; 2]> {
     let (b, searched, n, cells) = (&buffers.pairs, &buffers.search, counts.n, counts.cells);
     let total = 2 * cells + 1;
     let search = Maker::new(
@@ -312,5 +312,5 @@ fn rates(
     }
     passes.extend(corrections);
     passes.extend(sweeps);
-    Ok((passes, close))
+    Ok([passes, close])
 }

@@ -158,13 +158,15 @@ impl Hull<'_, 3> {
             let arm = centroid - reference;
             [0.0, 0.0, volume, volume * arm[1], -volume * arm[0], 0.0]
         };
-        let mut stiffness = [[0.0; 6]; 6];
-        for motion in 2..6 {
+        let loads: [[f64; 6]; 6] = std::array::from_fn(|motion| {
+            if motion < 2 {
+                return [0.0; 6];
+            }
             let (more, less) = (buoyancy(motion, 1.0), buoyancy(motion, -1.0));
             let span = 2.0 * step * if motion == 2 { length } else { 1.0 };
-            (2..5).for_each(|load| stiffness[load][motion] = (less[load] - more[load]) / span);
-        }
-        stiffness
+            std::array::from_fn(|load| (less[load] - more[load]) / span)
+        });
+        std::array::from_fn(|load| loads.map(|of_motion| of_motion[load]))
     }
 }
 

@@ -139,6 +139,8 @@ class Live {
     this.tables = this.join(told.runs[0], charts);
     this.build();
     this.show(told.live.state);
+    // The newest frame first: the player follows from there on.
+    deck?.seek(deck.until);
     this.listen(`${told.live.rollbacks}.${told.live.position}`);
     addEventListener("scroll", () => this.refresh(), { passive: true });
   }

@@ -34,8 +34,8 @@ fn round_shapes_keep_their_volume() {
         // Chords of 0.04 m in a circle of 0.2 m: 1 - (0.2)²/24 in each direction, and the scale to the volume.
         if matches!(shape, Shape::Ball { .. }) {
             assert!((panel_area(&whole) / exact - 1.0).abs() < 0.01);
-            // Two panels in each square.
-            assert!((whole.len() as f64 / (2.0 * exact / 0.0016) - 1.0).abs() < 0.5, "{} panels", whole.len());
+            // Two panels in each square, and narrower ones towards the poles.
+            assert!((1.0..2.0).contains(&(whole.len() as f64 / (2.0 * exact / 0.0016))), "{} panels", whole.len());
         }
     }
 }
