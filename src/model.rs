@@ -6,7 +6,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    interaction::{self, PairLoop, RequestedSums},
+    interaction::{self, PairLoop},
     math::Vector,
     math::simd::{self, Level},
     neighbours::NeighbourLists,
@@ -132,17 +132,6 @@ pub enum TimeScheme {
     },
     /// Symplectic position Verlet: two force passes a step.
     Symplectic,
-}
-
-impl TimeScheme {
-    /// The sums that the force pass at the start of a step computes. Shifting and stress need theirs once a step: at the middle of a
-    /// symplectic one.
-    pub(crate) fn sums_at_start(&self) -> RequestedSums {
-        match self {
-            Self::Verlet { .. } => RequestedSums::All,
-            Self::Symplectic => RequestedSums::Rates,
-        }
-    }
 }
 
 fn fifty() -> u32 {

@@ -339,7 +339,7 @@ impl<const D: usize> Simulation<D> {
             self.removed.extend(reordering.removed.into_iter().map(|lost| (self.clock.time, lost)));
         }
         update_buffer(&mut self.system, self.clock.time, self.clock.dt);
-        self.system.update_rates(self.system.model().scheme.sums_at_start());
+        self.system.update_rates(self.stepper.sums_at_start());
         let allowed = self.step_limit();
         let left = end - self.clock.time;
         // The last two steps have equal lengths, so that none is far shorter than the others.

@@ -4,6 +4,9 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::print_stdout, clippy::print_stderr, reason = "tests may")]
 #![cfg(unix)]
 
+#[path = "support/chromium.rs"]
+mod support;
+
 use std::{
     fs::{self, File},
     io::{BufRead, BufReader, Read, Write},
@@ -19,6 +22,7 @@ use pontoon::{
     report,
 };
 use serde_json::{Value, json};
+use support::chromium;
 
 /// A floating box in a small tank, for as long as it is asked.
 const BAY: &str = r#"
@@ -496,18 +500,6 @@ fn a_client_that_reads_nothing_costs_no_memory_and_is_dropped() {
         assert!(*last < first + 40_000, "memory grows from {first} kB to {last} kB");
     }
     drop(stuck);
-}
-
-/// The command of Chromium if it is installed. Without it a test prints "skipped", and fails in CI.
-fn chromium() -> Option<&'static str> {
-    let answers =
-        |name: &&str| Command::new(name).arg("--version").output().is_ok_and(|result| result.status.success());
-    let found = ["chromium", "chromium-browser", "google-chrome"].into_iter().find(answers);
-    if found.is_none() {
-        assert!(std::env::var("CI").as_deref() != Ok("true"), "CI needs Chromium to open the live page of a run");
-        eprintln!("skipped: Chromium is not installed, so the live page was not opened in a browser");
-    }
-    found
 }
 
 /// A page in Chromium, which runs in real time and is driven through two pipes.

@@ -3,11 +3,13 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::print_stdout, clippy::print_stderr, reason = "tests may")]
 
+#[path = "support/chromium.rs"]
+mod support;
+
 use std::{
     fs,
     path::{Path, PathBuf},
     process::{Command, Output, Stdio},
-    sync::OnceLock,
 };
 
 use pontoon::{
@@ -16,6 +18,7 @@ use pontoon::{
     report,
 };
 use serde_json::Value;
+use support::chromium;
 use tiny_skia::{Pixmap, PremultipliedColorU8};
 
 /// A floating box in a small tank; the title contains HTML that must be escaped.
@@ -110,21 +113,6 @@ fn pontoon(folder: &Path, arguments: &[&str]) -> Output {
         .stdin(Stdio::null())
         .output()
         .unwrap()
-}
-
-/// The command of Chromium if it is installed. Without it a test prints "skipped", and fails in CI.
-fn chromium() -> Option<&'static str> {
-    static FOUND: OnceLock<Option<&'static str>> = OnceLock::new();
-    *FOUND.get_or_init(|| {
-        let answers =
-            |name: &&str| Command::new(name).arg("--version").output().is_ok_and(|result| result.status.success());
-        let found = ["chromium", "chromium-browser", "google-chrome"].into_iter().find(answers);
-        if found.is_none() {
-            assert!(std::env::var("CI").as_deref() != Ok("true"), "CI needs Chromium to open the page of a run");
-            eprintln!("skipped: Chromium is not installed, so the page was not opened in a browser");
-        }
-        found
-    })
 }
 
 /// Opens `page` in the browser with the arguments `more`, asserts an empty console, and returns the printed text.

@@ -202,7 +202,7 @@ fn single_run(run: &RunData, told: &PageRun, live: bool) -> String {
     let held = sections::verdicts(std::slice::from_ref(run));
     let charts = |id: &str, any: bool| if any { format!("<div id=\"{id}\"></div>\n") } else { String::new() };
     let state = if live { "<div id=\"live\"></div>\n".into() } else { sections::failure(&run.manifest) };
-    sections::page_head(run)
+    sections::page_head(run, live)
         + &state
         + &sections::warnings(std::slice::from_ref(run))
         + &section("player", "Player", &player_html(std::slice::from_ref(told)))
