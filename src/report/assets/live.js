@@ -186,8 +186,8 @@ class Live {
   async ask(what, body) {
     try {
       const answer = await fetch(`${what}?token=${this.token}`, { method: "POST", body });
+      // The next event shows the new state; an answer might come after a later one.
       if (!answer.ok) throw new Error(await answer.text());
-      this.show(await answer.json());
     } catch (why) {
       this.message.textContent = `The run did not get the request: ${why.message}`;
     }
