@@ -98,7 +98,13 @@ impl LiveServer {
             return Ok(());
         }
         let server = self.0.clone();
-        thread::Builder::new().name("live page".into()).spawn(move || server.accept()).map(|_| ())
+        // The end of the run waits for this thread too, and so for connections that it has not accepted yet.
+        let place = ConnectionCount::add(server.clone());
+        let accept = move || {
+            server.accept();
+            drop(place);
+        };
+        thread::Builder::new().name("live page".into()).spawn(accept).map(|_| ())
     }
 
     /// Tells the pages how the run ended, and where its report is if it is `reported`, and stops answering.
@@ -116,7 +122,8 @@ impl LiveServer {
         if server.run.get().is_none() {
             return;
         }
-        // Wakes the thread that accepts.
+        // The connections that wait are accepted still; the last one wakes the thread that accepts them.
+        let _ = server.listener.set_nonblocking(true);
         drop(TcpStream::connect((Ipv4Addr::LOCALHOST, server.port)));
         let until = Instant::now() + FAREWELL;
         while server.connections.load(Ordering::Relaxed) > 0 && Instant::now() < until {
@@ -125,7 +132,7 @@ impl LiveServer {
     }
 }
 
-/// A connection that counts as long as this exists.
+/// A connection, or the thread that accepts them, that counts as long as this exists.
 struct ConnectionCount {
     server: Arc<Server>,
     number: usize,
@@ -145,15 +152,23 @@ impl Drop for ConnectionCount {
 }
 
 impl Server {
-    /// Accepts connections, each for one request in a thread of its own.
-    fn accept(self: Arc<Self>) {
-        while !self.closed.load(Ordering::Relaxed) {
-            let Ok((mut stream, _)) = self.listener.accept() else {
+    /// Accepts connections, each for one request in a thread of its own, until the run has ended and none waits.
+    fn accept(self: &Arc<Self>) {
+        loop {
+            let accepted = self.listener.accept().and_then(|(stream, _)| {
+                // Some systems hand the listener's mode on.
+                stream.set_nonblocking(false)?;
+                Ok(stream)
+            });
+            let Ok(mut stream) = accepted else {
+                if self.closed.load(Ordering::Relaxed) {
+                    return;
+                }
                 thread::sleep(TICK);
                 continue;
             };
             let place = ConnectionCount::add(self.clone());
-            if place.number > MOST_CONNECTIONS {
+            if place.number > MOST_CONNECTIONS + 1 {
                 let _ = http::answer(&mut stream, 503, "text/plain", "too many connections\n");
                 continue;
             }
