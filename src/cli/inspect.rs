@@ -5,7 +5,9 @@ use std::fmt::Write;
 use crate::{
     error::{Error, ErrorKind, Result},
     math::format::{bytes, duration, metric_prefix, three_digits},
-    preflight::{AbsorberSummary, BodyFlow, BodySummary, DiskUse, Finding, GeneratedWave, Preflight, Severity},
+    preflight::{
+        AbsorberSummary, BodyFlow, BodySummary, DiskUse, Finding, GeneratedWave, Preflight, Severity, WaveAtGauge,
+    },
     run::{self, CostEstimate, InspectOptions, InspectReport, Inspection, LARGE},
 };
 use clap::Args;
@@ -190,12 +192,18 @@ fn wave_facts(wave: &GeneratedWave) -> Vec<(&'static str, String)> {
     let speeds = format!("crests {} m/s, energy {} m/s", three_digits(wave.celerity_mps), three_digits(wave.group_mps));
     let (stroke, speed) = (three_digits(wave.stroke_m), three_digits(wave.paddle_mps));
     let ramp = if wave.ramp_s > 0.0 { format!(", ramp {} s", three_digits(wave.ramp_s)) } else { String::new() };
-    vec![
+    let mut facts = vec![
         ("waves", format!("{high}, {long}")),
         ("", format!("{water}; {speeds}")),
         ("", format!("\"{}\", {kind}: stroke {stroke} m, up to {speed} m/s{ramp}", wave.solid)),
         ("", wave.first_reflection()),
-    ]
+    ];
+    if !wave.gauges.is_empty() {
+        let gauge = |at: &WaveAtGauge| format!("{} at \"{}\"", three_digits(at.height_share), at.probe);
+        let heights: Vec<String> = wave.gauges.iter().map(gauge).collect();
+        facts.push(("", format!("share of the height expected at this dp: {}", heights.join(", "))));
+    }
+    facts
 }
 
 /// A paddle that absorbs.
@@ -324,6 +332,14 @@ fn bodies(bodies: &[BodySummary], dimension: usize) -> String {
                 "  {} and {} move as one by their joints: GM, heave and roll are those of all",
                 body.name,
                 body.tied_to.join(", ")
+            );
+        }
+        if let Some(afloat) = &body.afloat {
+            let lost = three_digits(100.0 * afloat.first_swing_error);
+            let _ = writeln!(
+                ties,
+                "  {}: a free decay in heave loses about {lost} % of its first swing at this dp",
+                body.name
             );
         }
         if body.load_kg.abs() > 1e-6 * body.mass_kg {

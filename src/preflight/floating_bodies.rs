@@ -88,6 +88,8 @@ pub struct Equilibrium {
     pub heave_added_kg: f64,
     /// Period of heave with the added mass, s.
     pub heave_with_added_s: f64,
+    /// Share of its first swing in heave that it loses at this dp, –, as measured on a disc.
+    pub first_swing_error: f64,
     /// Tilts that are not locked: one in 2-D; in 3-D the tilts about the horizontal axes of least and greatest GM.
     pub tilts: Vec<Tilt>,
     /// Heel of the initial orientation from equilibrium, degrees; absent if the body capsizes.
@@ -229,6 +231,7 @@ impl<const D: usize> PreflightContext<'_, D> {
             heave_s: heave(mass),
             heave_added_kg: added,
             heave_with_added_s: heave(mass + added),
+            first_swing_error: self.heave_error(area),
             heel_deg: tilts.iter().all(|t| t.gm_m >= 0.0).then(|| turned.to_degrees()),
             tilts,
         }

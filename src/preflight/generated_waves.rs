@@ -5,6 +5,7 @@ use serde::Serialize;
 
 use super::{
     Finding, PreflightContext,
+    expected_errors::WaveAtGauge,
     wavemaker_site::{WavemakerSite, is_wall},
 };
 use crate::{
@@ -64,6 +65,9 @@ pub struct GeneratedWave {
     pub answers: Option<String>,
     /// Distance from the paddle to the start of a damping zone before the reflector, m.
     pub damping_m: Option<f64>,
+    /// Heights to be expected at gauges; absent unless the waves are regular and by name, with the laws that were measured.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub gauges: Vec<WaveAtGauge>,
     /// Time at which the wave front reaches the reflector, s.
     pub far_s: f64,
     /// Time at which the reflected front reaches the paddle, s.
@@ -191,6 +195,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         (wave.height_dp, wave.length_dp) = (wave.height_m / self.dp(), wave.length_m / self.dp());
         (wave.reach_m, wave.answers) = self.first_reflector(solid, &stand);
         wave.damping_m = self.damping_start(&stand).filter(|begins| *begins < wave.reach_m);
+        wave.gauges = self.heights_at_gauges(&wave, &stand);
         (wave.far_s, wave.back_s) = (wave.reach_m / wave.group_mps, 2.0 * wave.reach_m / wave.group_mps);
         (wave.height_m.is_finite() && swing.stroke > 1e-3 * self.dp()).then_some((wave, stand))
     }
@@ -235,6 +240,7 @@ impl GeneratedWave {
             reach_m: 0.0,
             answers: None,
             damping_m: None,
+            gauges: Vec::new(),
             far_s: 0.0,
             back_s: 0.0,
         }

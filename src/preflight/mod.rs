@@ -21,6 +21,7 @@ mod run_size;
 mod sound_speed;
 mod wavemaker_site;
 mod driven_motion;
+mod expected_errors;
 mod thickness;
 mod thin_parts;
 mod generated_waves;
@@ -30,6 +31,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 pub use absorption_limits::AbsorberSummary;
+pub use expected_errors::WaveAtGauge;
 pub use floating_bodies::BodySummary;
 pub use generated_waves::GeneratedWave;
 pub use moorings::{MooredSurge, MooringSummary};

@@ -45,7 +45,7 @@ impl<const D: usize> WavemakerSite<D> {
     }
 
     /// How far (m) `x` (m) lies before the face; none if the waves pass beside it.
-    fn distance_ahead(&self, x: &Vector<D>) -> Option<f64> {
+    pub(super) fn distance_ahead(&self, x: &Vector<D>) -> Option<f64> {
         let off = x - self.face;
         let ahead = off.dot(&self.direction);
         let mut beside = off - self.direction * ahead;

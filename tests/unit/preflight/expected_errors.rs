@@ -1,0 +1,16 @@
+use super::*;
+
+/// The measured values at the measured lengths, between them in between, and those of the nearest measured length beyond.
+#[test]
+fn expected_heights_are_those_measured() {
+    for [length, start, loss] in WAVES {
+        assert!((height_share(length, 0.5) - start).abs() < 1e-12);
+        assert!((height_share(length, 2.5) - start * (1.0 - loss).powi(2)).abs() < 1e-12);
+    }
+    let between = height_share(90.0, 0.5);
+    assert!(WAVES[1][1] < between && between < WAVES[2][1], "{between}");
+    assert_eq!(
+        [height_share(20.0, 1.0), height_share(500.0, 1.0)],
+        [63.0, 157.0].map(|length| height_share(length, 1.0))
+    );
+}
