@@ -10,6 +10,7 @@ mod export;
 mod import_moordyn;
 mod inspect;
 mod json_log;
+mod live;
 mod report_page;
 mod progress;
 mod console_text;
@@ -142,11 +143,12 @@ Examples:
 Players go at equal times, with equal colours; pictures have a column for each run and a row for
 each time.")]
     Compare(report_page::CompareArgs),
-    /// Write the series of a run for other programs
+    /// Write the series of a run, or the bodies of a scene, for other programs
     #[command(after_help = "\
 Examples:
   pontoon export runs/raft --npz                    runs/raft/series.npz
   pontoon export runs/raft --npz raft.npz
+  pontoon export wigley --capytaine hull            hull/bodies.json, hull/hull.gdf
 In Python: numpy.load(\"raft.npz\")[\"box.heave_m\"], and \"box.t_s\" for its times. For pandas the
 tables are as they should be: pandas.read_csv(\"runs/raft/series/box.csv\").")]
     Export(export::ExportArgs),

@@ -1,6 +1,6 @@
 //! The outputs and checks of a run, with every default filled in. A plan is plain data and opens no files.
 
-use std::path::PathBuf;
+use std::{fmt, path::PathBuf};
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -32,8 +32,105 @@ pub struct Plan {
     pub checks: Vec<CheckPlan>,
     /// The statistics that the scene declares, in addition to the statistics of every series.
     pub statistics: Vec<StatisticPlan>,
+    /// The numbers that may be changed during the run.
+    #[serde(default)]
+    pub controls: Vec<ControlPlan>,
     /// Folder of the scene file, which also holds the tables that the scene names.
     pub folder: PathBuf,
+}
+
+/// A number of a motor or force that may be changed during the run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct ControlPlan {
+    /// Key of the number in the scene.
+    pub key: String,
+    /// Its unit.
+    pub unit: String,
+    /// Least value.
+    pub min: f64,
+    /// Greatest value.
+    pub max: f64,
+    /// What it changes.
+    pub target: ControlTarget,
+}
+
+/// What a control changes.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub enum ControlTarget {
+    /// A number of a motor.
+    Motor {
+        /// Name of the joint.
+        joint: String,
+        /// The number.
+        quantity: MotorQuantity,
+    },
+    /// A component of a force or torque.
+    Force {
+        /// Name of the force.
+        force: String,
+        /// Whether it is the torque.
+        torque: bool,
+        /// Number of the component.
+        component: usize,
+    },
+}
+
+/// A number of a motor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub enum MotorQuantity {
+    /// Force or torque F₀.
+    Force,
+    /// Set point x*.
+    Position,
+    /// Set point x* of a hinge in degrees.
+    Degrees,
+    /// Set point v*.
+    Velocity,
+    /// Stiffness k.
+    Stiffness,
+    /// Damping c.
+    Damping,
+}
+
+impl MotorQuantity {
+    /// All keys of a motor with their quantities, and their units on a slider and on a hinge.
+    pub(crate) const ALL: [(&'static str, Self, [&'static str; 2]); 7] = [
+        ("force", Self::Force, ["N", "N m"]),
+        ("torque", Self::Force, ["N", "N m"]),
+        ("position", Self::Position, ["m", "rad"]),
+        ("position_deg", Self::Degrees, ["m", "deg"]),
+        ("velocity", Self::Velocity, ["m/s", "rad/s"]),
+        ("stiffness", Self::Stiffness, ["N/m", "N m/rad"]),
+        ("damping", Self::Damping, ["N s/m", "N m s/rad"]),
+    ];
+}
+
+/// A change of a control.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct ControlChange {
+    /// Number of the control in the scene.
+    pub control: usize,
+    /// Key of the number in the scene.
+    pub key: String,
+    /// The value from then on.
+    pub value: f64,
+    /// Its unit.
+    pub unit: String,
+    /// Simulated time of the change, s.
+    pub time: f64,
+    /// Number of steps before the change.
+    pub steps: u64,
+}
+
+impl fmt::Display for ControlChange {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let Self { key, value, unit, time, steps, .. } = self;
+        write!(f, "control: {key} is {value} {unit} from t = {time:?} s on, after step {steps}")
+    }
 }
 
 /// The interval and the fields of the frames.

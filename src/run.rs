@@ -10,6 +10,7 @@
 //! # Ok::<(), pontoon::Error>(())
 //! ```
 
+mod controls;
 mod device;
 mod runner;
 mod energy_drift;
@@ -22,6 +23,7 @@ pub(crate) mod probe_factory;
 pub(crate) mod outputs;
 pub(crate) mod statistics;
 
+pub use controls::Control;
 pub use energy_drift::EnergyDrift;
 #[doc(hidden)]
 pub use inspect::{
@@ -42,6 +44,7 @@ use crate::{
     error::{Error, ErrorKind, Result},
     model::Dimension,
     output::{Checkpoint, Manifest, manifest::RunStatus},
+    plan::ControlChange,
     scene::{RenamedName, Scene},
     simulation::Rollback,
     solid::ConstraintEvent,
@@ -69,6 +72,8 @@ pub struct RunStart<'a> {
     pub manifest: &'a Manifest,
     /// The keys and values that the scene writes with a former name.
     pub renamed: &'a [RenamedName],
+    /// The numbers that may be changed while the run goes on.
+    pub controls: &'a [Control],
 }
 
 /// The progress of a run.
@@ -91,6 +96,23 @@ pub struct Progress {
     pub energy: Option<EnergyDrift>,
 }
 
+/// A request of an observer to a run, fulfilled between two steps.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum RunRequest {
+    /// Write a checkpoint.
+    Checkpoint,
+    /// Write a checkpoint and stop.
+    Stop,
+    /// Change a number of a motor or force; a value outside its range has no effect.
+    Set {
+        /// Number of the control in [`RunStart::controls`].
+        control: usize,
+        /// The value from now on.
+        value: f64,
+    },
+}
+
 /// An observer of a run. Every `FnMut(&Progress) -> bool` implements this trait.
 pub trait RunObserver: Send {
     /// Receives the start of the run, once, before the first step.
@@ -108,9 +130,20 @@ pub trait RunObserver: Send {
         let _ = event;
     }
 
+    /// Receives a change of a control, which the run has made at the request of this observer.
+    fn control_changed(&mut self, change: &ControlChange) {
+        let _ = change;
+    }
+
     /// Receives the progress before the first step and after each step. If it returns `false`, the run writes a
     /// checkpoint and stops.
     fn step(&mut self, now: &Progress) -> bool;
+
+    /// Returns what the run is to do before its next step, or `None` to go on. The run asks again after each request. An
+    /// observer that waits here pauses the run.
+    fn request(&mut self) -> Option<RunRequest> {
+        None
+    }
 }
 
 impl<F: FnMut(&Progress) -> bool + Send> RunObserver for F {

@@ -33,7 +33,7 @@ use rollback::{RollbackControl, StoredState};
 use crate::{
     coupling::{Accounting, AccountingState, AcousticAddedMass, AddedMassState, Bodies, Hook, Interval, Moorings},
     error::{Error, ErrorCode, ErrorKind, Fault, Result},
-    interaction::PairLoop,
+    interaction::{PairLoop, RequestedSums},
     math::{Bivector, Vector},
     model::Dimension,
     solid::{
@@ -339,7 +339,7 @@ impl<const D: usize> Simulation<D> {
             self.removed.extend(reordering.removed.into_iter().map(|lost| (self.clock.time, lost)));
         }
         update_buffer(&mut self.system, self.clock.time, self.clock.dt);
-        self.system.update_rates();
+        self.system.update_rates(self.stepper.sums_at_start());
         let allowed = self.step_limit();
         let left = end - self.clock.time;
         // The last two steps have equal lengths, so that none is far shorter than the others.
@@ -417,7 +417,7 @@ impl<const D: usize> Simulation<D> {
 
     /// Computes the rates after the state was changed by hand.
     pub fn update_rates(&mut self) {
-        self.system.update_rates();
+        self.system.update_rates(RequestedSums::All);
     }
 
     /// Water and solids now.

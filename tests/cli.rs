@@ -773,6 +773,62 @@ fn an_error_in_a_bundled_scene_names_the_scene() {
 }
 
 #[test]
+fn bodies_are_exported_for_a_panel_method_from_a_scene_and_from_its_run() {
+    let folder = TestFolder::new("panels");
+    let scene = r#"dimension = 3
+dp = 0.1
+until = 0.01
+[[water]]
+fill = { box = { min = [0.0, 0.0, 0.0], max = [1.0, 0.6, 0.5] } }
+[[solid]]
+name = "tank"
+fixed = true
+shape = { tank = { size = [1.0, 0.6, 1.0] } }
+[[solid]]
+name = "crate"
+free = { density = 500.0 }
+shape = { box = { size = [0.4, 0.3, 0.2] } }
+at = { x = 0.5, y = 0.3, draft = "equilibrium" }
+"#;
+    fs::write(folder.path("scene.toml"), scene).unwrap();
+    let exported = folder.pontoon(&["export", ".", "--capytaine", "a", "--panels", "100"]);
+    assert_eq!(exported.code, Some(0), "{}", exported.err);
+    assert!(exported.out.contains("crate with ") && !exported.out.contains("note"), "{}", exported.out);
+    let json: serde_json::Value = serde_json::from_str(&folder.read("a/bodies.json")).unwrap();
+    let body = &json["bodies"][0];
+    let close = |value: &serde_json::Value, exact: f64| (value.as_f64().unwrap() / exact - 1.0).abs() < 1e-6;
+    assert!(close(&json["water"]["depth_m"], 0.5) && close(&json["water"]["density_kg_m3"], 1000.0));
+    assert!(close(&body["mass_kg"], 12.0) && close(&body["displaced_volume_m3"], 0.012));
+    assert!(close(&body["hydrostatic_stiffness"][2][2], 1000.0 * 9.81 * 0.12));
+    let mesh = folder.read("a/crate.gdf");
+    let lines: Vec<&str> = mesh.lines().collect();
+    let count: usize = lines[3].parse().unwrap();
+    assert!(lines.len() == 4 + 4 * count && body["panel_count"].as_u64() == Some(count as u64));
+
+    // A run has the scene with its changed keys; the crate then displaces more than its mass where it starts.
+    let run = folder.pontoon(&[
+        "run",
+        ".",
+        "--set",
+        "solid.crate.at={ x = 0.5, y = 0.3, z = 0.45 }",
+        "--out",
+        "run",
+        "--quiet",
+        "--no-report",
+    ]);
+    assert_eq!(run.code, Some(0), "{}", run.err);
+    let exported = folder.pontoon(&["export", "run", "--capytaine", "b"]);
+    assert_eq!(exported.code, Some(0), "{}", exported.err);
+    assert!(exported.out.contains("note: \"crate\" displaces 18.0000 kg"), "{}", exported.out);
+    folder
+        .pontoon(&["export", ".", "--capytaine", "c", "--solid", "crat"])
+        .assert_refused(2, &["did you mean \"crate\"?"]);
+    folder.pontoon(&["export", "raft", "--capytaine", "c"]).assert_refused(2, &["2-D", "3-D scene"]);
+    folder.pontoon(&["export", ".", "--npz", "--panels", "9"]).assert_refused(2, &["--capytaine"]);
+    assert!(!folder.path("c").exists());
+}
+
+#[test]
 #[cfg(not(feature = "surface"))]
 fn exporting_surfaces_without_the_feature_is_refused_with_the_remedy() {
     let folder = TestFolder::new("no-surface");

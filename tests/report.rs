@@ -3,11 +3,13 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::print_stdout, clippy::print_stderr, reason = "tests may")]
 
+#[path = "support/chromium.rs"]
+mod support;
+
 use std::{
     fs,
     path::{Path, PathBuf},
     process::{Command, Output, Stdio},
-    sync::OnceLock,
 };
 
 use pontoon::{
@@ -16,6 +18,7 @@ use pontoon::{
     report,
 };
 use serde_json::Value;
+use support::chromium;
 use tiny_skia::{Pixmap, PremultipliedColorU8};
 
 /// A floating box in a small tank; the title contains HTML that must be escaped.
@@ -110,21 +113,6 @@ fn pontoon(folder: &Path, arguments: &[&str]) -> Output {
         .stdin(Stdio::null())
         .output()
         .unwrap()
-}
-
-/// The command of Chromium if it is installed. Without it a test prints "skipped", and fails in CI.
-fn chromium() -> Option<&'static str> {
-    static FOUND: OnceLock<Option<&'static str>> = OnceLock::new();
-    *FOUND.get_or_init(|| {
-        let answers =
-            |name: &&str| Command::new(name).arg("--version").output().is_ok_and(|result| result.status.success());
-        let found = ["chromium", "chromium-browser", "google-chrome"].into_iter().find(answers);
-        if found.is_none() {
-            assert!(std::env::var("CI").as_deref() != Ok("true"), "CI needs Chromium to open the page of a run");
-            eprintln!("skipped: Chromium is not installed, so the page was not opened in a browser");
-        }
-        found
-    })
 }
 
 /// Opens `page` in the browser with the arguments `more`, asserts an empty console, and returns the printed text.
@@ -292,8 +280,9 @@ fn the_report_draws_mooring_lines_from_fairlead_to_anchor() {
     }
     let result = evaluate(
         &run.join(report::REPORT_FILE),
-        "const view = deck.views[0], shown = () => { const { canvas } = view, at = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
-           return at.data; };
+        "const view = deck.views[0], shown = () => { const { canvas } = view, [width, height] = [canvas.width, canvas.height];
+           const copy = Object.assign(document.createElement('canvas'), { width, height }).getContext('2d', { willReadFrequently: true });
+           copy.drawImage(canvas, 0, 0); return copy.getImageData(0, 0, width, height).data; };
          result.lines = []; for (const t of [0, 0.05, 0.2]) { deck.seek(t); result.lines.push(films[0].lines().map(line => [line.length, line[0], line.at(-1)])); }
          const drawn = shown(), none = (films[0].moorings = null, deck.draw(), shown());
          result.pixels = none.filter((x, i) => x !== drawn[i]).length;",

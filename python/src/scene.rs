@@ -10,7 +10,7 @@ use pontoon::{
     cli::scene_lookup::{FoundScene, find_scene},
     plan::Plan,
     run::{InspectOptions, RunObserver, RunOptions, RunOutcome, inspect_scene, run, run_text},
-    scene::{Scene, bundled_scenes},
+    scene::{PanelledScene, Scene, bundled_scenes},
 };
 use pyo3::prelude::*;
 
@@ -156,6 +156,14 @@ impl NativeScene {
         let asked = InspectOptions { overrides: Vec::new(), threads, timing };
         let inspection = py.detach(|| self.origin.named(inspect_scene(&self.scene, &asked))).or_raise(py)?;
         serde_json::to_string(&inspection).map_err(|why| usage(py, &why.to_string(), ""))
+    }
+
+    /// Writes `bodies.json` and the panels of the solids `solids`, or of all free ones, into the folder `out`; returns the path of
+    /// `bodies.json`.
+    fn export_bodies(&self, py: Python<'_>, out: PathBuf, solids: Vec<String>, panels: usize) -> PyResult<PathBuf> {
+        let export =
+            || self.origin.named(PanelledScene::new(&self.scene, &solids, panels)).and_then(|all| all.write(&out));
+        py.detach(export).or_raise(py)
     }
 
     /// Builds a simulation.

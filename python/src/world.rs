@@ -331,7 +331,7 @@ where
         if due {
             self.called = Some(now);
         }
-        let solids = self.bodies();
+        let solids = if due { self.bodies() } else { Vec::new() };
         let (hosted, mut failed) = (self.sim.has_external_bodies(), false);
         let (mut commands, mut spent, pushes) = (Commands::default(), Duration::ZERO, &mut self.pushes);
         let outcome = self.sim.step_with(end, |step| {

@@ -1,14 +1,16 @@
-//! `pontoon export`: a run in forms that other programs read.
+//! `pontoon export`: a run, or the bodies of a scene, in forms that other programs read.
 
 use std::{
     collections::BTreeSet,
     path::{Path, PathBuf},
 };
 
+use super::{key_value, scene_lookup::find_scene};
 use crate::{
     error::{Error, ErrorKind, Result},
     output::{Manifest, SeriesTable, npz},
     run,
+    scene::{PanelledBody, PanelledScene, Scene},
 };
 use clap::{ArgGroup, Args};
 use serde::{Deserialize, de::DeserializeOwned};
@@ -17,7 +19,7 @@ use serde::{Deserialize, de::DeserializeOwned};
 #[derive(Args)]
 #[command(group(ArgGroup::new("what").required(true).multiple(true)))]
 pub struct ExportArgs {
-    /// Folder of the run
+    /// Folder of the run; with --capytaine it may be a scene
     #[arg(value_name = "DIR")]
     folder: PathBuf,
     /// All series, spectra and RAOs as NumPy arrays in one file [default: DIR/series.npz]
@@ -26,7 +28,29 @@ pub struct ExportArgs {
     /// The free surface in each frame of a 3-D run as a mesh for ParaView: DIR/surface.pvd
     #[arg(long, group = "what")]
     surface: bool,
+    /// The bodies of the run or scene for Capytaine and other panel methods: a folder with bodies.json and a mesh of each body
+    /// below the still water
+    #[arg(long, value_name = "OUT", group = "what")]
+    capytaine: Option<PathBuf>,
+    /// A solid to export, driven and fixed ones too; may be given several times [default: the free solids]
+    #[arg(long, value_name = "NAME", requires = "capytaine")]
+    solid: Vec<String>,
+    /// About so many panels for each body; the time of a panel method grows with their square
+    #[arg(long, value_name = "N", default_value_t = PANELS, requires = "capytaine")]
+    panels: usize,
+    /// Change a key of the scene; may be given several times
+    #[arg(long, value_name = "KEY=VALUE", value_parser = key_value, requires = "capytaine")]
+    set: Vec<(String, String)>,
 }
+
+/// Default number of panels of a body: coefficients of a sphere within about 4 %, in a second or so a frequency.
+const PANELS: usize = 800;
+
+/// Difference of the volumes of panels and body, relative, above which the export says so.
+const VOLUME: f64 = 0.02;
+
+/// Difference of displaced and own mass, relative, above which the export says so.
+const MASS: f64 = 0.01;
 
 /// Writes the files; says where.
 pub fn export(args: &ExportArgs) -> Result<String> {
@@ -37,7 +61,58 @@ pub fn export(args: &ExportArgs) -> Result<String> {
     if args.surface {
         said += &surface(&args.folder)?;
     }
+    if let Some(out) = &args.capytaine {
+        said += &bodies(args, out)?;
+    }
     Ok(said)
+}
+
+/// Writes the bodies of a scene for a panel method.
+fn bodies(args: &ExportArgs, out: &Path) -> Result<String> {
+    let export = |scene: &Scene| PanelledScene::new(scene, &args.solid, args.panels);
+    let exported = if args.folder.join("manifest.json").is_file() {
+        // The scene of a run with its changed keys; the files that it names are copied beside it.
+        let manifest = Manifest::read(&args.folder)?;
+        export(&Scene::parse(&manifest.scene, &args.folder.join("scene"), &args.set)?)?
+    } else {
+        let found = find_scene(&args.folder)?;
+        found.with_scene_name(
+            Scene::read(&run::run_folder::scene_file(found.path()), &args.set).and_then(|scene| export(&scene)),
+        )?
+    };
+    let path = exported.write(out)?;
+    Ok(format!("{}: {}\n{}", path.display(), panel_counts(&exported), remarks(&exported)))
+}
+
+fn panel_counts(exported: &PanelledScene) -> String {
+    let body = |body: &PanelledBody| format!("{} with {} panels", body.name, body.panel_count);
+    exported.bodies.iter().map(body).collect::<Vec<_>>().join(", ")
+}
+
+/// Says where the panels or the place of a body may not be meant.
+fn remarks(exported: &PanelledScene) -> String {
+    let mut text = String::new();
+    for body in &exported.bodies {
+        let volume = body.panel_volume_m3 / body.displaced_volume_m3 - 1.0;
+        if volume.abs() > VOLUME {
+            text += &format!(
+                "note: the volume within the panels of \"{}\" is {:+.1} % off its displaced volume\n  more panels come nearer: \
+                 --panels {}\n",
+                body.name,
+                100.0 * volume,
+                4 * body.panel_count
+            );
+        }
+        let displaced = exported.water.density_kg_m3 * body.displaced_volume_m3;
+        if let Some(mass) = body.mass_kg.filter(|mass| (displaced / mass - 1.0).abs() > MASS) {
+            text += &format!(
+                "note: \"{}\" displaces {displaced:.4} kg where it starts and has {mass:.4} kg: the panels are of its start, not of its \
+                 rest\n  at = {{ draft = \"equilibrium\" }} places it at rest, if no line or joint holds it\n",
+                body.name
+            );
+        }
+    }
+    text
 }
 
 fn series(folder: &Path, out: PathBuf) -> Result<String> {

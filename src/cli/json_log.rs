@@ -12,6 +12,7 @@ use std::{
 use crate::{
     error::Error,
     output::manifest::RunStatus,
+    plan::ControlChange,
     run::{EnergyDrift, Progress, RunObserver, RunOutcome, RunStart},
     simulation::Rollback,
     solid::ConstraintEvent,
@@ -48,6 +49,10 @@ impl CliObserver for JsonLog {
     fn close(&mut self) -> Option<PathBuf> {
         self.folder.take()
     }
+
+    fn live_address(&mut self, address: &str) {
+        write_event(&json!({ "event": "live_page", "address": address }));
+    }
 }
 
 impl RunObserver for JsonLog {
@@ -81,6 +86,12 @@ impl RunObserver for JsonLog {
     fn event(&mut self, event: &ConstraintEvent) {
         if !self.quiet {
             write_event(&json!({ "event": "note", "t_s": event.time, "text": event.to_string() }));
+        }
+    }
+
+    fn control_changed(&mut self, change: &ControlChange) {
+        if !self.quiet {
+            write_event(&json!({ "event": "note", "t_s": change.time, "text": change.to_string() }));
         }
     }
 

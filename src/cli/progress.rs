@@ -11,6 +11,7 @@ use std::{
 
 use crate::{
     math::format::{duration, metric_prefix, three_digits},
+    plan::ControlChange,
     run::{Progress, RunObserver, RunStart},
     simulation::Rollback,
     solid::ConstraintEvent,
@@ -49,12 +50,19 @@ pub struct ProgressDisplay {
 pub trait CliObserver: RunObserver {
     /// Ends what is shown; the folder of the run, if one has begun.
     fn close(&mut self) -> Option<PathBuf>;
+
+    /// Says where the live page of the run is.
+    fn live_address(&mut self, address: &str);
 }
 
 impl CliObserver for ProgressDisplay {
     fn close(&mut self) -> Option<PathBuf> {
         self.bar.finish_and_clear();
         self.folder.take()
+    }
+
+    fn live_address(&mut self, address: &str) {
+        print_error(&format!("live page: {address}\n"));
     }
 }
 
@@ -133,6 +141,12 @@ impl RunObserver for ProgressDisplay {
     fn event(&mut self, event: &ConstraintEvent) {
         if !self.quiet {
             self.bar.suspend(|| print_error(&format!("note: {event}\n")));
+        }
+    }
+
+    fn control_changed(&mut self, change: &ControlChange) {
+        if !self.quiet {
+            self.bar.suspend(|| print_error(&format!("note: {change}\n")));
         }
     }
 

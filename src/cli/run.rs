@@ -12,6 +12,7 @@ use clap::{Args, ValueEnum};
 use super::{
     SceneArgs, console_text, exit_code, interrupt_flag, interrupt_flag_with_message,
     json_log::{self, JsonLog},
+    live::{LiveObserver, LiveServer, LiveState},
     print_error, print_output,
     progress::{CliObserver, ProgressDisplay},
     report_page, scene_lookup,
@@ -86,6 +87,9 @@ struct LogArgs {
     /// How progress, warnings and errors are said on standard error
     #[arg(long, value_name = "FORMAT", default_value = "text")]
     log: LogFormat,
+    /// Serve the page of the run while it goes on, to this machine alone; --live=PORT at this port [default: a free one]
+    #[arg(long, value_name = "PORT", num_args = 0..=1, require_equals = true, default_missing_value = "0")]
+    live: Option<u16>,
 }
 
 /// How progress is said.
@@ -105,9 +109,9 @@ pub fn run(args: &RunArgs) -> Result<u8> {
     let started = |args: &RunArgs| {
         let found = scene_lookup::find_scene(&args.scene.scene)?;
         let options = RunOptions { out: args.out.clone(), overrides: args.overrides(), threads: args.threads };
-        let mut follow = make_observer(&args.log_args)?;
+        let (mut follow, live) = make_observer(&args.log_args)?;
         let outcome = found.with_scene_name(run::run(found.path(), &options, &mut *follow));
-        finish(outcome, follow, &args.log_args)
+        finish(outcome, follow, live, &args.log_args)
     };
     report_outcome(started(args), &args.log_args)
 }
@@ -117,9 +121,12 @@ pub fn run(args: &RunArgs) -> Result<u8> {
 /// # Errors
 /// As [`run::resume`].
 pub fn resume(args: &ResumeArgs) -> Result<u8> {
-    let mut follow = make_observer(&args.log_args)?;
-    let outcome = run::resume(&args.folder, &args.set, args.threads, &mut *follow);
-    report_outcome(finish(outcome, follow, &args.log_args), &args.log_args)
+    let resumed = |args: &ResumeArgs| {
+        let (mut follow, live) = make_observer(&args.log_args)?;
+        let outcome = run::resume(&args.folder, &args.set, args.threads, &mut *follow);
+        finish(outcome, follow, live, &args.log_args)
+    };
+    report_outcome(resumed(args), &args.log_args)
 }
 
 /// What comes of a run, its error said as the user wants it.
@@ -133,19 +140,34 @@ fn report_outcome(outcome: Result<u8>, said: &LogArgs) -> Result<u8> {
     }
 }
 
-/// Who follows a run, as the user wants it.
-fn make_observer(said: &LogArgs) -> Result<Box<dyn CliObserver>> {
-    Ok(match said.log {
-        LogFormat::Text => Box::new(ProgressDisplay::new(said.quiet, interrupt_flag()?)),
-        LogFormat::Json => Box::new(JsonLog::new(said.quiet, interrupt_flag_with_message(json_log::STOPPING)?)),
+/// Who follows a run, as the user wants it, and the server of its live page if there is one.
+fn make_observer(log_args: &LogArgs) -> Result<(Box<dyn CliObserver>, Option<LiveServer>)> {
+    let stop = match log_args.log {
+        LogFormat::Text => interrupt_flag()?,
+        LogFormat::Json => interrupt_flag_with_message(json_log::STOPPING)?,
+    };
+    let live = log_args.live.map(|port| LiveServer::bind(port, LiveState::new(stop.clone()))).transpose()?;
+    let follow: Box<dyn CliObserver> = match log_args.log {
+        LogFormat::Text => Box::new(ProgressDisplay::new(log_args.quiet, stop)),
+        LogFormat::Json => Box::new(JsonLog::new(log_args.quiet, stop)),
+    };
+    Ok(match live {
+        Some(live) => (Box::new(LiveObserver::new(follow, live.clone())), Some(live)),
+        None => (follow, None),
     })
 }
 
-/// Closes the progress, prints the table, writes the page of the run if it is wanted, chooses the exit exit_code.
-fn finish(outcome: Result<RunOutcome>, mut follow: Box<dyn CliObserver>, said: &LogArgs) -> Result<u8> {
-    let (folder, json) = (follow.close(), said.log == LogFormat::Json);
+/// Closes the progress, prints the table, writes the page of the run if it is wanted, tells the live pages the end, chooses the
+/// exit code.
+fn finish(
+    outcome: Result<RunOutcome>,
+    mut follow: Box<dyn CliObserver>,
+    live: Option<LiveServer>,
+    log_args: &LogArgs,
+) -> Result<u8> {
+    let (folder, json) = (follow.close(), log_args.log == LogFormat::Json);
     match &outcome {
-        _ if said.quiet => {}
+        _ if log_args.quiet => {}
         Ok(outcome) if json => {
             outcome.end_warnings.iter().for_each(|text| json_log::warn(text));
             json_log::ended(outcome);
@@ -156,12 +178,15 @@ fn finish(outcome: Result<RunOutcome>, mut follow: Box<dyn CliObserver>, said: &
         }
         Err(_) => {}
     }
-    if let Some(folder) = folder.filter(|_| !said.no_report) {
+    if let Some(folder) = folder.filter(|_| !log_args.no_report) {
         let told = |why: &Error| {
             let text = format!("the page of the run was not written: {why}");
             if json { json_log::warn(&text) } else { print_error(&format!("warning: {text}\n")) }
         };
-        report_page::write_after_run(&folder, said.quiet || json, told);
+        report_page::write_after_run(&folder, log_args.quiet || json, told);
+    }
+    if let Some(live) = live {
+        live.close(&outcome, !log_args.no_report);
     }
     let outcome = outcome?;
     Ok(match outcome.manifest.status {

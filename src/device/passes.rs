@@ -100,7 +100,7 @@ impl Passes {
         buffers: &Buffers,
     ) -> Result<Self> {
         let params = gpu.uniform(&counts.words());
-        let rates = rates(gpu, shaders, counts, buffers, &params)?;
+        let [rates, close_stress] = rates(gpu, shaders, counts, buffers, &params)?;
         let n = counts.n;
         let b = &buffers.pairs;
         let solids = Maker::new(
@@ -148,28 +148,30 @@ impl Passes {
         let (whole, first, second);
         if shaders.verlet {
             let verlet = step.pass("verlet", n)?;
-            whole = [&rates[..], &[limit.clone(), verlet.clone(), finish.clone()]].concat();
-            first = [&rates[..], &[limit, loads.clone()]].concat();
+            let all = [&rates[..], &close_stress].concat();
+            whole = [&all[..], &[limit.clone(), verlet.clone(), finish.clone()]].concat();
+            first = [&all[..], &[limit, loads.clone()]].concat();
             second = vec![verlet, finish];
         } else {
             let first_half = step.pass("first_half", n)?;
             let rest = step.pass("whole_step", n)?;
             first = [&rates[..], &[limit, first_half]].concat();
-            whole = [&first[..], &rates, &[rest.clone(), finish.clone()]].concat();
-            second = [std::slice::from_ref(&place), &rates[..], &[loads.clone(), rest, finish]].concat();
+            whole = [&first[..], &rates, &close_stress, &[rest.clone(), finish.clone()]].concat();
+            second = [std::slice::from_ref(&place), &rates, &close_stress, &[loads.clone(), rest, finish]].concat();
         }
         Ok(Self { derive, rates, step: whole, first, second, place, loads })
     }
 }
 
-/// A force pass: new lists where they are needed, and the sums over pairs.
+/// A force pass: new lists where they are needed, and the sums over pairs; and the pass that makes the stress of them, once a step,
+/// if there is one.
 fn rates(
     gpu: &Gpu,
     shaders: &Shaders,
     counts: &Counts,
     buffers: &Buffers,
     params: &wgpu::Buffer,
-) -> Result<Vec<Arc<Pass>>> {
+) -> Result<[Vec<Arc<Pass>>; 2]> {
     let (b, searched, n, cells) = (&buffers.pairs, &buffers.search, counts.n, counts.cells);
     let total = 2 * cells + 1;
     let search = Maker::new(
@@ -287,7 +289,7 @@ fn rates(
         passes.push(gaps.pass("find_gaps", boundary)?);
         sweeps.push(gaps.pass("add_gaps", boundary)?);
     }
-    let mut close = None;
+    let mut close = Vec::new();
     if let Some(text) = &shaders.inputs {
         let inputs = Maker::new(
             gpu,
@@ -305,11 +307,10 @@ fn rates(
         );
         passes.push(inputs.pass("fill_rows", n)?);
         if shaders.stress {
-            close = Some(inputs.pass("close_stress", counts.water)?);
+            close.push(inputs.pass("close_stress", counts.water)?);
         }
     }
     passes.extend(corrections);
     passes.extend(sweeps);
-    passes.extend(close);
-    Ok(passes)
+    Ok([passes, close])
 }

@@ -16,6 +16,7 @@ mod moments;
 mod offset;
 pub(crate) mod overlap;
 mod packing;
+pub(crate) mod panels;
 mod projected_area;
 mod shell;
 pub(crate) mod solids_of_revolution;

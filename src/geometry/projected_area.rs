@@ -11,8 +11,19 @@ const OFFSET: f64 = 1e-6;
 
 /// The facets of the surface of `shape` in its own frame. Those of a part whose middle lies on or in another part are left out.
 pub(crate) fn surface_facets<const D: usize>(shape: &Shape<D>) -> Vec<Facet<D>> {
-    match shape {
+    exposed_facets(shape, &|part| match part {
         Shape::Ball { radius } => Shape::Capsule { length: 0.0, radius: *radius, axis: D - 1 }.facets(),
+        _ => part.facets(),
+    })
+}
+
+/// The facets of `shape` in its own frame, where `facets` returns those of a shape that is no compound. Those of a part whose middle
+/// lies on or in another part are left out.
+pub(super) fn exposed_facets<const D: usize>(
+    shape: &Shape<D>,
+    facets: &impl Fn(&Shape<D>) -> Vec<Facet<D>>,
+) -> Vec<Facet<D>> {
+    match shape {
         Shape::Compound(parts) => {
             let offset = OFFSET * shape.bounds().size().max();
             let mut all = Vec::new();
@@ -23,12 +34,12 @@ pub(crate) fn surface_facets<const D: usize>(shape: &Shape<D>) -> Vec<Facet<D>> 
                     let before = middle(facet) + normal * (offset / normal.norm().max(f64::MIN_POSITIVE));
                     others().any(|(_, (other, shape))| shape.signed_distance(&other.local(&before)) < 0.0)
                 };
-                let facets = surface_facets(part).into_iter().map(|facet| facet.map(|x| pose.point(&x)));
-                all.extend(facets.filter(|facet| !is_hidden(facet)));
+                let own = exposed_facets(part, facets).into_iter().map(|facet| facet.map(|x| pose.point(&x)));
+                all.extend(own.filter(|facet| !is_hidden(facet)));
             }
             all
         }
-        _ => shape.facets(),
+        _ => facets(shape),
     }
 }
 
@@ -72,7 +83,7 @@ fn add_dry<const D: usize>(facet: Facet<D>, level: f64, way: &Vector<D>, sum: &m
 }
 
 /// Area of a facet times its outward normal.
-fn area_vector<const D: usize>(facet: &Facet<D>) -> Vector<D> {
+pub(super) fn area_vector<const D: usize>(facet: &Facet<D>) -> Vector<D> {
     let side = facet[1] - facet[0];
     if D == 2 {
         return Vector::from_fn(|i, _| if i == 0 { side[1] } else { -side[0] });
@@ -84,7 +95,7 @@ fn area_vector<const D: usize>(facet: &Facet<D>) -> Vector<D> {
     })
 }
 
-fn middle<const D: usize>(facet: &Facet<D>) -> Vector<D> {
+pub(super) fn middle<const D: usize>(facet: &Facet<D>) -> Vector<D> {
     facet.iter().sum::<Vector<D>>() / D as f64
 }
 

@@ -60,10 +60,10 @@ impl<const D: usize> Shape<D> {
                     let turn = 0.5 * PI * (i - usize::from(i > steps)) as f64 / steps as f64;
                     (radius * turn.sin(), side * 0.5 * length - radius * turn.cos())
                 });
-                self.turned_facets(&profile.collect::<Vec<_>>(), *axis)
+                self.turned_facets(&profile.collect::<Vec<_>>(), *axis, ROUND)
             }
             Shape::Cylinder { length, radius, axis } => {
-                self.turned_facets(&[(*radius, -0.5 * length), (*radius, 0.5 * length)], *axis)
+                self.turned_facets(&[(*radius, -0.5 * length), (*radius, 0.5 * length)], *axis, ROUND)
             }
             Shape::Polygon { points } => edges(points),
             Shape::Polyline { points, thickness } => edges(&wall_outline(points, *thickness)),
@@ -81,10 +81,10 @@ impl<const D: usize> Shape<D> {
         }
     }
 
-    /// Returns the facets of a shape of revolution from its profile of (radius, height along `axis`). The function
-    /// scales the facets across the axis so that they enclose the exact volume.
-    fn turned_facets(&self, profile: &[(f64, f64)], axis: usize) -> Vec<Facet<D>> {
-        let mut all = if D == 2 { mirrored(profile, axis) } else { revolved(profile, axis) };
+    /// Returns the facets of a shape of revolution from its profile of (radius, height along `axis`), with `segments`
+    /// edges of a circle. The function scales the facets across the axis so that they enclose the exact volume.
+    pub(super) fn turned_facets(&self, profile: &[(f64, f64)], axis: usize, segments: usize) -> Vec<Facet<D>> {
+        let mut all = if D == 2 { mirrored(profile, axis) } else { revolved(profile, axis, segments) };
         let top = self.bounds().max[D - 1];
         let mut enclosed = (0.0, Vector::zeros());
         all.iter().for_each(|facet| add_wet(*facet, facet.map(|x| x[D - 1] - top), top, &mut enclosed));
@@ -179,17 +179,17 @@ fn mirrored<const D: usize>(profile: &[(f64, f64)], axis: usize) -> Vec<Facet<D>
     edges(&there.chain(back).collect::<Vec<_>>())
 }
 
-/// Returns the surface of revolution of `profile` about `axis` (3-D).
-fn revolved<const D: usize>(profile: &[(f64, f64)], axis: usize) -> Vec<Facet<D>> {
+/// Returns the surface of revolution of `profile` about `axis`, with `segments` edges of a circle (3-D).
+fn revolved<const D: usize>(profile: &[(f64, f64)], axis: usize, segments: usize) -> Vec<Facet<D>> {
     let (u, v) = ((axis + 1) % D, (axis + 2) % D);
     let ring = |&(radius, along): &(f64, f64)| {
         let point = |k: usize| {
-            let (sin, cos) = (TAU * k as f64 / ROUND as f64).sin_cos();
+            let (sin, cos) = (TAU * k as f64 / segments as f64).sin_cos();
             let mut x = Vector::zeros();
             (x[axis], x[u], x[v]) = (along, radius * cos, radius * sin);
             x
         };
-        (0..ROUND).map(point).collect()
+        (0..segments).map(point).collect()
     };
     lofted(&profile.iter().map(ring).collect::<Vec<_>>())
 }

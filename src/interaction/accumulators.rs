@@ -1,5 +1,6 @@
 //! Running sums of the pair loop, and the rows in which they lie in memory.
 
+use super::RequestedSums;
 use crate::sph::{AuxiliarySums, Num, Term};
 
 /// Inputs and sums that a set of terms needs beside acceleration and density rate.
@@ -59,6 +60,14 @@ impl RequiredSums {
         self.moment_at(dimension) + if self.renormalization { entries(dimension) } else { 0 }
     }
 
+    /// Number of rows of the sums `requested`.
+    pub(super) const fn requested_rows(self, dimension: usize, requested: RequestedSums) -> usize {
+        match requested {
+            RequestedSums::Rates => dimension + 1,
+            RequestedSums::All => self.sum_rows(dimension),
+        }
+    }
+
     /// Row of the repulsion among the additional inputs; the mark comes before it.
     pub(super) const fn repulsion_row(self) -> usize {
         if self.suppression { 1 } else { 0 }
@@ -95,28 +104,39 @@ impl<N: Num, const D: usize> Accumulators<N, D> {
         Self { acceleration: [zero; D], compression_rate: zero, auxiliary: AuxiliarySums::filled_with(zero) }
     }
 
-    /// Calls `visit` with each sum that the terms with needs `own` compute and its row; terms with needs `all` share the rows.
+    /// Calls `visit` with acceleration and density rate and their rows.
     #[inline(always)]
-    pub(super) fn for_each_row(&mut self, own: RequiredSums, all: RequiredSums, mut visit: impl FnMut(usize, &mut N)) {
+    pub(super) fn for_each_rate(&mut self, mut visit: impl FnMut(usize, &mut N)) {
         for (k, dv) in self.acceleration.iter_mut().enumerate() {
             visit(k, dv);
         }
         visit(D, &mut self.compression_rate);
-        if own.shift {
-            for (k, grad) in self.auxiliary.concentration_gradient.iter_mut().enumerate() {
-                visit(D + 1 + k, grad);
-            }
-            visit(2 * D + 1, &mut self.auxiliary.position_divergence);
+    }
+}
+
+/// Calls `visit` with each auxiliary sum that the terms with needs `own` compute and its row; terms with needs `all` share the
+/// rows.
+#[inline(always)]
+pub(super) fn for_each_auxiliary<N, const D: usize>(
+    sums: &mut AuxiliarySums<N, D>,
+    own: RequiredSums,
+    all: RequiredSums,
+    mut visit: impl FnMut(usize, &mut N),
+) {
+    if own.shift {
+        for (k, gradient) in sums.concentration_gradient.iter_mut().enumerate() {
+            visit(D + 1 + k, gradient);
         }
-        if own.suppression {
-            visit(all.held_at(D), &mut self.auxiliary.shifting_suppressed);
-        }
-        if own.stress {
-            for_each_symmetric_entry(&mut self.auxiliary.strain, all.strain_at(D), &mut visit);
-        }
-        if own.renormalization {
-            for_each_symmetric_entry(&mut self.auxiliary.renormalization, all.moment_at(D), &mut visit);
-        }
+        visit(2 * D + 1, &mut sums.position_divergence);
+    }
+    if own.suppression {
+        visit(all.held_at(D), &mut sums.shifting_suppressed);
+    }
+    if own.stress {
+        for_each_symmetric_entry(&mut sums.strain, all.strain_at(D), &mut visit);
+    }
+    if own.renormalization {
+        for_each_symmetric_entry(&mut sums.renormalization, all.moment_at(D), &mut visit);
     }
 }
 

@@ -2,7 +2,8 @@
 //! choice is compiled for itself.
 
 use super::{
-    PairSums, accumulators::RequiredSums, reference, reference::ReferenceParticle, simd, simd_layout::PackedParticles,
+    PairSums, RequestedSums, accumulators::RequiredSums, reference, reference::ReferenceParticle, simd,
+    simd_layout::PackedParticles,
 };
 use crate::{
     math::simd::{LaneRow, Level},
@@ -49,8 +50,15 @@ pub(super) trait PairTerms<const D: usize>: Send + Sync {
     #[cfg(feature = "gpu")]
     fn reach2(&self) -> f64;
 
-    /// In SIMD lanes: the sums of a slab and of the next one; returns the largest |v_ab·r_ab|/(r² + η²).
-    fn sum_slab(&self, level: Level, packed: &PackedParticles<D>, slab: &Slab, sums: &mut [LaneRow]) -> f32;
+    /// In SIMD lanes: the sums `requested` of a slab and of the next one; returns the largest |v_ab·r_ab|/(r² + η²).
+    fn sum_slab(
+        &self,
+        level: Level,
+        packed: &PackedParticles<D>,
+        requested: RequestedSums,
+        slab: &Slab,
+        sums: &mut [LaneRow],
+    ) -> f32;
 }
 
 /// Terms `T` between water particles and `W` between water and solids, under a kernel.
@@ -115,7 +123,14 @@ impl<K: Kernel, T: Term<D>, W: Term<D>, const D: usize> PairTerms<D> for Compile
         self.reach2
     }
 
-    fn sum_slab(&self, level: Level, packed: &PackedParticles<D>, slab: &Slab, sums: &mut [LaneRow]) -> f32 {
-        simd::sum_slab(self, level, packed, slab, sums)
+    fn sum_slab(
+        &self,
+        level: Level,
+        packed: &PackedParticles<D>,
+        requested: RequestedSums,
+        slab: &Slab,
+        sums: &mut [LaneRow],
+    ) -> f32 {
+        simd::sum_slab(self, level, packed, requested, slab, sums)
     }
 }

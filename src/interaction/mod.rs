@@ -76,6 +76,15 @@ pub struct StepLimits {
     pub approach_rate: f64,
 }
 
+/// Which sums a force pass computes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RequestedSums {
+    /// Acceleration and density rate.
+    Rates,
+    /// These, and the sums that only some terms need.
+    All,
+}
+
 /// A pair loop with its terms compiled in. One call a pass goes through the trait object; inside, no branch depends on
 /// the choice of terms.
 pub trait PairLoop<const D: usize>: Send + Sync {
@@ -100,9 +109,14 @@ pub trait PairLoop<const D: usize>: Send + Sync {
         let _ = properties;
     }
 
-    /// Sums over all pairs; the neighbour lists must hold. Writes the sums of the boundary particles near water to `boundary`, in
-    /// the order of [`NeighbourLists::boundary_near_fluid`], and keeps those of the water.
-    fn rates(&mut self, input: &PairLoopInput<'_, D>, boundary: &mut [PairSums<D>]) -> StepLimits;
+    /// The sums `requested` over all pairs; the neighbour lists must hold. Writes the sums of the boundary particles near water to
+    /// `boundary`, in the order of [`NeighbourLists::boundary_near_fluid`], and keeps those of the water.
+    fn rates(
+        &mut self,
+        input: &PairLoopInput<'_, D>,
+        requested: RequestedSums,
+        boundary: &mut [PairSums<D>],
+    ) -> StepLimits;
 
     /// Its terms as traces; `None` of the SIMD lanes.
     #[cfg(feature = "gpu")]
@@ -119,7 +133,8 @@ pub trait PairLoop<const D: usize>: Send + Sync {
     /// The sums of water particle `i`, gravity included, by the last [`PairLoop::rates`], which had these lists.
     fn fluid_sums(&self, neighbours: &NeighbourLists<D>, i: usize) -> PairSums<D>;
 
-    /// The sums of water particle `i` that only some terms need, by the last [`PairLoop::rates`], which had these lists.
+    /// The sums of water particle `i` that only some terms need, by the last [`PairLoop::rates`], which computed
+    /// [`RequestedSums::All`] and had these lists.
     fn auxiliary_sums(&self, neighbours: &NeighbourLists<D>, i: usize) -> AuxiliarySums<f64, D>;
 }
 

@@ -57,15 +57,20 @@ impl<N: Num, const D: usize> PairContribution<N, D> {
         self.pair.r2.select_below(reach2, self.pair.velocity_along_r.abs() * self.pair.inv_r2, zero)
     }
 
-    /// Adds it to the sums of `a` and `b`.
+    /// Adds it to the acceleration and density rate of `a` and `b`.
     #[inline(always)]
-    pub(super) fn add_to<L: Term<D>>(self, law: &L, a: &mut Accumulators<N, D>, b: &mut Accumulators<N, D>) {
-        for (k, force) in self.force.into_iter().enumerate() {
-            a.acceleration[k] = a.acceleration[k] + force;
-            b.acceleration[k] = b.acceleration[k] - force;
+    pub(super) fn add_rates(&self, a: &mut Accumulators<N, D>, b: &mut Accumulators<N, D>) {
+        for (k, force) in self.force.iter().enumerate() {
+            a.acceleration[k] = a.acceleration[k] + *force;
+            b.acceleration[k] = b.acceleration[k] - *force;
         }
         a.compression_rate = self.factor.fma(self.rate.0, a.compression_rate);
         b.compression_rate = self.factor.fma(self.rate.1, b.compression_rate);
+    }
+
+    /// Adds what `law` gives to the auxiliary sums of `a` and `b`.
+    #[inline(always)]
+    pub(super) fn add_auxiliary<L: Term<D>>(&self, law: &L, a: &mut Accumulators<N, D>, b: &mut Accumulators<N, D>) {
         if L::AUXILIARY {
             law.auxiliary(&self.pair, self.factor, &mut a.auxiliary, &mut b.auxiliary);
         }

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use rayon::prelude::*;
 
 use super::{
-    PairLoop, PairLoopInput, PairSums, StepLimits,
+    PairLoop, PairLoopInput, PairSums, RequestedSums, StepLimits,
     accumulators::{Accumulators, RequiredSums},
     boundary_sums::BoundarySums,
     compiled::{CompiledTerms, PairTerms},
@@ -111,9 +111,10 @@ fn add<K: Kernel, T, W, L: Term<D>, const D: usize>(
         a.side,
         b.side,
     );
-    let approach = pair.approach_rate(laws.reach2);
-    pair.add_to(law, sum, &mut Accumulators::filled_with(0.0));
-    approach
+    let none = &mut Accumulators::filled_with(0.0);
+    pair.add_rates(sum, none);
+    pair.add_auxiliary(law, sum, none);
+    pair.approach_rate(laws.reach2)
 }
 
 pub(super) fn sum_fluid<K: Kernel, T: Term<D>, W: Term<D>, const D: usize>(
@@ -242,13 +243,18 @@ impl<const D: usize> PairLoop<D> for ReferencePairLoop<D> {
         self.laws.set_gravity(&properties.gravity.into());
     }
 
-    fn rates(&mut self, input: &PairLoopInput<'_, D>, boundary: &mut [PairSums<D>]) -> StepLimits {
+    fn rates(
+        &mut self,
+        input: &PairLoopInput<'_, D>,
+        requested: RequestedSums,
+        boundary: &mut [PairSums<D>],
+    ) -> StepLimits {
         let lists = lists(input);
         self.set_nodes(input);
-        let needs = self.laws.required_sums();
+        let auxiliary = requested == RequestedSums::All && self.laws.required_sums().any_auxiliary();
         let start = Instant::now();
         self.fluid.resize(input.fluid.len(), PairSums::zero());
-        let count = if needs.any_auxiliary() { input.fluid.len() } else { 0 };
+        let count = if auxiliary { input.fluid.len() } else { 0 };
         self.auxiliary.resize(count, AuxiliarySums::filled_with(0.0));
         let (laws, nodes) = (&self.laws, [&self.nodes[0][..], &self.nodes[1][..]]);
         let g = input.properties.gravity;

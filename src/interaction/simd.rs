@@ -12,8 +12,8 @@ use fearless_simd::{SimdBase, SimdCvtFloat, SimdFloat};
 use rayon::prelude::*;
 
 use super::{
-    PairLoop, PairLoopInput, PairSums, StepLimits,
-    accumulators::{Accumulators, RequiredSums, for_each_symmetric_entry},
+    PairLoop, PairLoopInput, PairSums, RequestedSums, StepLimits,
+    accumulators::{Accumulators, RequiredSums, for_each_auxiliary, for_each_symmetric_entry},
     boundary_sums::{self, BoundarySums},
     compiled::{CompiledTerms, PairTerms},
     pair_contribution::PairContribution,
@@ -110,20 +110,18 @@ impl<const D: usize> SimdPairLoop<D> {
     }
 
     /// The auxiliary sums of the particle in `slot`, in SI.
+    #[inline(always)]
     fn auxiliary_sums_of(&self, slot: u32, needs: RequiredSums) -> AuxiliarySums<f64, D> {
-        let (sum, mut sums) = (self.of_slot(slot, needs.sum_rows(D)), Accumulators::filled_with(0.0));
-        sums.for_each_row(needs, needs, |row, x| *x = sum(row));
-        let Units { length, time } = self.units;
-        let AuxiliarySums { concentration_gradient, position_divergence, shifting_suppressed, strain, renormalization } =
-            sums.auxiliary;
-        let strain = strain.map(|row| row.map(|x| x / time));
-        AuxiliarySums {
-            concentration_gradient: concentration_gradient.map(|x| x / length),
-            position_divergence,
-            shifting_suppressed,
-            strain,
-            renormalization,
+        let (sum, mut sums) = (self.of_slot(slot, needs.sum_rows(D)), AuxiliarySums::filled_with(0.0));
+        for_each_auxiliary(&mut sums, needs, needs, |row, x| *x = sum(row));
+        let [per_length, per_time] = [1.0 / self.units.length, 1.0 / self.units.time];
+        if needs.shift {
+            sums.concentration_gradient.iter_mut().for_each(|x| *x *= per_length);
         }
+        if needs.stress {
+            for_each_symmetric_entry(&mut sums.strain, 0, &mut |_, x| *x *= per_time);
+        }
+        sums
     }
 }
 
@@ -139,14 +137,15 @@ fn works<'a>(clusters: &'a Clusters, lengths: &[usize], sums: &'a mut [LaneRow])
     works
 }
 
-/// Computes the sums of all slabs by `terms`; returns the largest |v_ab·r_ab|/(r² + η²), in the units of the pair loop.
+/// Computes the sums `requested` of all slabs by `terms`; returns the largest |v_ab·r_ab|/(r² + η²), in the units of the pair loop.
 fn sum_slabs<const D: usize>(
     terms: &dyn PairTerms<D>,
     level: Level,
     packed: &PackedParticles<D>,
+    requested: RequestedSums,
     works: Vec<(&Slab, &mut [LaneRow])>,
 ) -> f32 {
-    let sum = |(slab, sums)| terms.sum_slab(level, packed, slab, sums);
+    let sum = |(slab, sums)| terms.sum_slab(level, packed, requested, slab, sums);
     works.into_par_iter().with_max_len(1).map(sum).reduce(|| 0.0, |a, b| if b > a { b } else { a })
 }
 
@@ -190,7 +189,8 @@ impl<const D: usize> PairLoop<D> for SimdPairLoop<D> {
         let lengths = self.lay_out(clusters, needs.sum_rows(D));
         let start = Instant::now();
         if let Some(terms) = &self.moments {
-            sum_slabs(&**terms, self.level, &self.packed, works(clusters, &lengths, &mut self.sums));
+            let works = works(clusters, &lengths, &mut self.sums);
+            sum_slabs(&**terms, self.level, &self.packed, RequestedSums::All, works);
         }
         self.spent += start.elapsed();
         let slots = clusters.fluid_slots.par_iter().with_min_len(PARTICLES_PER_TASK);
@@ -204,16 +204,22 @@ impl<const D: usize> PairLoop<D> for SimdPairLoop<D> {
         self.laws.set_gravity(&properties.in_units(&self.units).gravity.into());
     }
 
-    fn rates(&mut self, input: &PairLoopInput<'_, D>, boundary: &mut [PairSums<D>]) -> StepLimits {
+    fn rates(
+        &mut self,
+        input: &PairLoopInput<'_, D>,
+        requested: RequestedSums,
+        boundary: &mut [PairSums<D>],
+    ) -> StepLimits {
         let clusters = clusters(input.neighbours);
         let needs = self.laws.required_sums();
         self.packed.pack(input, clusters, &self.units, std::mem::take(&mut self.has_water));
         if needs.input_rows(D) > 0 {
             self.packed.pack_rows(input, clusters, &self.units, needs);
         }
-        let lengths = self.lay_out(clusters, needs.sum_rows(D));
+        let lengths = self.lay_out(clusters, needs.requested_rows(D, requested));
         let start = Instant::now();
-        let closing = sum_slabs(&*self.laws, self.level, &self.packed, works(clusters, &lengths, &mut self.sums));
+        let works = works(clusters, &lengths, &mut self.sums);
+        let closing = sum_slabs(&*self.laws, self.level, &self.packed, requested, works);
         self.spent += start.elapsed();
         self.gravity = input.properties.gravity;
         let water = clusters.fluid_slots.par_iter().with_min_len(PARTICLES_PER_TASK);
@@ -250,21 +256,23 @@ impl<const D: usize> PairLoop<D> for SimdPairLoop<D> {
     }
 }
 
-/// Computes the sums of a slab by the terms `laws`.
+/// Computes the sums `requested` of a slab by the terms `laws`.
 pub(super) fn sum_slab<K: Kernel, T: Term<D>, W: Term<D>, const D: usize>(
     laws: &CompiledTerms<K, T, W>,
     level: Level,
     packed: &PackedParticles<D>,
+    requested: RequestedSums,
     slab: &Slab,
     sums: &mut [LaneRow],
 ) -> f32 {
-    simd::dispatch(level, SlabTask { laws: *laws, packed, slab, sums })
+    simd::dispatch(level, SlabTask { laws: *laws, packed, requested, slab, sums })
 }
 
 struct SlabTask<'a, K, T, W, const D: usize> {
     /// By value: the compiler then knows that writing a sum does not change it.
     laws: CompiledTerms<K, T, W>,
     packed: &'a PackedParticles<D>,
+    requested: RequestedSums,
     slab: &'a Slab,
     sums: &'a mut [LaneRow],
 }
@@ -296,6 +304,9 @@ struct SlabInput<'a, S: Simd, K, const D: usize> {
     first: usize,
     /// The needs of all terms together.
     needs: RequiredSums,
+    /// Whether the auxiliary sums of these needs are computed, and the rows of sums of a cluster.
+    auxiliary: bool,
+    sum_rows: usize,
 }
 
 impl<K: Kernel, T: Term<D>, W: Term<D>, const D: usize> SimdTask for SlabTask<'_, K, T, W, D> {
@@ -303,7 +314,7 @@ impl<K: Kernel, T: Term<D>, W: Term<D>, const D: usize> SimdTask for SlabTask<'_
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> f32 {
-        let Self { laws, packed, slab, sums } = self;
+        let Self { laws, packed, requested, slab, sums } = self;
         let Slab { first, middle, end, .. } = slab;
         let needs = const { RequiredSums::of_terms::<(T, W), D>() };
         let given = SlabInput {
@@ -317,6 +328,8 @@ impl<K: Kernel, T: Term<D>, W: Term<D>, const D: usize> SimdTask for SlabTask<'_
             corrected: &packed.corrected,
             first: *first,
             needs,
+            auxiliary: needs.any_auxiliary() && requested == RequestedSums::All,
+            sum_rows: needs.requested_rows(D, requested),
         };
         sums.fill(LaneRow::default());
         let mut closing = given.zero;
@@ -349,8 +362,13 @@ impl<K: Kernel, T: Term<D>, W: Term<D>, const D: usize> SimdTask for SlabTask<'_
                     let others = if is_water { boundary } else { water };
                     given.add_pairs::<_, true>(&laws.wall, &one, (base, others), sums, &mut sum, &mut closing);
                 }
-                let mine = &mut sums[(c - first) * needs.sum_rows(D)..][..needs.sum_rows(D)];
-                sum.for_each_row(needs, needs, |row, sum| mine[row].0[l] += simd::sum_lanes(*sum));
+                let mine = &mut sums[(c - first) * given.sum_rows..][..given.sum_rows];
+                sum.for_each_rate(|row, sum| mine[row].0[l] += simd::sum_lanes(*sum));
+                if given.auxiliary {
+                    for_each_auxiliary(&mut sum.auxiliary, needs, needs, |row, sum| {
+                        mine[row].0[l] += simd::sum_lanes(*sum)
+                    });
+                }
             }
         }
         simd::max_lane(closing)
@@ -434,7 +452,7 @@ impl<S: Simd, K: Kernel, const D: usize> SlabInput<'_, S, K, D> {
         closing: &mut f32x8<S>,
     ) {
         let (simd, zero, own) = (self.simd, self.zero, const { RequiredSums::of_terms::<L, D>() });
-        let rows = self.needs.sum_rows(D);
+        let rows = self.sum_rows;
         let nowhere = sums.len() - rows;
         for &entry in others {
             let place = base + usize::from(entry);
@@ -460,9 +478,14 @@ impl<S: Simd, K: Kernel, const D: usize> SlabInput<'_, S, K, D> {
             let at = if j == one.cluster { nowhere } else { place * rows };
             let theirs = &mut sums[at..][..rows];
             let mut b = Accumulators::filled_with(zero);
-            b.for_each_row(own, self.needs, |row, b| *b = load(&theirs[row].0));
-            pair.add_to(law, sum, &mut b);
-            b.for_each_row(own, self.needs, |row, b| b.store_array(&mut theirs[row].0));
+            b.for_each_rate(|row, b| *b = load(&theirs[row].0));
+            pair.add_rates(sum, &mut b);
+            b.for_each_rate(|row, b| b.store_array(&mut theirs[row].0));
+            if self.auxiliary && own.any_auxiliary() {
+                for_each_auxiliary(&mut b.auxiliary, own, self.needs, |row, b| *b = load(&theirs[row].0));
+                pair.add_auxiliary(law, sum, &mut b);
+                for_each_auxiliary(&mut b.auxiliary, own, self.needs, |row, b| b.store_array(&mut theirs[row].0));
+            }
         }
     }
 }

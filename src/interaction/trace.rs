@@ -5,7 +5,7 @@
 //! input of that name and |v_ab·r_ab|/(r² + η²).
 
 use super::{
-    accumulators::{Accumulators, RequiredSums, for_each_symmetric_entry},
+    accumulators::{Accumulators, RequiredSums, for_each_auxiliary, for_each_symmetric_entry},
     boundary_sums,
     compiled::CompiledTerms,
     pair_contribution::PairContribution,
@@ -132,7 +132,8 @@ fn inputs<const D: usize>(
     let sides = [side(recorder, "a", own, all), side(recorder, "b", own, all)];
     let mut sums = Accumulators::filled_with(recorder.constant(0.0));
     let others = sums;
-    sums.for_each_row(own, all, |row, sum| *sum = input("sum", row));
+    sums.for_each_rate(|row, sum| *sum = input("sum", row));
+    for_each_auxiliary(&mut sums.auxiliary, own, all, |row, sum| *sum = input("sum", row));
     let [eta2, reach2] = [eta2, reach2].map(|x| recorder.constant(x));
     PairInputs { geometry, sides, eta2, reach2, sums, others }
 }
@@ -146,7 +147,9 @@ fn results<const D: usize>(
     approach: Traced,
 ) {
     recorder.result("approach", Num::max(recorder.input("approach"), approach));
-    sums.for_each_row(own, all, |row, sum| recorder.result(&format!("sum{row}"), *sum));
+    let mut result = |row: usize, sum: &mut Traced| recorder.result(&format!("sum{row}"), *sum);
+    sums.for_each_rate(&mut result);
+    for_each_auxiliary(&mut sums.auxiliary, own, all, &mut result);
 }
 
 /// The trace of a pair under the law `law`.
@@ -161,7 +164,8 @@ pub(super) fn pair<K: Kernel, T, W, L: Term<D>, const D: usize>(
             inputs(recorder, needs, [terms.eta2, terms.reach2]);
         let pair = PairContribution::new::<K, L, true>((&terms.kernel, law), geometry, eta2, sides[0], sides[1]);
         let approach = pair.approach_rate(reach2);
-        pair.add_to(law, &mut sums, &mut others);
+        pair.add_rates(&mut sums, &mut others);
+        pair.add_auxiliary(law, &mut sums, &mut others);
         results(recorder, needs, &mut sums, approach);
     })
 }

@@ -17,7 +17,10 @@ use std::{
 use serde::{Deserialize, Serialize};
 
 use super::{IntervalMean, cannot_write, commit_partial, partial_path, sync_folder, write_partial};
-use crate::error::{Error, ErrorCode, ErrorKind, Result};
+use crate::{
+    error::{Error, ErrorCode, ErrorKind, Result},
+    plan::ControlChange,
+};
 
 /// File name of the last checkpoint in the run's folder.
 pub(crate) const LAST: &str = "checkpoint.bin";
@@ -29,7 +32,7 @@ pub(crate) const PREVIOUS: &str = "checkpoint.previous.bin";
 pub(crate) const PART: &str = "checkpoint.bin.part";
 
 const MAGIC: &[u8; 8] = b"PONTOON\n";
-const FORMAT: u32 = 9;
+const FORMAT: u32 = 10;
 
 /// Length of what precedes the packed data: magic word, format, two lengths and the hash.
 const HEADER: usize = 8 + 4 + 16 + 8;
@@ -63,6 +66,8 @@ pub struct Checkpoint {
     pub scene_hash: u64,
     /// Scene keys that were changed for this run, and their values.
     pub overrides: Vec<(String, String)>,
+    /// Changes of controls so far.
+    pub changes: Vec<ControlChange>,
     /// Simulated time, s.
     pub time: f64,
     /// Progress of the outputs.
@@ -87,6 +92,7 @@ impl Checkpoint {
             version: env!("CARGO_PKG_VERSION").into(),
             scene_hash: fnv1a(scene.as_bytes()),
             overrides: sets.to_vec(),
+            changes: vec![],
             time: 0.0,
             outputs: OutputPositions::default(),
             wall_seconds: 0.0,

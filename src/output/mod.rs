@@ -5,6 +5,7 @@ pub(crate) mod csv;
 #[doc(hidden)]
 pub mod frame;
 pub(crate) mod frame_sequence;
+pub(crate) mod gdf;
 #[doc(hidden)]
 pub mod manifest;
 pub(crate) mod interval_mean;

@@ -120,8 +120,111 @@ struct FrameSamples {
     x: Vec<Vec<f32>>,
 }
 
+/// The particles that an animation shows of a run, in all frames alike.
+pub(crate) struct ShownParticles {
+    dimension: usize,
+    /// The particle spacing, m.
+    dp: f32,
+    /// The names of the channels.
+    names: Vec<&'static str>,
+    /// The spacing of the shown particles divided by dp.
+    apart: usize,
+    /// The number of water particles in the first frame.
+    all: usize,
+    /// The identifiers of all particles of the first frame, and of the chosen ones, if particles are omitted.
+    known: HashSet<u32>,
+    chosen: HashSet<u32>,
+}
+
+impl ShownParticles {
+    /// Chooses the particles so that `frames` frames have about `samples` particles in total.
+    ///
+    /// # Errors
+    /// `File` if the first frame cannot be read.
+    pub(crate) fn choose(run: &RunData, film: &FrameSequence, samples: usize, frames: usize) -> Result<Self> {
+        let dimension = run.manifest.numeric_value("dimension").map_or(3, |x| x as usize).clamp(2, 3);
+        let dp = run.manifest.numeric_value("dp").unwrap_or(0.0) as f32;
+        let first = film.water(0)?;
+        let all = first.position.len().max(1);
+        // The sampling distance is a whole multiple of dp, so that a sampled lattice is again a lattice without gaps.
+        let fits = |apart: &usize| (all / apart.pow(dimension as u32)).max(1) * FRAMES[1].min(frames) <= samples;
+        let apart = if dp > 0.0 { (1..64).find(fits).unwrap_or(64) } else { 1 };
+        let names = channel_names(&first, dimension);
+        let mut shown = Self { dimension, dp, names, apart, all, known: HashSet::new(), chosen: HashSet::new() };
+        if let Some(distance) = shown.distance() {
+            // In cropped frames and beside inflows, particles appear that are absent from the first frame.
+            shown.known = first.id.iter().copied().collect();
+            let chosen = subsample(&first, Some(distance));
+            shown.chosen = chosen.into_iter().filter_map(|i| first.id.get(i).copied()).collect();
+        }
+        Ok(shown)
+    }
+
+    /// The number of particles that are shown in a frame, roughly.
+    pub(crate) fn count(&self) -> usize {
+        (self.all / self.apart.pow(self.dimension as u32)).max(1)
+    }
+
+    /// The spacing of the shown particles in multiples of dp, and dp (m), if particles are omitted.
+    fn distance(&self) -> Option<(f32, f32)> {
+        (self.apart > 1).then_some((self.apart as f32, self.dp))
+    }
+
+    /// Reads the shown particles of frame `number`.
+    fn read(&self, film: &FrameSequence, number: usize) -> Result<FrameSamples> {
+        let cloud = film.water(number)?;
+        let order = if self.apart == 1 && !cloud.id.is_empty() {
+            sorted_by_id(&cloud, |_| true)
+        } else if cloud.id.is_empty() || cloud.id.iter().any(|id| !self.known.contains(id)) {
+            subsample(&cloud, self.distance())
+        } else {
+            sorted_by_id(&cloud, |id| self.chosen.contains(id))
+        };
+        Ok(sample_frame(&cloud, film.times()[number], self.dimension, &order))
+    }
+
+    /// Adds the animation of the frames `numbers` to `blob`, and returns its description; without the boundary particles
+    /// unless `with_boundaries`.
+    ///
+    /// # Errors
+    /// `File` if a frame cannot be read.
+    pub(crate) fn encode(
+        &self,
+        film: &FrameSequence,
+        numbers: &[usize],
+        set: Option<&SceneGeometry>,
+        with_boundaries: bool,
+        blob: &mut BinaryData,
+    ) -> Result<Animation> {
+        let Self { dimension, dp, apart, all, .. } = *self;
+        let shown = numbers.iter().map(|&number| self.read(film, number)).collect::<Result<Vec<_>>>()?;
+        let channels = channels(&shown, self.names.clone(), dimension, dp);
+        let offset = blob.len();
+        let (alone, changes) = encode_frames(&shown, &channels, blob);
+        let ranges = field_ranges(&shown, &channels, set);
+        let skins = encode_boundaries(film, numbers, set, with_boundaries.then_some((dimension, dp)), blob)?;
+        let lines = encode_lines(film, numbers, dimension, dp, blob)?;
+        let counts = shown.iter().map(|frame| frame.id.len()).collect();
+        let times = shown.iter().map(|frame| frame.t).collect();
+        Ok(Animation {
+            times,
+            counts,
+            alone,
+            changes,
+            offset,
+            channels,
+            dp,
+            apart,
+            of: [film.times().len(), all],
+            skins,
+            lines,
+            ranges,
+        })
+    }
+}
+
 /// Adds the animation of `run` to `blob`, and returns its description. The total number of particles over all frames is
-/// about `samples`.
+/// about `samples`; particles are chosen as for at least `expected` frames.
 ///
 /// # Errors
 /// `File` if a frame cannot be read.
@@ -129,60 +232,15 @@ pub(crate) fn encode_animation(
     run: &RunData,
     film: &FrameSequence,
     samples: usize,
+    expected: usize,
     blob: &mut BinaryData,
 ) -> Result<Animation> {
-    let set = run.geometry.as_ref();
-    let dimension = run.manifest.numeric_value("dimension").map_or(3, |x| x as usize).clamp(2, 3);
-    let dp = run.manifest.numeric_value("dp").unwrap_or(0.0) as f32;
-    let first = film.water(0)?;
-    let all = first.position.len().max(1);
     let frames = film.times().len();
-    // The sampling distance is a whole multiple of dp, so that a sampled lattice is again a lattice without gaps.
-    let left = |apart: usize| (all / apart.pow(dimension as u32)).max(1);
-    let fits = |apart: &usize| left(*apart) * FRAMES[1].min(frames) <= samples;
-    let apart = if dp > 0.0 { (1..64).find(fits).unwrap_or(64) } else { 1 };
+    let shown = ShownParticles::choose(run, film, samples, frames.max(expected))?;
     let readable = (MOST_READ / film.bytes(frames / 2).max(1)) as usize;
-    let most = (samples / left(apart)).clamp(2, FRAMES[0]).min(readable.max(2)).min(frames);
+    let most = (samples / shown.count()).clamp(2, FRAMES[0]).min(readable.max(2)).min(frames);
     let kept: Vec<usize> = (0..most).map(|k| (k * (frames - 1)).checked_div(most - 1).unwrap_or(0)).collect();
-    let distance = (apart > 1).then_some((apart as f32, dp));
-    // In cropped frames and beside inflows, particles appear that are absent from the first frame.
-    let known: HashSet<u32> = first.id.iter().copied().collect();
-    let chosen: HashSet<u32> =
-        subsample(&first, distance).into_iter().filter_map(|i| first.id.get(i).copied()).collect();
-    let mut shown = Vec::new();
-    for &number in &kept {
-        let cloud = film.water(number)?;
-        let order = if apart == 1 && !cloud.id.is_empty() {
-            sorted_by_id(&cloud, |_| true)
-        } else if cloud.id.is_empty() || cloud.id.iter().any(|id| !known.contains(id)) {
-            subsample(&cloud, distance)
-        } else {
-            sorted_by_id(&cloud, |id| chosen.contains(id))
-        };
-        shown.push(sample_frame(&cloud, film.times()[number], dimension, &order));
-    }
-    let channels = channels(&shown, channel_names(&first, dimension), dimension, dp);
-    let offset = blob.len();
-    let (alone, changes) = encode_frames(&shown, &channels, blob);
-    let ranges = field_ranges(&shown, &channels, set);
-    let skins = encode_boundaries(film, &kept, set, dimension, dp, blob)?;
-    let lines = encode_lines(film, &kept, dimension, dp, blob)?;
-    let counts = shown.iter().map(|frame| frame.id.len()).collect();
-    let times = shown.iter().map(|frame| frame.t).collect();
-    Ok(Animation {
-        times,
-        counts,
-        alone,
-        changes,
-        offset,
-        channels,
-        dp,
-        apart,
-        of: [frames, all],
-        skins,
-        lines,
-        ranges,
-    })
+    shown.encode(film, &kept, run.geometry.as_ref(), true, blob)
 }
 
 /// Returns the indices of particles about `distance` apart: the first particle in each cell of that size, or all
@@ -377,32 +435,34 @@ fn rounded_range(low: f64, high: f64) -> [f64; 2] {
     [clean((low / unit).floor()), clean((high / unit).ceil())]
 }
 
-/// Adds the boundary particles in the local frames of their solids to `blob`, with the poses of the solids in the
-/// `kept` frames.
+/// Adds the poses of the solids in the `kept` frames to `blob`, after the boundary particles in the local frames of their
+/// solids, if their `lattice` is given: the dimension and dp (m).
 fn encode_boundaries(
     film: &FrameSequence,
     kept: &[usize],
     set: Option<&SceneGeometry>,
-    dimension: usize,
-    dp: f32,
+    lattice: Option<(usize, f32)>,
     blob: &mut BinaryData,
 ) -> Result<BoundaryAnimation> {
     let Some(set) = set else { return Ok(BoundaryAnimation::default()) };
     let first = film.solids(0)?;
     let members: Vec<Vec<usize>> = (0..set.solids.len()).map(|i| points_of_solid(&first, i)).collect();
-    let local: Vec<[f64; 3]> = members
-        .iter()
-        .zip(&set.solids)
-        .flat_map(|(own, solid)| own.iter().map(|&k| solid.start.to_local(&first.position[k])))
-        .collect();
-    let (mut channels, mut offsets) = (Vec::new(), Vec::new());
-    for (c, name) in AXES.into_iter().enumerate().take(dimension) {
-        let x: Vec<f32> = local.iter().map(|x| x[c] as f32).collect();
-        let (min, max) = x.iter().fold((f32::INFINITY, f32::NEG_INFINITY), |(a, b), x| (a.min(*x), b.max(*x)));
-        let step = (PLACES * dp).max((max - min) / 65_000.0);
-        let channel = QuantisedChannel { name, min: if min.is_finite() { min } else { 0.0 }, step };
-        offsets.push(blob.push_byte_planes(&quantise(&channel, &x)));
-        channels.push(channel);
+    let mut skins = BoundaryAnimation { counts: vec![0; members.len()], ..BoundaryAnimation::default() };
+    if let Some((dimension, dp)) = lattice {
+        let local: Vec<[f64; 3]> = members
+            .iter()
+            .zip(&set.solids)
+            .flat_map(|(own, solid)| own.iter().map(|&k| solid.start.to_local(&first.position[k])))
+            .collect();
+        for (c, name) in AXES.into_iter().enumerate().take(dimension) {
+            let x: Vec<f32> = local.iter().map(|x| x[c] as f32).collect();
+            let (min, max) = x.iter().fold((f32::INFINITY, f32::NEG_INFINITY), |(a, b), x| (a.min(*x), b.max(*x)));
+            let step = (PLACES * dp).max((max - min) / 65_000.0);
+            let channel = QuantisedChannel { name, min: if min.is_finite() { min } else { 0.0 }, step };
+            skins.offsets.push(blob.push_byte_planes(&quantise(&channel, &x)));
+            skins.channels.push(channel);
+        }
+        skins.counts = members.iter().map(Vec::len).collect();
     }
     let mut poses = Vec::new();
     for &number in kept {
@@ -412,12 +472,8 @@ fn encode_boundaries(
             poses.extend(pose.at.iter().chain(pose.turn.iter().flatten()).map(|x| *x as f32));
         }
     }
-    Ok(BoundaryAnimation {
-        channels,
-        offsets,
-        counts: members.iter().map(Vec::len).collect(),
-        poses: blob.push_floats(poses),
-    })
+    skins.poses = blob.push_floats(poses);
+    Ok(skins)
 }
 
 /// Adds the nodes of the mooring lines in the frames `numbers` to `blob`. Returns `None` if no frame contains a line.

@@ -13,6 +13,7 @@ mod colour;
 mod canvas;
 mod summary_tables;
 mod animation;
+pub(crate) mod live;
 mod text;
 mod run_data;
 mod outline;

@@ -1,6 +1,7 @@
 //! Assembles the page: text and tables in HTML, the data of players and plots, and the scripts.
 
 use serde::Serialize;
+use serde_json::Value;
 
 use super::{
     MAX_PAGE_BYTES,
@@ -26,6 +27,20 @@ const SCRIPT: [&str; 6] = [
     include_str!("assets/plots.js"),
 ];
 
+/// What a live page has in addition.
+const LIVE_STYLE: &str = include_str!("assets/live.css");
+const LIVE_SCRIPT: &str = include_str!("assets/live.js");
+
+/// A sentence of the footer, and what a live page says there.
+const ALONE: &str = "This file stands alone: it loads nothing and sends nothing.";
+const LIVE: &str = "This page follows a run in progress on this machine; the run writes its own page at its end.";
+
+/// The number of samples of a live page: few enough for any page, and for the memory of a browser.
+pub(crate) const LIVE_SAMPLES: usize = 2_000_000;
+
+/// The number of frames for which a live page chooses its particles at least.
+pub(crate) const LIVE_FRAMES: usize = 60;
+
 /// The number of samples (a particle in a frame) that fit into a page. Each sample needs at most five bytes; the
 /// largest observed size is four bytes.
 const SAMPLES: f64 = (MAX_PAGE_BYTES - 2_000_000) as f64 / 5.0;
@@ -35,6 +50,8 @@ const SAMPLES: f64 = (MAX_PAGE_BYTES - 2_000_000) as f64 / 5.0;
 struct PageData<'a> {
     maps: FieldColourMaps,
     runs: Vec<PageRun<'a>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    live: Option<&'a Value>,
 }
 
 /// The data of a run for the scripts.
@@ -93,7 +110,7 @@ impl<'a> From<&'a SceneGeometry> for PageScene<'a> {
 pub(crate) fn page_html(runs: &[RunData]) -> Result<String> {
     let mut samples = SAMPLES;
     loop {
-        let text = page_with_samples(runs, (samples / runs.len() as f64) as usize)?;
+        let text = page_with_samples(runs, (samples / runs.len() as f64) as usize, None)?;
         if text.len() <= MAX_PAGE_BYTES || samples < 1e4 {
             return Ok(text);
         }
@@ -101,12 +118,22 @@ pub(crate) fn page_html(runs: &[RunData]) -> Result<String> {
     }
 }
 
-/// Returns the page with about `samples` samples for each run.
-fn page_with_samples(runs: &[RunData], samples: usize) -> Result<String> {
+/// Returns the page of a `run` in progress, whose scripts find `live` in their data.
+///
+/// # Errors
+/// As [`page_html`].
+pub(crate) fn live_page_html(run: &RunData, live: &Value) -> Result<String> {
+    page_with_samples(std::slice::from_ref(run), LIVE_SAMPLES, Some(live))
+}
+
+/// Returns the page with about `samples` samples for each run; it is a live page if it has `live` data.
+fn page_with_samples(runs: &[RunData], samples: usize, live: Option<&Value>) -> Result<String> {
     let mut blob = BinaryData::default();
-    let mut told = PageData { maps: FIELD_COLOUR_MAPS, runs: Vec::new() };
+    let mut told = PageData { maps: FIELD_COLOUR_MAPS, runs: Vec::new(), live };
+    let expected = if live.is_some() { LIVE_FRAMES } else { 0 };
     for run in runs {
-        let reel = run.frames.as_ref().map(|film| encode_animation(run, film, samples, &mut blob)).transpose()?;
+        let reel = run.frames.as_ref().map(|film| encode_animation(run, film, samples, expected, &mut blob));
+        let reel = reel.transpose()?;
         told.runs.push(PageRun {
             name: &run.name,
             title: &run.manifest.title,
@@ -120,21 +147,22 @@ fn page_with_samples(runs: &[RunData], samples: usize) -> Result<String> {
     }
     let data = serde_json::to_string(&told).unwrap_or_default().replace('<', "\\u003c");
     let (title, body) = match runs {
-        [run] => (run.manifest.title.clone(), single_run(run, &told.runs[0])),
+        [run] => (run.manifest.title.clone(), single_run(run, &told.runs[0], live.is_some())),
         _ => (format!("{} runs compared", runs.len()), comparison(runs, &told.runs)),
     };
     let parts = [
         ("{{title}}", escape(&title)),
-        ("{{style}}", STYLE.concat()),
+        ("{{style}}", STYLE.concat() + live.map_or("", |_| LIVE_STYLE)),
         ("{{body}}", body),
         ("{{version}}", env!("CARGO_PKG_VERSION").to_string()),
-        ("{{script}}", SCRIPT.join("\n")),
+        ("{{script}}", SCRIPT.join("\n") + live.map_or("", |_| LIVE_SCRIPT)),
         ("{{data}}", data),
         ("{{blob}}", blob.to_base64()),
     ];
     // The placeholders are replaced in order from the front, so that text of the user is never searched for a
     // placeholder.
-    let (mut text, mut rest) = (String::new(), FRAME);
+    let frame = if live.is_some() { FRAME.replace(ALONE, LIVE) } else { FRAME.into() };
+    let (mut text, mut rest) = (String::new(), frame.as_str());
     for (sign, part) in parts {
         let (before, after) = rest.split_once(sign).unwrap_or((rest, ""));
         text += before;
@@ -169,11 +197,13 @@ fn player_html(told: &[PageRun]) -> String {
     format!("<div id=\"deck\"></div>\n{notes}")
 }
 
-fn single_run(run: &RunData, told: &PageRun) -> String {
+fn single_run(run: &RunData, told: &PageRun, live: bool) -> String {
     let figures = summary_tables::summary_rows(&run.tables);
     let held = sections::verdicts(std::slice::from_ref(run));
     let charts = |id: &str, any: bool| if any { format!("<div id=\"{id}\"></div>\n") } else { String::new() };
-    sections::page_head(run)
+    let state = if live { "<div id=\"live\"></div>\n".into() } else { sections::failure(&run.manifest) };
+    sections::page_head(run, live)
+        + &state
         + &sections::warnings(std::slice::from_ref(run))
         + &section("player", "Player", &player_html(std::slice::from_ref(told)))
         + &section("checks", "Against references", &(held + &charts("held", !told.checks.is_empty())))

@@ -64,22 +64,22 @@ fn program_version(m: &Manifest) -> String {
     }
 }
 
-/// Returns the header of a page of one run.
-pub(crate) fn page_head(run: &RunData) -> String {
+/// Returns the header of a page of one run. A `live` page shows the progress itself.
+pub(crate) fn page_head(run: &RunData, live: bool) -> String {
     let (word, class) = status_badge(&run.manifest);
-    let facts =
-        facts(run).iter().map(|(k, x)| format!("<div><dt>{k}</dt><dd>{}</dd></div>", escape(x))).collect::<String>();
+    let mut facts = facts(run);
+    facts.retain(|(label, _)| !live || !["Simulated", "Wall time"].contains(label));
+    let facts = facts.iter().map(|(k, x)| format!("<div><dt>{k}</dt><dd>{}</dd></div>", escape(x))).collect::<String>();
     format!(
         "<p class=\"over\">pontoon · {}</p>\n<h1>{}</h1>\n<p><span class=\"badge {class}\">{word}</span></p>\n\
-         <dl class=\"facts\">{facts}</dl>\n{}",
+         <dl class=\"facts\">{facts}</dl>\n",
         escape(&run.name),
-        escape(&run.manifest.title),
-        failure(&run.manifest)
+        escape(&run.manifest.title)
     )
 }
 
 /// Returns the reason for the early end of a run, with the report on the particle or body.
-fn failure(m: &Manifest) -> String {
+pub(crate) fn failure(m: &Manifest) -> String {
     let reached = format!("It reached t = {} s of {} s.", four_digits(m.simulated_s), m.until_s);
     let said = match m.status {
         RunStatus::Finished => return String::new(),

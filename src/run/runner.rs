@@ -3,7 +3,9 @@
 use std::{path::PathBuf, time::Instant};
 
 use super::{
-    FinalBodyState, Progress, RunObserver, RunOrigin, RunOutcome, RunStart, device,
+    FinalBodyState, Progress, RunObserver, RunOrigin, RunOutcome, RunRequest, RunStart,
+    controls::Controls,
+    device,
     energy_drift::DriftMonitor,
     lock::Lock,
     outputs::{Outputs, series_folder},
@@ -30,6 +32,7 @@ use crate::{
 pub(crate) struct Runner<const D: usize> {
     sim: Simulation<D>,
     outputs: Outputs<D>,
+    controls: Controls,
     drift_monitor: Option<DriftMonitor>,
     checks: Vec<ReferenceCheck>,
     plan: Plan,
@@ -67,7 +70,7 @@ where
         let preflight = preflight::preflight(&sim, &plan, initial_water, &columns);
         let mut warnings = preflight.with_file_notes(&file_notes).warnings();
         let notes = file_notes.iter().filter(|note| !note.is_warning);
-        let notes = notes.map(|note| format!("{}: {}", note.what, note.remedy)).collect();
+        let mut notes: Vec<String> = notes.map(|note| format!("{}: {}", note.what, note.remedy)).collect();
         let in_force = scene.to_toml()?;
         let values = scene.resolve()?.into_iter().map(ValueInForce::from).collect();
         let (folder, mut checkpoint, resumed, warning, lock) = match origin {
@@ -87,6 +90,7 @@ where
         }
         sim.store_rollback_states_in(&folder);
         let outputs = Outputs::new(&plan, probes, &folder, resumed.then_some(&checkpoint.outputs))?;
+        let controls = Controls::new(&plan.controls, &sim)?;
         let sim = device::place_on_device(scene, sim, &outputs)?;
         if resumed {
             run_folder::remove_failure_report(&folder)?;
@@ -95,6 +99,7 @@ where
         // The list of a killed run may be ahead of its checkpoint.
         let listed = if resumed && folder.join(removed_particles::REMOVED).exists() { usize::MAX } else { 0 };
         warnings.extend(warning);
+        notes.extend(checkpoint.changes.iter().map(ToString::to_string));
         warnings.extend(sim.rollbacks().iter().map(ToString::to_string));
         let (name, version) = Dim::<D>::VERSION;
         let engine = format!("{name} {version}");
@@ -104,6 +109,7 @@ where
         Ok(Self {
             sim,
             outputs,
+            controls,
             drift_monitor: DriftMonitor::from_plan(&plan, D),
             checks,
             plan,
@@ -128,7 +134,8 @@ impl<const D: usize> Runner<D> {
     pub(crate) fn run(mut self, renamed: &[RenamedName], watch: &mut dyn RunObserver) -> Result<RunOutcome> {
         self.update_manifest();
         self.manifest.write(&self.folder)?;
-        watch.start(&RunStart { folder: &self.folder, manifest: &self.manifest, renamed });
+        let controls = self.controls.readings(&self.sim);
+        watch.start(&RunStart { folder: &self.folder, manifest: &self.manifest, renamed, controls: &controls });
         match self.advance(watch) {
             Ok(status) => {
                 self.manifest.status = status;
@@ -158,7 +165,7 @@ impl<const D: usize> Runner<D> {
             self.outputs.write_due(&self.sim)?;
         }
         let until = self.manifest.until_s;
-        let mut going = watch.step(&self.progress());
+        let mut going = self.report_step(watch)?;
         while going && self.sim.time() < until {
             if self.sim.needs_rollback_state() {
                 self.rollback_positions.retain(|(time, _)| self.sim.has_rollback_state(*time));
@@ -186,7 +193,7 @@ impl<const D: usize> Runner<D> {
                 self.update_manifest();
                 self.manifest.write(&self.folder)?;
             }
-            going = watch.step(&self.progress());
+            going = self.report_step(watch)?;
         }
         if self.sim.time() < until {
             self.save_checkpoint()?;
@@ -199,6 +206,30 @@ impl<const D: usize> Runner<D> {
         Ok(RunStatus::Finished)
     }
 
+    /// Reports the progress to `watch` and fulfils its requests. Returns whether the run goes on.
+    fn report_step(&mut self, watch: &mut dyn RunObserver) -> Result<bool> {
+        let mut going = watch.step(&self.progress());
+        while going && let Some(request) = watch.request() {
+            match request {
+                RunRequest::Checkpoint => {
+                    self.save_checkpoint()?;
+                    self.write_removed()?;
+                    self.update_manifest();
+                    self.manifest.write(&self.folder)?;
+                }
+                RunRequest::Stop => going = false,
+                RunRequest::Set { control, value } => {
+                    if let Some(change) = self.controls.set(&mut self.sim, control, value) {
+                        self.manifest.notes.push(change.to_string());
+                        watch.control_changed(&change);
+                        self.checkpoint.changes.push(change);
+                    }
+                }
+            }
+        }
+        Ok(going)
+    }
+
     /// Follows the simulation back if it has been rescued more often than the `known` times: tells whoever watches, and the
     /// manifest, and takes back what was written of the course that ended in the alarm.
     fn follow_rollback(&mut self, known: usize, watch: &mut dyn RunObserver) -> Result<()> {
@@ -206,6 +237,7 @@ impl<const D: usize> Runner<D> {
             return Ok(());
         };
         watch.rolled_back(&how);
+        self.controls.repeat(&mut self.sim, &self.checkpoint.changes);
         self.manifest.warnings.push(how.to_string());
         // As many may leave again, and be others.
         self.removed_written = if self.removed_written > 0 { usize::MAX } else { 0 };

@@ -171,7 +171,7 @@ impl<const D: usize> PlacedSolids<D> {
     }
 
     /// Returns solid number `i` at `pose` in `water`, whose still level outside is `level` (m), with its hollows.
-    fn hull_at(&self, i: usize, pose: &Pose<D>, level: f64, water: &[WaterBody<D>]) -> Hull<'_, D> {
+    pub(super) fn hull_at(&self, i: usize, pose: &Pose<D>, level: f64, water: &[WaterBody<D>]) -> Hull<'_, D> {
         let mut hull = Hull::new(&self.specs[i].shape);
         for hollow in self.enclosures[i].as_ref().map_or(&[][..], |enclosure| &enclosure.hollows) {
             match self.level_in(i, hollow, pose, water) {

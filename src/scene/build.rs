@@ -25,7 +25,7 @@ use crate::{
     },
     math::{Bounds, Pose, Vector},
     model::{Model, TimeScheme},
-    plan::{FramesPlan, Plan},
+    plan::{ControlPlan, FramesPlan, Plan},
     simulation::{Driving, OpenBoundary, Setup},
     solid::{Constraints, Role, SolidSpec, TimeFunction},
     system::{Periodic, buffer_length, check_open_boundary, periodic},
@@ -61,12 +61,12 @@ pub struct InitialWater<const D: usize> {
 /// All parts of a simulation except for the particles.
 pub(crate) struct SceneParts<const D: usize> {
     /// The scene with all defaults.
-    scene: Scene,
-    water: Vec<WaterBody<D>>,
-    still: StillWaterLevel,
+    pub(super) scene: Scene,
+    pub(super) water: Vec<WaterBody<D>>,
+    pub(super) still: StillWaterLevel,
     gravity_law: Vec<TimeFunction>,
-    model: Model,
-    placed: PlacedSolids<D>,
+    pub(super) model: Model,
+    pub(super) placed: PlacedSolids<D>,
     constraints: Constraints<D>,
     domain: Option<Bounds<D>>,
     periodic: Periodic<D>,
@@ -304,8 +304,21 @@ impl Scene {
             statistics: statistics
                 .map(|(i, statistic)| statistic.build(ctx, &format!("statistic.{i}"), &series, still))
                 .collect::<Result<_>>()?,
+            controls: self.controls(ctx)?,
             folder: self.origin.folder.clone(),
         })
+    }
+
+    /// Returns the numbers that may be changed during a run.
+    pub(super) fn controls(&self, ctx: &Context) -> Result<Vec<ControlPlan>> {
+        let controls = self.control.iter().enumerate();
+        let built: Vec<ControlPlan> = controls
+            .map(|(i, control)| control.build(ctx, &format!("control.{i}"), &self.joint, &self.force))
+            .collect::<Result<_>>()?;
+        match (1..built.len()).find(|&i| built[..i].iter().any(|other| other.target == built[i].target)) {
+            Some(i) => Err(ctx.error_at(&format!("control.{i}.key"), format!("{} is controlled twice", built[i].key))),
+            None => Ok(built),
+        }
     }
 }
 

@@ -21,6 +21,7 @@ mod mesh;
 #[cfg(any(feature = "cli", test))]
 pub(crate) mod moordyn;
 mod overrides;
+mod potential_flow;
 mod record;
 mod resolve;
 mod schema;
@@ -34,6 +35,7 @@ mod section {
     pub(crate) mod analysis;
     pub(crate) mod ballast;
     pub(crate) mod contact;
+    pub(crate) mod control;
     pub(crate) mod domain;
     pub(crate) mod driving;
     pub(crate) mod force_element;
@@ -76,6 +78,7 @@ pub use {
     schema::schema,
     section::ballast::BallastConfig,
     section::contact::ContactConfig,
+    section::control::ControlConfig,
     section::driving::{CurrentConfig, TowedConfig},
     section::force_element::{ForceConfig, RopeConfig, SpringConfig},
     section::joint::{JointConfig, JointKindConfig, MotorConfig},
@@ -96,10 +99,14 @@ pub use {
 #[doc(hidden)]
 pub use {
     crate::math::{BoxConfig, NumberOrArray, table::ColumnName},
-    crate::plan::{Align, CheckPlan, FramesPlan, Plan, Reference, Score, StatisticKind, StatisticPlan},
+    crate::plan::{
+        Align, CheckPlan, ControlChange, ControlPlan, ControlTarget, FramesPlan, MotorQuantity, Plan, Reference, Score,
+        StatisticKind, StatisticPlan,
+    },
     crate::probe::{GaugeConfig, GaugeSurface, PatchConfig, PointRowConfig, PointsConfig, ProbePlan, SectionConfig},
     build::SceneLayout,
     build::SizeEstimate,
+    potential_flow::{PanelledBody, PanelledScene, WaterForPanels},
     resolve::ResolvedValue,
     section::analysis::{CheckConfig, RaoConfig, StatisticConfig},
     section::domain::{GuardConfig, PeriodicConfig, SymmetryConfig},
@@ -199,6 +206,9 @@ pub struct Scene {
     /// Rules for pairs of solids that touch.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub contact: Vec<ContactConfig>,
+    /// Numbers of motors and forces that may be changed during a run.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub control: Vec<ControlConfig>,
     /// The equations of the water.
     #[serde(default)]
     pub model: ModelConfig,
@@ -349,6 +359,12 @@ impl Scene {
     /// Returns the same scene with contact properties of one more pair.
     pub fn contact(mut self, contact: ContactConfig) -> Self {
         self.contact.push(contact);
+        self
+    }
+
+    /// Returns the same scene with one more number that may be changed during a run.
+    pub fn control(mut self, control: ControlConfig) -> Self {
+        self.control.push(control);
         self
     }
 

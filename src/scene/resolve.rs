@@ -108,6 +108,7 @@ impl Scene {
         each(&self.wind, "wind", |wind, key| wind.verify(ctx, key, solids))?;
         each(&self.force, "force", |force, key| force.verify(ctx, key, solids))?;
         contact::verify(ctx, &self.contact, solids)?;
+        self.controls(ctx)?;
         self.model.verify(ctx)?;
         self.time.verify(ctx)?;
         self.verify_probes()?;
@@ -318,7 +319,7 @@ impl Scene {
 }
 
 /// The order in which values are listed.
-const ORDER: [&str; 33] = [
+const ORDER: [&str; 34] = [
     "title",
     "dimension",
     "dp",
@@ -345,6 +346,7 @@ const ORDER: [&str; 33] = [
     "force",
     "wind",
     "contact",
+    "control",
     "model",
     "time",
     "probe",

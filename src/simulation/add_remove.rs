@@ -4,6 +4,7 @@ use super::{Simulation, external_bodies::refuse_ballast};
 use crate::{
     coupling::AcousticAddedMass,
     error::{Error, ErrorKind, Result},
+    interaction::RequestedSums,
     model::Dimension,
     solid::{Constraints, Dim, HasEngine as _, Kinematics, Role, Solid, SolidSpec, containment::depth_inside_mesh},
     system::Reordering,
@@ -218,6 +219,6 @@ impl<const D: usize> Simulation<D> {
         );
         let log = std::mem::take(&mut self.rollback.log);
         self.rollback.restart(log);
-        self.system.update_rates();
+        self.system.update_rates(RequestedSums::Rates);
     }
 }

@@ -3,7 +3,10 @@
 use super::Simulation;
 use crate::{
     error::{Error, ErrorCode, Result, nearest_name},
-    solid::{ConstraintEvent, JointReading, JointSpec, LineReading, MooringReading, MotorCommand, SpringParameters},
+    solid::{
+        ConstraintEvent, ForceCommand, JointReading, JointSpec, LineReading, MooringReading, MotorCommand,
+        SpringParameters,
+    },
 };
 
 impl<const D: usize> Simulation<D> {
@@ -21,6 +24,14 @@ impl<const D: usize> Simulation<D> {
     /// As [`Simulation::find_joint`].
     pub fn find_spring(&self, name: &str) -> Result<usize> {
         find_by_name("spring", name, self.system.constraints().springs.iter().map(|spring| spring.name.as_str()))
+    }
+
+    /// Number of the force called `name`.
+    ///
+    /// # Errors
+    /// As [`Simulation::find_joint`].
+    pub fn find_force(&self, name: &str) -> Result<usize> {
+        find_by_name("force", name, self.system.constraints().forces.iter().map(|force| force.name.as_str()))
     }
 
     /// Beginnings and ends of joints, springs, ropes and solids so far, in their order.
@@ -103,6 +114,22 @@ impl<const D: usize> Simulation<D> {
     /// it back to that. A checkpoint keeps it.
     pub fn set_motor(&mut self, joint: usize, drive: Option<MotorCommand>) {
         self.bodies.constraints_mut().set_motor(joint, drive);
+    }
+
+    /// The command of the motor of joint number `joint` now, set by a program or its own; `None` if it has no motor.
+    pub fn motor_command(&self, joint: usize) -> Option<MotorCommand> {
+        self.bodies.constraints().motor_command(joint, self.clock.time)
+    }
+
+    /// Gives force number `force` these components from now on, in place of those that it was made with; `None` gives it back to
+    /// those. A checkpoint keeps them.
+    pub fn set_force(&mut self, force: usize, command: Option<ForceCommand>) {
+        self.bodies.constraints_mut().set_force(force, command);
+    }
+
+    /// The components of force number `force` now, set by a program or its own.
+    pub fn force_command(&self, force: usize) -> ForceCommand {
+        self.bodies.constraints().force_command(force, self.clock.time)
     }
 
     /// Stiffness, damping and rest length of spring number `spring`, to be read or changed from now on. A checkpoint keeps them.

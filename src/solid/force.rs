@@ -1,5 +1,7 @@
 //! Prescribed forces and torques on a free solid, such as wind or a thruster.
 
+use serde::{Deserialize, Serialize};
+
 use crate::{
     math::{Bivector, Vector, rotated_tensor},
     solid::{Kinematics, Lifetime, Load, TimeFunction},
@@ -31,6 +33,15 @@ pub struct ForceSpec<const D: usize> {
     pub rotates_with_solid: bool,
     /// When it acts; it does not break.
     pub lifetime: Lifetime,
+}
+
+/// The components of a force and a torque at an instant; the fields are those of [`ForceSpec`].
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ForceCommand {
+    /// Components of the force, N (N/m in 2-D).
+    pub force: Vec<f64>,
+    /// Axial components of the torque, N m (N m/m in 2-D).
+    pub torque: Vec<f64>,
 }
 
 impl<const D: usize> ForceSpec<D> {
@@ -81,15 +92,27 @@ impl<const D: usize> ForceSpec<D> {
         Self { lifetime, ..self }
     }
 
-    /// The load about the centre of the solid, which started as `start` and is now as `now`, at time `t` (s).
-    pub(super) fn load_at(&self, start: &Kinematics<D>, now: &Kinematics<D>, t: f64) -> Load<D> {
+    /// Its components at time `t` (s).
+    pub fn command_at(&self, t: f64) -> ForceCommand {
+        let values = |laws: &[TimeFunction]| laws.iter().map(|law| law.value_and_rate(t).0).collect();
+        ForceCommand { force: values(&self.force), torque: values(&self.torque) }
+    }
+
+    /// The load about the centre of the solid, which started as `start` and is now as `now`, at time `t` (s), with the components
+    /// that a program has `set` or its own.
+    pub(super) fn load_at(
+        &self,
+        start: &Kinematics<D>,
+        now: &Kinematics<D>,
+        set: Option<&ForceCommand>,
+        t: f64,
+    ) -> Load<D> {
         if !self.lifetime.contains(t) {
             return Load::zero();
         }
-        let value = |laws: &[TimeFunction], i: usize| laws.get(i).map_or(0.0, |law| law.value_and_rate(t).0);
-        let mut force = Vector::from_fn(|i, _| value(&self.force, i));
-        let turns: Vec<f64> = (0..self.torque.len()).map(|i| value(&self.torque, i)).collect();
-        let mut torque = Bivector::from_axial(&turns);
+        let ForceCommand { force, torque } = set.cloned().unwrap_or_else(|| self.command_at(t));
+        let mut force = Vector::from_fn(|i, _| force.get(i).copied().unwrap_or(0.0));
+        let mut torque = Bivector::from_axial(&torque);
         if self.rotates_with_solid {
             let turn = now.pose.rotation * start.pose.rotation.transpose();
             (force, torque) = (turn * force, Bivector(rotated_tensor(&turn, &torque.0)));

@@ -134,6 +134,42 @@ impl<'a, const D: usize> Hull<'a, D> {
     }
 }
 
+impl Hull<'_, 3> {
+    /// Hydrostatic stiffness over ρ g, about the point `reference` (m) of the body: the entry of row i and column j is the loss of
+    /// buoyancy i (vertical force; moments about x and y) over a small motion j (heave; turns about x, y and z). Forces over
+    /// displacements in m², moments over displacements in m³, moments over turns in m⁴. The weight is not included; about the centre
+    /// of mass it has no part. Rows and columns: surge, sway, heave, roll, pitch, yaw.
+    ///
+    /// The derivatives are central differences over ±1e-4 of the size of the hull and ±1e-4 rad.
+    pub(crate) fn stiffness(&self, pose: &Pose<3>, reference: &Vector<3>, level: f64) -> [[f64; 6]; 6] {
+        let step = 1e-4;
+        let length = self.shape.bounds().size().max();
+        let buoyancy = |motion: usize, sign: f64| {
+            let mut moved = *pose;
+            if motion == 2 {
+                moved.position[2] += sign * step * length;
+            } else {
+                let axis: [f64; 3] = std::array::from_fn(|i| if i + 3 == motion { sign * step } else { 0.0 });
+                let turn = Bivector::from_axial(&axis).exp();
+                moved.rotation = turn * pose.rotation;
+                moved.position = reference + turn * (pose.position - reference);
+            }
+            let (volume, centroid) = self.submerged_volume(&moved, level);
+            let arm = centroid - reference;
+            [0.0, 0.0, volume, volume * arm[1], -volume * arm[0], 0.0]
+        };
+        let loads: [[f64; 6]; 6] = std::array::from_fn(|motion| {
+            if motion < 2 {
+                return [0.0; 6];
+            }
+            let (more, less) = (buoyancy(motion, 1.0), buoyancy(motion, -1.0));
+            let span = 2.0 * step * if motion == 2 { length } else { 1.0 };
+            std::array::from_fn(|load| (less[load] - more[load]) / span)
+        });
+        std::array::from_fn(|load| loads.map(|of_motion| of_motion[load]))
+    }
+}
+
 /// Change of the pose's last coordinate (m) that floats the body as posed: ρ₀ V_submerged = m.
 ///
 /// `mass`: kg (kg/m in 2-D); `rho0`: density of the water, kg/m³; `level`: height of the still water, m.

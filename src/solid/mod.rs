@@ -25,7 +25,7 @@ pub use constraint::{
     JointReading, JointSpec, Lifetime, LineEnd, LineReading, Mobility, Motor, MotorCommand, RopeSpec, SpringParameters,
     SpringSpec, TimedRemoval,
 };
-pub use force::ForceSpec;
+pub use force::{ForceCommand, ForceSpec};
 pub use load::Load;
 pub(crate) use load::LoadContext;
 pub use mooring::{

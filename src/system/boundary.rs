@@ -365,6 +365,7 @@ impl<const D: usize> System<D> {
 
     /// Makes target densities of the extrapolated pressures of `fits`, one for each boundary particle near water.
     fn update_wall_pressure(&mut self, fits: &[WallExtrapolation<f64, D>]) {
+        let mut targets = self.boundary.target_density.take().unwrap_or_default();
         let (medium, Boundary { particles, depths, coverage, .. }) = (&self.properties, &self.boundary);
         let depths = depths.as_deref().unwrap_or_default();
         let target = |(&particle, fit): (&u32, &WallExtrapolation<f64, D>)| {
@@ -381,7 +382,7 @@ impl<const D: usize> System<D> {
             TargetDensity { particle, target: WallTarget::new(density, own, approach, cover, promptness, constants) }
         };
         let wet = self.neighbours.boundary_near_fluid();
-        let targets = wet.par_iter().zip(fits).with_min_len(PARTICLES_PER_TASK).map(target).collect();
+        wet.par_iter().zip(fits).with_min_len(PARTICLES_PER_TASK).map(target).collect_into_vec(&mut targets);
         self.boundary.target_density = Some(targets);
     }
 

@@ -55,7 +55,7 @@ use rayon::prelude::*;
 
 use crate::{
     error::{Error, Result},
-    interaction::{PairLoop, PairLoopInput, PairSums},
+    interaction::{PairLoop, PairLoopInput, PairSums, RequestedSums},
     math::{Bounds, Matrix, Pose, Vector},
     model::{Model, PressureGradient},
     neighbours::{CHUNK, NeighbourLists},
@@ -283,7 +283,7 @@ impl<const D: usize> System<D> {
         system.check_water();
         system.init_hydrostatic(0..system.boundary.particles.len());
         driving::set_gravity_at(&mut system, 0.0);
-        system.update_rates();
+        system.update_rates(RequestedSums::All);
         Ok(system)
     }
 
@@ -372,7 +372,7 @@ impl<const D: usize> System<D> {
 
     /// Computes the rates of the water and the loads on the solids at the present positions, velocities and densities;
     /// the neighbour lists must hold.
-    pub(crate) fn update_rates(&mut self) {
+    pub(crate) fn update_rates(&mut self, requested: RequestedSums) {
         self.update_wall_state();
         self.boundary.update_copies(&self.solids, &self.fluid.images);
         self.boundary.update_mirrored(&self.solids);
@@ -380,11 +380,13 @@ impl<const D: usize> System<D> {
         let Self { pair_loop, neighbours, fluid, boundary, properties, equation_of_state, rates, gap_pressure, .. } =
             self;
         let input = Self::pair_input(neighbours, fluid, boundary, properties, equation_of_state);
-        self.status.step_limits = pair_loop.rates(&input, &mut rates.boundary);
+        self.status.step_limits = pair_loop.rates(&input, requested, &mut rates.boundary);
         rates.current = true;
         Self::add_gap_pressure(gap_pressure, &input, &mut rates.boundary);
         self.limit_step_by_originals();
-        self.update_stress();
+        if requested == RequestedSums::All {
+            self.update_stress();
+        }
         let loads = self.loads(&self.rates.boundary);
         self.solids.iter_mut().zip(loads).for_each(|(solid, load)| solid.load = load);
         self.status.passes += 1;
@@ -472,7 +474,7 @@ impl<const D: usize> System<D> {
         let (medium, state) = (&self.properties, &self.equation_of_state);
         let input = Self::pair_input(&self.neighbours, &self.fluid, &self.boundary, medium, state);
         let mut boundary = vec![PairSums::zero(); self.rates.boundary.len()];
-        pair_loop.rates(&input, &mut boundary);
+        pair_loop.rates(&input, RequestedSums::Rates, &mut boundary);
         Self::add_gap_pressure(&self.gap_pressure, &input, &mut boundary);
         self.loads(&boundary)
     }

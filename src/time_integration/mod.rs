@@ -15,6 +15,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     coupling::{Accounting, Interval},
+    interaction::RequestedSums,
     math::Vector,
     model::{Model, TimeScheme},
     particles::PARTICLES_PER_TASK,
@@ -53,6 +54,15 @@ impl<const D: usize> Stepper<D> {
             let before = verlet.previous_velocities_mut();
             let changes = transfers.iter().flat_map(|transfer| &transfer.changes);
             changes.for_each(|(i, change)| before[*i] += change);
+        }
+    }
+
+    /// The sums that the force pass at the start of a step computes. Shifting and stress need theirs once a step: at the middle of a
+    /// symplectic one.
+    pub(crate) fn sums_at_start(&self) -> RequestedSums {
+        match self {
+            Self::Verlet(_) => RequestedSums::All,
+            Self::Symplectic => RequestedSums::Rates,
         }
     }
 

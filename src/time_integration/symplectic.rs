@@ -12,6 +12,7 @@ use rayon::prelude::*;
 use super::{apply_shifts, shifts, step_boundary_density};
 use crate::{
     coupling::{Accounting, Interval, drift_half_step},
+    interaction::RequestedSums,
     particles::PARTICLES_PER_TASK,
     system::{StepCheck, System},
 };
@@ -49,7 +50,7 @@ impl Symplectic {
         drift_half_step(system, over);
 
         system.rebuild_within_step();
-        system.update_rates();
+        system.update_rates(RequestedSums::All);
 
         accounting.iter_mut().for_each(|accounting| accounting.add_force_pass(system, dt));
         let shifts = shifts(system, dt);

@@ -80,7 +80,7 @@ class Chart {
 function lines(table, indices, bytes, label, offset = 0) {
   const t = floats(bytes, table.t, table.rows[0]);
   const dash = k => k + offset < TINTS ? undefined : [7, 4];
-  return indices.map((c, k) => ({ label: label ?? table.columns[c].label, t, x: floats(bytes, table.columns[c].x, table.rows[0]), tint: k + offset, dash: dash(k) }));
+  return indices.map((c, k) => ({ label: label ?? table.columns[c].label, t, x: floats(bytes, table.columns[c].x, table.rows[0]), series: `${table.name}.${table.columns[c].name}`, tint: k + offset, dash: dash(k) }));
 }
 
 /** A line of a check. */
@@ -152,7 +152,7 @@ function held(home, charts, runs, bytes) {
   const several = runs.length > 1;
   for (const key of several ? keys : runs[0].checks) {
     const checks = several ? runs.map(run => run.checks.find(c => c.series === key)).filter(Boolean) : [key], [first] = checks;
-    const all = checks.map((check, i) => ({ label: several ? runs.find(run => run.checks.includes(check)).name : "run", ...curve(check.sim, bytes), tint: i }));
+    const all = checks.map((check, i) => ({ label: several ? runs.find(run => run.checks.includes(check)).name : "run", ...curve(check.sim, bytes), series: check.series, tint: i }));
     if (!several && first.meaned) all.push({ label: "mean", ...curve(first.meaned, bytes), tint: 2 });
     const known = several ? runs.find(run => run.checks.includes(first)).checks.filter(c => c.series === key) : [first];
     known.forEach((check, k) => all.push({ label: k ? `reference ${k + 1}` : "reference", ...curve(check.reference, bytes), tint: several ? 6 - k : 1, dots: !check.exact, dash: check.exact ? [5, 4] : undefined }));

@@ -371,7 +371,7 @@ impl JointConfig {
 
 impl MotorConfig {
     /// The laws that are given, with their keys.
-    fn time_values(&self) -> impl Iterator<Item = (&'static str, &TimeValueConfig)> {
+    pub(crate) fn time_values(&self) -> impl Iterator<Item = (&'static str, &TimeValueConfig)> {
         let all = [
             ("force", &self.force),
             ("torque", &self.torque),

@@ -13,7 +13,7 @@ use super::{
 };
 use crate::{
     math::{Bivector, Vector},
-    solid::{Engine, ForceSpec, Kinematics, Load, LoadContext, WindSpec},
+    solid::{Engine, ForceCommand, ForceSpec, Kinematics, Load, LoadContext, WindSpec},
 };
 
 /// Δt times the highest frequency of the springs, at most: their period is right within 0.2 %.
@@ -78,6 +78,8 @@ pub(crate) struct AssemblyState<const D: usize> {
     pub(super) joints: Vec<(Option<MotorCommand>, JointReading<D>)>,
     pub(super) springs: Vec<(SpringParameters, LineReading)>,
     pub(super) ropes: Vec<LineReading>,
+    /// What a program has set of each force.
+    pub(super) forces: Vec<Option<ForceCommand>>,
     pub(super) phases: Phases<D>,
 }
 
@@ -162,6 +164,7 @@ impl<const D: usize> Assembly<D> {
                 joints: vec![(None, none); links.joints.len()],
                 springs: links.springs.iter().map(spring).collect(),
                 ropes: links.ropes.iter().map(rope).collect(),
+                forces: vec![None; links.forces.len()],
                 phases: Phases::at_start(links),
             },
             start,
@@ -220,8 +223,8 @@ impl<const D: usize> Assembly<D> {
                 note(&mut self.tied, spring.line.solids(), &row.loads(-reading.tension), |tied| &mut tied.springs);
             }
         }
-        for force in &self.forces {
-            let load = force.load_at(&self.start[force.solid], &solids[force.solid], t + 0.5 * dt);
+        for (force, set) in self.forces.iter().zip(&self.state.forces) {
+            let load = force.load_at(&self.start[force.solid], &solids[force.solid], set.as_ref(), t + 0.5 * dt);
             engine.add_load(force.solid, &load);
             self.tied[force.solid].forces += load;
         }
@@ -419,6 +422,21 @@ impl<const D: usize> Assembly<D> {
         self.state.joints[i].0 = drive;
     }
 
+    /// The motor command of joint number `i` at time `t` (s), if it has one.
+    pub(crate) fn motor_command(&self, i: usize, t: f64) -> Option<MotorCommand> {
+        self.joints[i].motor_command(self.state.joints[i].0, t)
+    }
+
+    /// Sets the components of force number `i` from now on; `None` restores its own.
+    pub(crate) fn set_force(&mut self, i: usize, command: Option<ForceCommand>) {
+        self.state.forces[i] = command;
+    }
+
+    /// The components of force number `i` at time `t` (s).
+    pub(crate) fn force_command(&self, i: usize, t: f64) -> ForceCommand {
+        self.state.forces[i].clone().unwrap_or_else(|| self.forces[i].command_at(t))
+    }
+
     /// Beginnings and ends of constraints and solids so far.
     pub(crate) fn events(&self) -> &[ConstraintEvent] {
         &self.state.phases.events
@@ -434,6 +452,7 @@ impl<const D: usize> Assembly<D> {
         let same = kept.joints.len() == self.joints.len()
             && kept.springs.len() == self.springs.len()
             && kept.ropes.len() == self.ropes.len()
+            && kept.forces.len() == self.forces.len()
             && kept.phases.matches(&self.state.phases);
         if same {
             self.state = kept;

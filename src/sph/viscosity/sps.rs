@@ -54,8 +54,8 @@ impl Sps {
     }
 }
 
-/// The stress of [`Sps`], and the strain rate for the next pass: S_ij = ½(∂_j v_i + ∂_i v_j) with
-/// ∂_j v_i = Σ V_b (v_b − v_a)_i ∂_j W. The stress that acts is that of the pass before.
+/// The stress of [`Sps`], and the strain rate for that of the next step: S_ij = ½(∂_j v_i + ∂_i v_j) with
+/// ∂_j v_i = Σ V_b (v_b − v_a)_i ∂_j W. Strain is summed once a step, so that the stress that acts is that of the step before.
 #[derive(Clone, Copy, Debug)]
 pub struct SpsTerm;
 

@@ -207,7 +207,7 @@ fn a_running_mean_has_its_own_metrics_in_addition_to_the_raw_ones() -> std::io::
 #[test]
 fn a_series_with_a_zero_time_is_relative_to_its_value_at_that_time() -> std::io::Result<()> {
     // The run has an offset of 0.3, which the reference lacks.
-    let folder = folder("zero", &table(|t| t * t + 0.3), "")?;
+    let folder = folder("zero-time", &table(|t| t * t + 0.3), "")?;
     let raw = by_formula("box.heave_m", "t^2 - 0.25", bound(1e-9));
     let set = raw.clone().zero(0.5);
     assert_eq!([judge(&raw, &folder).passed, judge(&set, &folder).passed], [Some(false), Some(true)]);

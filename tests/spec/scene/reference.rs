@@ -404,6 +404,8 @@ fn options(subcommand: &str) -> BTreeSet<String> {
     let help = pontoon(&[subcommand, "--help"], Path::new(env!("CARGO_MANIFEST_DIR")));
     let lines = help.split("\nExample").next().unwrap().lines().map(str::trim_start);
     let words = lines.filter(|line| line.starts_with('-')).flat_map(|line| line.split(' ').take(2));
+    // A value that may be left out is behind the name, as in `--live[=<PORT>]`.
+    let words = words.filter_map(|word| word.split('[').next());
     words.filter(|word| word.starts_with("--") && *word != "--help").map(String::from).collect()
 }
 

@@ -2,7 +2,7 @@
 
 use pontoon::{
     geometry::Shape,
-    interaction::{self, PairLoopInput, PairSums},
+    interaction::{self, PairLoopInput, PairSums, RequestedSums},
     math::{Pose, Vector, expression::Formula, simd},
     model::{
         Diffusion, Dimension, KernelKind, Model, PairLoopKind, PressureGradient, Shifting, Slip, TimeScheme, Viscosity,
@@ -293,7 +293,7 @@ fn with_instructions(
         properties: &properties,
         equation_of_state: &state,
     };
-    pair_loop.rates(&input, &mut on_boundary);
+    pair_loop.rates(&input, RequestedSums::All, &mut on_boundary);
     (0..water.len()).map(|i| pair_loop.fluid_sums(&near, i)).chain(on_boundary).collect()
 }
 

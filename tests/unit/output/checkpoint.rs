@@ -7,6 +7,7 @@ fn example() -> Checkpoint {
         version: env!("CARGO_PKG_VERSION").into(),
         scene_hash: fnv1a(b"scene"),
         overrides: vec![("dp".into(), "0.02".into())],
+        changes: vec![],
         time: 0.25,
         outputs: OutputPositions {
             table_bytes: vec![12, 40],

@@ -32,3 +32,35 @@ fn the_metacentric_height_of_a_box_agrees_with_the_textbook() {
     body.centre[1] += 0.06;
     assert!((gm(&body) - (expected - 0.06)).abs() < 1e-7, "a top-heavy box capsizes");
 }
+
+#[test]
+fn the_stiffness_of_a_box_is_that_of_its_waterplane() {
+    // Half of 0.2 m under water, off the reference point by 0.03 m along x.
+    let (length, breadth, draft, offset) = (0.4, 0.3, 0.1, 0.03);
+    let shape = Shape::Box { size: Vector::from([length, breadth, 0.2]) };
+    let reference = Vector::from([-offset, 0.0, 0.0]);
+    let stiffness = Hull::new(&shape).stiffness(&Pose::identity(), &reference, 0.0);
+    let (area, volume) = (length * breadth, length * breadth * draft);
+    let below = -0.5 * draft * volume;
+    let exact = [
+        (2, 2, area),
+        (2, 4, -area * offset),
+        (4, 2, -area * offset),
+        (3, 3, area * breadth * breadth / 12.0 + below),
+        (4, 4, area * (length * length / 12.0 + offset * offset) + below),
+        (3, 5, -volume * offset),
+        (2, 3, 0.0),
+        (3, 4, 0.0),
+        (4, 5, 0.0),
+    ];
+    // The difference over ±1e-4 has a relative error of (1e-4)²; round-off is 1e-14/1e-4.
+    for (load, motion, value) in exact {
+        assert!(
+            (stiffness[load][motion] - value).abs() < 1e-7,
+            "{load}, {motion}: {}, exact {value}",
+            stiffness[load][motion]
+        );
+    }
+    let still = [0, 1, 5].into_iter().all(|i| stiffness[i].iter().all(|x| *x == 0.0));
+    assert!(still && (0..6).all(|i| stiffness[i][0] == 0.0 && stiffness[i][1] == 0.0));
+}
