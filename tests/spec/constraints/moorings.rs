@@ -203,7 +203,7 @@ fn a_winch_goes_to_a_length() -> Result<()> {
 const TOWED: &str = r#"
 dimension = 2
 dp = 0.02
-until = 3.0
+until = 0.9
 periodic = { x = [0.0, 1.6] }
 water = [{ fill = { box = { min = [0.0, 0.0], max = [1.6, 0.3] } } }]
 model = { slip = "free" }
@@ -216,15 +216,15 @@ at = { x = 0.8, y = -0.05 }
 name = "carriage"
 shape = { box = { size = [0.3, 0.06] } }
 at = { x = 0.5, y = 0.6 }
-driven = { along = [1.0, 0.0], distance = { formula = "0.25*(min(t,2)-sin(pi*min(t,2))/pi)" } }
+driven = { along = [1.0, 0.0], distance = { formula = "0.5*(t-sin(2*pi*t)/(2*pi))" } }
 [[solid]]
 name = "other"
 shape = { box = { size = [0.1, 0.06] } }
 at = { x = 0.7, y = 0.6 }
-driven = { along = [1.0, 0.0], distance = { formula = "0.25*(min(t,2)-sin(pi*min(t,2))/pi)" } }
+driven = { along = [1.0, 0.0], distance = { formula = "0.5*(t-sin(2*pi*t)/(2*pi))" } }
 [[line_type]]
 name = "chain"
-diameter = 0.02
+diameter = 0.04
 mass_per_length = 1.0
 stiffness = 2e3
 [[mooring]]
@@ -237,16 +237,17 @@ line = "chain"
 acts_on_water = true
 "#;
 
-/// What the carriage gives to a line is in the water and in the line, which still sways, within 2 % of the largest of the three: the bed is
-/// free of friction. If the line does not act on the water, the water stays at rest.
+/// What the carriage gives to a line is in the line and in the water, within 1 % of the water's share. The bed has no friction, but its rows
+/// of particles exchange momentum with water at rest: up to 2.5 mm/s after a second, which is why the test ends before. If the line does
+/// not act on the water, the water stays at rest.
 #[test]
 fn a_towed_line_and_the_water_hold_the_impulse_that_it_is_given() -> Result<()> {
     let towed = |text: &str| -> Result<[f64; 3]> {
         let mut sim = scene_simulation::<2>(text)?;
         let (mut given, mut in_line) = (0.0, 0.0);
-        while sim.time() < 3.0 {
+        while sim.time() < 0.9 {
             let (t, before) = (sim.time(), sim.mooring_reading(0).nodes);
-            sim.step_to(3.0)?;
+            sim.step_to(0.9)?;
             let (dt, reading) = (sim.time() - t, sim.mooring_reading(0));
             given -= reading.end_forces.iter().map(|force| force[0]).sum::<f64>() * dt;
             let last = before.len() - 1;
@@ -258,7 +259,7 @@ fn a_towed_line_and_the_water_hold_the_impulse_that_it_is_given() -> Result<()> 
     let [given, in_line, in_water] = towed(TOWED)?;
     let gap = (given - in_line - in_water).abs();
     let text = format!("{given} N s given, {in_line} N s in the line, {in_water} N s in the water");
-    assert!(in_water > 0.3 && gap < 0.02 * in_water.max(given), "{text}");
+    assert!(in_water > 0.2 && gap < 0.01 * in_water, "{text}");
     let [given, _, in_water] = towed(&TOWED.replace("acts_on_water = true", ""))?;
     assert!(given > 0.3 && in_water.abs() < 1e-2 * given, "{given} N s given, {in_water} N s in the water");
     Ok(())
