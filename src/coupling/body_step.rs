@@ -15,7 +15,7 @@ use crate::{
         ContactForce, Engine, EngineFault, Kinematics, Load, Role, Solid,
         constraint::assembly::{Assembly, AssemblyState, ConstraintLoads},
     },
-    system::{MomentumTransfer, System, face_reached},
+    system::{MomentumTransfer, System, face_reached, spread_impulses},
 };
 
 /// The rigid bodies of a run with their engine. A scene without free bodies has no engine.
@@ -153,7 +153,7 @@ impl<const D: usize> Bodies<D> {
 
     /// Moves the solids over the whole step, under the loads of the last force pass and the weights times `weight`. The
     /// factor `weight` does not apply to a body that no water touches. Calls `hook` after the water has moved and
-    /// before the bodies move. Returns the impulses that the bodies returned to the water.
+    /// before the bodies move. Returns the impulses that bodies and mooring lines gave to the water.
     pub(crate) fn advance(
         &mut self,
         system: &mut System<D>,
@@ -275,6 +275,8 @@ impl<const D: usize> BodyStep<'_, D> {
         if moored {
             let changes = self.bodies.moorings.advance(self.system, &start, &targets, self.over);
             changes.into_iter().for_each(|(name, change)| self.bodies.constraints.record_mooring(&name, t, change));
+            let transfer = spread_impulses(self.system, self.bodies.moorings.impulses_on_water());
+            self.add_transfer(transfer);
         }
         let mut pushes = Vec::new();
         if let Some(engine) = &mut self.bodies.engine {
@@ -354,10 +356,15 @@ impl<const D: usize> BodyStep<'_, D> {
         }
         for (solid, impulse) in returned {
             let transfer = self.system.return_impulse(solid, &impulse);
-            let energy = transfer.as_ref().map_or(0.0, |transfer| transfer.energy);
-            self.bodies.accounting.iter_mut().for_each(|accounting| accounting.add_returned(energy));
-            self.transfers.extend(transfer);
+            self.add_transfer(transfer);
         }
+    }
+
+    /// Records what the water has received.
+    fn add_transfer(&mut self, transfer: Option<MomentumTransfer<D>>) {
+        let energy = transfer.as_ref().map_or(0.0, |transfer| transfer.energy);
+        self.bodies.accounting.iter_mut().for_each(|accounting| accounting.add_returned(energy));
+        self.transfers.extend(transfer);
     }
 
     /// Completes the step. Returns the kinematics of the solids at the end of the step, and the impulses that the

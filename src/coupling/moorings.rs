@@ -27,6 +27,8 @@ pub(crate) struct Moorings<const D: usize> {
     fixed: Vec<(usize, Bounds<D>)>,
     /// Load on each solid in the last step; empty without lines.
     loads: Vec<Load<D>>,
+    /// Impulses (N s) on the water in the last step and their places (m), of the lines that act on it.
+    on_water: Vec<(Vector<D>, Vector<D>)>,
 }
 
 /// The name of a line, and what happens to it.
@@ -40,7 +42,8 @@ impl<const D: usize> Moorings<D> {
     pub(crate) fn new(system: &System<D>, start: &[Kinematics<D>]) -> Result<Self> {
         let specs = &system.constraints().moorings;
         let (junctions, bodies) = junctions(&system.constraints().mooring_points, specs);
-        let mut made = Self { lines: Vec::new(), junctions, fixed: Vec::new(), loads: Vec::new() };
+        let mut made =
+            Self { lines: Vec::new(), junctions, fixed: Vec::new(), loads: Vec::new(), on_water: Vec::new() };
         if specs.is_empty() {
             return Ok(made);
         }
@@ -111,6 +114,12 @@ impl<const D: usize> Moorings<D> {
         self.loads.get(i).copied().unwrap_or_else(Load::zero)
     }
 
+    /// Impulses (N s; N s/m in 2-D) of drag and added mass on the water in the last step, and their places (m): the nodes of the lines
+    /// that act on it.
+    pub(crate) fn impulses_on_water(&self) -> &[(Vector<D>, Vector<D>)] {
+        &self.on_water
+    }
+
     /// Time (s) from `t` (s) to the next begin or end of a line; infinite if there is none.
     pub(crate) fn next_event(&self, t: f64) -> f64 {
         self.lines.iter().map(|mooring| mooring.lifetime().next_limit(t)).fold(f64::INFINITY, f64::min)
@@ -129,7 +138,7 @@ impl<const D: usize> Moorings<D> {
         for mooring in &mut lines {
             let change = self.update_lifetime(system, mooring, now, t);
             changes.extend(change.map(|change| (mooring.name.clone(), change)));
-            mooring.pay_out(t + 0.5 * dt);
+            mooring.pay_out(t, dt);
         }
         let gravity = system.gravity();
         let step = |mooring: &Mooring<D>| LineStep {
@@ -137,6 +146,8 @@ impl<const D: usize> Moorings<D> {
             around: mooring.line.state.x.iter().map(|x| self.surroundings(system, x)).collect(),
         };
         let steps: Vec<_> = lines.iter().map(step).collect();
+        let acting = lines.iter().filter(|mooring| mooring.water_impulses().is_some());
+        let places: Vec<_> = acting.flat_map(|mooring| mooring.line.state.x.iter().copied()).collect();
         let mut all: Vec<_> = lines.iter_mut().map(|mooring| &mut mooring.line).collect();
         if !self.junctions.is_empty() {
             self.junctions.advance(&mut all, &steps, dt, &gravity);
@@ -145,6 +156,8 @@ impl<const D: usize> Moorings<D> {
         for (_, (line, step)) in alone.filter(|(i, (line, _))| line.state.acts && !self.junctions.joins(*i)) {
             line.advance(step.ends, dt, &step.around, &gravity);
         }
+        let from_water = lines.iter().filter_map(Mooring::water_impulses).flatten();
+        self.on_water = places.into_iter().zip(from_water.map(|impulse| -impulse)).collect();
         let mut loads = vec![Load::zero(); now.len()];
         for mooring in lines.iter_mut().filter(|mooring| mooring.line.state.acts) {
             for (solid, load) in mooring.loads(now) {
@@ -169,7 +182,7 @@ impl<const D: usize> Moorings<D> {
     ) -> Option<ConstraintChange> {
         match (mooring.line.state.acts, mooring.lifetime().contains(t)) {
             (false, true) => {
-                mooring.pay_out(t);
+                mooring.pay_out(t, 0.0);
                 mooring.begin(now);
                 mooring.line.place_at_rest(&|x| self.surroundings(system, x), &system.gravity());
                 Some(ConstraintChange::Connected)
@@ -249,6 +262,6 @@ fn share_behind(t: f64) -> f64 {
     0.5 - 35.0 / 32.0 * t * (1.0 - t2 * (1.0 - t2 * (0.6 - t2 / 7.0)))
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "dim2", feature = "dim3"))]
 #[path = "../../tests/unit/coupling/moorings.rs"]
 mod tests;

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::{Finding, PreflightContext};
-use crate::{math::format::three_digits, simulation::Simulation};
+use crate::{math::format::three_digits, simulation::Simulation, solid::WinchTarget};
 
 /// A mooring line at rest that acts at the start.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -39,8 +39,8 @@ pub struct MooredSurge {
     pub period_s: Option<f64>,
 }
 
-/// Returns the mooring lines and the surge of the free bodies that they hold. Adds a
-/// note about lines that take many steps.
+/// Returns the mooring lines and the surge of the free bodies that they hold. Adds
+/// notes about lines that take many steps, and about winches that start with another tension than they hold.
 pub(super) fn summaries<const D: usize>(
     context: &PreflightContext<'_, D>,
     sim: &Simulation<D>,
@@ -78,6 +78,22 @@ pub(super) fn summaries<const D: usize>(
         );
         let mend = "fewer segments or a lower stiffness make it cheaper, as long as its strain stays below 1 %".into();
         findings.push(Finding::note("stiff_mooring", what, mend));
+    }
+    let force = if D == 2 { "N/m" } else { "N" };
+    for (spec, own) in specs.iter().filter_map(|spec| Some((spec, lines.iter().find(|line| line.name == spec.name)?))) {
+        let Some(WinchTarget::Tension { tension, .. }) = spec.winch.map(|winch| winch.target) else { continue };
+        if (own.fairlead_n / tension - 1.0).abs() > 0.01 {
+            let what = format!(
+                "mooring \"{}\" starts with {} {force}, and its winch holds {} {force}",
+                own.name,
+                three_digits(own.fairlead_n),
+                three_digits(tension)
+            );
+            let mend =
+                "the run begins with the way there; a length with the tension of the winch makes it start at rest"
+                    .into();
+            findings.push(Finding::note("winch_starts", what, mend));
+        }
     }
     let surge = |(i, solid): (usize, &crate::solid::Solid<D>)| {
         let body = solid.body.as_ref()?;

@@ -28,7 +28,9 @@ pub use constraint::{
 pub use force::{ForceCommand, ForceSpec};
 pub use load::Load;
 pub(crate) use load::LoadContext;
-pub use mooring::{ClumpSpec, LineDamping, LineType, MooringPointSpec, MooringReading, MooringSpec};
+pub use mooring::{
+    ClumpSpec, LineDamping, LineType, MooringPointSpec, MooringReading, MooringSpec, Winch, WinchTarget,
+};
 pub use prescribed_motion::{PrescribedMotion, TimeFunction};
 pub use rapier::ContactForce;
 #[cfg(feature = "dim2")]

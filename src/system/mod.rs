@@ -12,6 +12,7 @@ mod driving;
 mod fluid;
 mod free_surface;
 mod gap_pressure;
+mod impulses;
 mod open_boundary;
 pub(crate) mod periodic;
 mod setup;
@@ -28,6 +29,7 @@ pub use driving::{Current, Driving, TowedFrame};
 pub(crate) use driving::{set_gravity_at, update_current};
 pub(crate) use fluid::{Fluid, permute};
 use gap_pressure::GapPressure;
+pub(crate) use impulses::{MomentumTransfer, spread_impulses};
 pub use open_boundary::{FaceExchange, OpenBoundary};
 pub(crate) use open_boundary::{
     buffer_length, check as check_open_boundary, face_reached, prescribed_discharge, update_buffer,
@@ -181,16 +183,6 @@ pub(crate) struct Reordering<const D: usize> {
     pub(crate) removed: Vec<RemovedParticle<D>>,
     /// Energy (J; J/m in 2-D) of the water that has entered through open boundaries less that of the water that has left.
     pub(crate) exchanged_energy: f64,
-}
-
-/// An impulse that was shared equally by some water particles, and given to their images.
-pub(crate) struct MomentumTransfer<const D: usize> {
-    /// The water particles and their images, each with the axes along which its velocity is reflected.
-    pub(crate) particles: Vec<(usize, AxisSet)>,
-    /// Change of the velocity of each, before the reflection, m/s.
-    pub(crate) velocity: Vector<D>,
-    /// Energy that the water gained, J (J/m in 2-D).
-    pub(crate) energy: f64,
 }
 
 impl<const D: usize> System<D> {
@@ -544,9 +536,10 @@ impl<const D: usize> System<D> {
                 let is_moved = |(i, _): &(&u32, usize)| particles.binary_search(&(**i as usize)).is_ok();
                 let reflection = |k: usize| reflections.get(k).copied().unwrap_or(0);
                 let moved = originals.iter().zip(0..).filter(is_moved).map(|(_, k)| (real + k, reflection(k)));
-                let particles: Vec<_> = particles.iter().map(|&i| (i, 0)).chain(moved).collect();
-                particles.iter().for_each(|&(i, axes)| water.v[i] += reflected(axes, velocity));
-                return Some(MomentumTransfer { particles, velocity, energy: gained * mass * images_of_all });
+                let particles = particles.iter().map(|&i| (i, 0)).chain(moved);
+                let changes: Vec<_> = particles.map(|(i, axes)| (i, reflected(axes, velocity))).collect();
+                changes.iter().for_each(|(i, change)| water.v[*i] += change);
+                return Some(MomentumTransfer { changes, energy: gained * mass * images_of_all });
             }
             distance *= 2.0;
             if !distance.is_finite() {

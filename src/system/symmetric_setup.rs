@@ -244,6 +244,11 @@ impl<const D: usize> Setup<D> {
                 return Err(Error::scene(what).help("let the wind blow along the plane, or compute both sides"));
             }
         }
+        if let Some(line) = self.constraints.moorings.iter().find(|line| line.acts_on_water) {
+            let what =
+                format!("mooring {:?} acts on the water, and {title} mirrors the water, but not the line", line.name);
+            return Err(Error::scene(what).help("write  acts_on_water = false, or compute both sides of the plane"));
+        }
         let links = self.constraints.joints.iter().map(|joint| (&joint.name, joint.between));
         let springs = self.constraints.springs.iter().map(|spring| (&spring.name, spring.ends.map(|end| end.solid)));
         let ropes = self.constraints.ropes.iter().map(|rope| (&rope.name, rope.ends.map(|end| end.solid)));

@@ -20,7 +20,7 @@ use crate::{
     model::{Model, TimeScheme},
     particles::PARTICLES_PER_TASK,
     sph::boundary::relaxation,
-    system::{MomentumTransfer, Reordering, System, reflected},
+    system::{MomentumTransfer, Reordering, System},
 };
 
 /// The chosen scheme with its state.
@@ -52,9 +52,8 @@ impl<const D: usize> Stepper<D> {
     pub(crate) fn add_transfers(&mut self, transfers: &[MomentumTransfer<D>]) {
         if let Self::Verlet(verlet) = self {
             let before = verlet.previous_velocities_mut();
-            for MomentumTransfer { particles, velocity, .. } in transfers {
-                particles.iter().for_each(|&(i, axes)| before[i] += reflected(axes, *velocity));
-            }
+            let changes = transfers.iter().flat_map(|transfer| &transfer.changes);
+            changes.for_each(|(i, change)| before[*i] += change);
         }
     }
 

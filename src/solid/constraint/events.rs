@@ -36,7 +36,7 @@ impl<const D: usize> Phases<D> {
     }
 
     fn record(&mut self, time: f64, element: String, change: ConstraintChange) {
-        self.events.push(ConstraintEvent { time, element, change });
+        self.events.push(ConstraintEvent { time, element, change, per_metre: D == 2 });
     }
 }
 

@@ -159,6 +159,8 @@ pub struct ConstraintEvent {
     pub element: String,
     /// The change.
     pub change: ConstraintChange,
+    /// Whether its load is that of a metre of width, as in 2-D.
+    pub per_metre: bool,
 }
 
 /// A change of a constraint or a solid.
@@ -186,7 +188,8 @@ pub enum ConstraintChange {
 
 impl fmt::Display for ConstraintEvent {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { time, element, change } = self;
+        let Self { time, element, change, .. } = self;
+        let per_metre = if self.per_metre { "/m" } else { "" };
         match change {
             ConstraintChange::Connected => write!(f, "{element} is connected at t = {time:.6} s"),
             ConstraintChange::Lengthened { given, length } => write!(
@@ -195,9 +198,11 @@ impl fmt::Display for ConstraintEvent {
                  length in place of {given} m"
             ),
             ConstraintChange::Released => write!(f, "{element} is released at t = {time:.6} s"),
-            ConstraintChange::Broken(load) => write!(f, "{element} breaks at t = {time:.6} s under {load:.6} N"),
+            ConstraintChange::Broken(load) => {
+                write!(f, "{element} breaks at t = {time:.6} s under {load:.6} N{per_metre}")
+            }
             ConstraintChange::BrokenByTorque(load) => {
-                write!(f, "{element} breaks at t = {time:.6} s under {load:.6} N m")
+                write!(f, "{element} breaks at t = {time:.6} s under {load:.6} N m{per_metre}")
             }
             ConstraintChange::Removed => write!(f, "{element} is removed at t = {time:.6} s"),
         }

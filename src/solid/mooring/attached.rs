@@ -64,6 +64,7 @@ impl<const D: usize> Mooring<D> {
         let mut line = MooringLine::straight(material, length, spec.segments, spec.ends.map(|end| end.at));
         line.bodies = spec.node_bodies();
         line.state.acts = spec.lifetime.contains(0.0);
+        line.water_impulses = spec.acts_on_water.then(|| vec![Vector::zeros(); spec.segments + 1]);
         let local = |k: usize| {
             let (end, at) = (spec.ends[k].solid, spec.ends[k].at);
             end.map_or(at, |solid| start[solid].pose.local(&at))
@@ -77,10 +78,15 @@ impl<const D: usize> Mooring<D> {
         &self.spec.lifetime
     }
 
-    /// Sets the length to that of the winch at time `t` (s).
-    pub(crate) fn pay_out(&mut self, t: f64) {
+    /// Sets the length to that of the winch in a step from time `t` (s) on, `dt` (s) long.
+    pub(crate) fn pay_out(&mut self, t: f64, dt: f64) {
         if self.spec.paid_out.is_some() {
-            self.line.state.segment = self.spec.length_at(t) / self.spec.segments as f64;
+            self.line.state.segment = self.spec.length_at(t + 0.5 * dt) / self.spec.segments as f64;
+        }
+        if let Some(winch) = self.spec.winch.filter(|_| self.line.state.acts) {
+            let (length, tension) = (self.line.length(), self.end_force(0).norm());
+            let length = winch.next_length(length, tension, self.line.material.stiffness, dt);
+            self.line.state.segment = length / self.spec.segments as f64;
         }
     }
 
@@ -141,6 +147,11 @@ impl<const D: usize> Mooring<D> {
             }
             None => (None, Load::zero()),
         })
+    }
+
+    /// The impulse (N s) of drag and added mass on each node in the last step, of a line that acts and acts on the water.
+    pub(crate) fn water_impulses(&self) -> Option<&[Vector<D>]> {
+        self.line.water_impulses.as_deref().filter(|_| self.line.state.acts)
     }
 
     /// Breaks the segment of the largest tension if that exceeds the strength; returns the tension, N.

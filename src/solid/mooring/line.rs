@@ -47,6 +47,8 @@ pub(crate) struct MooringLine<const D: usize> {
     pub(super) bodies: Vec<NodeBody>,
     /// Whether each end is held.
     pub(super) held: [bool; 2],
+    /// Impulse (N s) of drag and added mass on each node in the last step; `None` unless the line acts on the water.
+    pub(super) water_impulses: Option<Vec<Vector<D>>>,
     pub(crate) state: LineState<D>,
     pub(super) work: Workspace<D>,
 }
@@ -64,6 +66,9 @@ pub(super) struct Workspace<const D: usize> {
     pub(super) change: Vec<Vector<D>>,
     /// Change of the velocity of each node by that of each end along its segment, –; of joined lines.
     pub(super) responses: [Vec<Vector<D>>; 2],
+    /// Impulse (N s) of the water on each node that keeps its velocity, and what a change of the velocity takes from it, kg; empty
+    /// unless the line acts on the water.
+    pub(super) from_water: Vec<(Vector<D>, Matrix<D>)>,
 }
 
 impl<const D: usize> MooringLine<D> {
@@ -74,6 +79,7 @@ impl<const D: usize> MooringLine<D> {
             material,
             bodies: vec![NodeBody::default(); segments + 1],
             held: [true; 2],
+            water_impulses: None,
             state: LineState {
                 x: (0..=segments).map(place).collect(),
                 v: vec![Vector::zeros(); segments + 1],
@@ -177,12 +183,19 @@ impl<const D: usize> MooringLine<D> {
         gravity: &Vector<D>,
     ) -> [Vector<D>; 2] {
         let mut impulses = [Vector::zeros(); 2];
+        if let Some(from_water) = &mut self.water_impulses {
+            from_water.fill(Vector::zeros());
+        }
         for k in (0..2).filter(|k| self.held[*k]) {
             let i = self.end_node(k);
             let velocity = (ends[k] - self.state.x[i]) / dt;
-            let mass = self.load(i, around, gravity).mass;
-            impulses[k] -= mass * (velocity - self.state.v[i]);
+            let (mass, change) = (self.load(i, around, gravity).mass, velocity - self.state.v[i]);
+            impulses[k] -= mass * change;
             self.state.v[i] = velocity;
+            let added = mass - Matrix::identity() * self.dry_mass(i);
+            if let Some(from_water) = &mut self.water_impulses {
+                from_water[i] -= added * change;
+            }
         }
         impulses
     }
@@ -201,6 +214,11 @@ impl<const D: usize> MooringLine<D> {
         x.iter_mut().zip(v).for_each(|(x, v)| *x += *v * h);
     }
 
+    /// Mass of node `i` without that of the water, kg.
+    fn dry_mass(&self, i: usize) -> f64 {
+        self.material.mass * self.share(i) + self.bodies[i].mass
+    }
+
     fn load(&self, i: usize, around: &[NodeSurroundings<D>], gravity: &Vector<D>) -> NodeLoad<D> {
         let (x, v) = (&self.state.x[i], &self.state.v[i]);
         node_load(&self.material, (self.share(i), &self.bodies[i]), (x, v, &self.tangent(i)), &around[i], gravity)
@@ -210,13 +228,19 @@ impl<const D: usize> MooringLine<D> {
     pub(super) fn assemble(&mut self, h: f64, around: &[NodeSurroundings<D>], gravity: &Vector<D>) {
         let n = self.segments();
         let mut work = std::mem::take(&mut self.work);
-        let Workspace { matrix, impulse, coupling, .. } = &mut work;
+        let Workspace { matrix, impulse, coupling, from_water, .. } = &mut work;
         matrix.clear();
         impulse.clear();
         coupling.clear();
+        from_water.clear();
         for i in 0..=n {
             let load = self.load(i, around, gravity);
             matrix.push(load.mass + load.drag * (0.5 * h) + load.bed * h);
+            if self.water_impulses.is_some() {
+                let added = load.mass - Matrix::identity() * self.dry_mass(i);
+                let steady = load.drag * (around[i].water_velocity - self.state.v[i]) * h;
+                from_water.push((steady, added + load.drag * (0.5 * h)));
+            }
             let mut force = load.force - (load.drag + load.bed) * self.state.v[i];
             if self.material.bed_friction > 0.0 {
                 let (x, grip) = (&self.state.x[i], &mut self.state.grips[i]);
@@ -263,6 +287,15 @@ impl<const D: usize> MooringLine<D> {
         substitute(matrix, impulse, coupling, inner, change);
         self.state.v.iter_mut().zip(&*change).for_each(|(v, change)| *v += change);
         self.add_end_impulses(impulses);
+        self.add_water_impulses();
+    }
+
+    /// Adds the impulses of the water in the last change of the velocities.
+    pub(super) fn add_water_impulses(&mut self) {
+        let Some(sums) = &mut self.water_impulses else { return };
+        for ((sum, (steady, resistance)), change) in sums.iter_mut().zip(&self.work.from_water).zip(&self.work.change) {
+            *sum += steady - resistance * change;
+        }
     }
 
     /// Adds the impulses (N s) of the last change of the velocities on what holds the ends.

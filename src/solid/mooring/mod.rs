@@ -12,6 +12,7 @@ mod line;
 mod network;
 mod pretension;
 mod specification;
+mod winch;
 
 pub(crate) use attached::Mooring;
 pub use attached::MooringReading;
@@ -21,6 +22,7 @@ pub(crate) use network::{Junctions, LineStep};
 pub(crate) use pretension::forces_at_rest;
 pub use specification::{ClumpSpec, LineDamping, LineType, MooringPointSpec, MooringSpec};
 pub(crate) use specification::{check_mooring, check_mooring_points, junctions};
+pub use winch::{Winch, WinchTarget};
 
 #[cfg(all(test, feature = "dim2", feature = "dim3"))]
 #[path = "../../../tests/unit/solid/mooring/references.rs"]

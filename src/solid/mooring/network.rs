@@ -46,7 +46,7 @@ impl<const D: usize> MooringLine<D> {
     fn condense(&mut self) -> CondensedEnds<D> {
         let n = self.segments();
         let inner = [1, n - 1];
-        let Workspace { matrix, impulse, coupling, change, responses } = &mut self.work;
+        let Workspace { matrix, impulse, coupling, change, responses, .. } = &mut self.work;
         change.clear();
         change.resize(n + 1, Vector::zeros());
         eliminate(matrix, coupling, inner);
@@ -81,6 +81,7 @@ impl<const D: usize> MooringLine<D> {
         (change[0], change[n]) = (ends[0], ends[1]);
         self.state.v.iter_mut().zip(&*change).for_each(|(v, change)| *v += change);
         self.add_end_impulses(impulses);
+        self.add_water_impulses();
     }
 }
 

@@ -3,6 +3,7 @@
 use super::{
     forces::{LineMaterial, NodeBody},
     network::Junctions,
+    winch::Winch,
 };
 use crate::{
     error::{Error, ErrorCode, Result},
@@ -191,6 +192,10 @@ pub struct MooringSpec<const D: usize> {
     pub lifetime: Lifetime,
     /// Clump weights and floats.
     pub clumps: Vec<ClumpSpec>,
+    /// A winch with a controller.
+    pub winch: Option<Winch>,
+    /// Whether the water gets the opposite of the line's drag and added-mass force.
+    pub acts_on_water: bool,
 }
 
 impl<const D: usize> MooringSpec<D> {
@@ -206,6 +211,8 @@ impl<const D: usize> MooringSpec<D> {
             line,
             lifetime: Lifetime::default(),
             clumps: Vec::new(),
+            winch: None,
+            acts_on_water: false,
         }
     }
 
@@ -224,6 +231,16 @@ impl<const D: usize> MooringSpec<D> {
     /// The same line on a winch that pays out this length (m) over the time of the run, in addition to its own.
     pub fn paid_out(self, length: impl Into<TimeFunction>) -> Self {
         Self { paid_out: Some(length.into()), ..self }
+    }
+
+    /// The same line on a winch with a controller, in place of one that pays out a given length.
+    pub fn winch(self, winch: Winch) -> Self {
+        Self { winch: Some(winch), ..self }
+    }
+
+    /// The same line, whose drag and added mass act on the water too.
+    pub fn acting_on_water(self) -> Self {
+        Self { acts_on_water: true, ..self }
     }
 
     /// Length without tension at time `t` (s), m: a hundredth of the length at the start at least.
@@ -327,6 +344,20 @@ pub(crate) fn check_mooring<const D: usize>(mooring: &MooringSpec<D>, solids: &[
             "has a clump that is not on it, or has no valid mass".into(),
             "at is a length along the line, m",
         );
+    }
+    if let Some(winch) = &mooring.winch {
+        if mooring.paid_out.is_some() {
+            return refuse(
+                "is on two winches".into(),
+                "it has a winch that pays out a given length, or one with a controller",
+            );
+        }
+        if let Err(what) = winch.check(length) {
+            return refuse(
+                format!("has a winch whose {what}"),
+                "targets, rates and gains are above 0, and the line starts in its range",
+            );
+        }
     }
     let nodes = mooring.node_bodies();
     for (k, end) in mooring.ends.iter().enumerate() {

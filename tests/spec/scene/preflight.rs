@@ -472,6 +472,20 @@ fn a_finding_about_a_stiff_spring_contains_the_admissible_stiffness() {
 }
 
 #[test]
+fn a_winch_that_does_not_start_with_its_tension_is_noted() {
+    let moored = |tension: f64| {
+        let line = "[[line_type]]\nname = \"chain\"\ndiameter = 0.004\nmass_per_length = 0.1\nstiffness = 500.0\n\
+                    [[mooring]]\nname = \"hawser\"\nbetween = [\"box\"]\nfrom = [1.0, 0.35]\nto = [1.1, 0.0]\nlength = 0.4\nline = \"chain\"";
+        let text = format!("{GOOD}\n{line}\nwinch = {{ hold_tension = {tension:?}, rate_limit = 0.1 }}\n");
+        preflight_report::<2>(&Scene::parse(&text, Path::new(""), &[]).unwrap())
+    };
+    let other = moored(50.0);
+    assert!(topics(&other).contains(&"winch_starts"));
+    let rest = moored(other.moorings[0].fairlead_n);
+    assert!(!topics(&rest).contains(&"winch_starts"), "{:?}", rest.findings);
+}
+
+#[test]
 fn a_paddle_with_a_list_of_motions_has_the_report_of_a_single_motion() {
     let alone = report(&[]);
     let half = "{ along = [1.0, 0.0], distance = { formula = \"0.02*(1-cos(2*pi*t))\" } }";

@@ -180,3 +180,32 @@ fn a_broken_line_hangs_from_both_ends() {
     assert_eq!(line.tension(4), 0.0);
     assert!(line.state.x[5][0] > line.state.x[4][0] + 0.2, "the ends part");
 }
+
+/// What a line without weight gains in momentum, the water loses: with drag, added mass, point masses, and ends that are held and jerked,
+/// to round-off.
+#[test]
+fn the_impulses_of_the_water_are_those_of_the_line() {
+    let ends = [[0.0, 0.0, 1.0].into(), [0.9, 0.3, 1.2].into()];
+    let mut line =
+        MooringLine::<3>::straight(LineMaterial { damping: 0.5, bending: 0.01, ..material() }, 0.8, 12, ends);
+    line.held = [true, false];
+    line.bodies[5] = NodeBody { mass: 0.03, volume: 2e-5, drag_area: 1e-3, added_mass: 0.5 };
+    line.water_impulses = Some(vec![Vector::zeros(); 13]);
+    let around = |i: usize| {
+        let share = i as f64 / 12.0;
+        NodeSurroundings { water_velocity: [0.4 * share, -0.3, 0.2].into(), wet: 1.0 - 0.5 * share, bed: None }
+    };
+    let near: Vec<_> = (0..13).map(around).collect();
+    let start = momentum(&line);
+    let (mut on_end, mut from_water, mut size) = (Vector::zeros(), Vector::zeros(), 0.0);
+    for k in 1..=300 {
+        let end = Vector::from([0.0, 0.02 * (f64::from(k) * 0.05).sin(), 1.0]);
+        let forces = line.advance([end, Vector::zeros()], 1e-3, &near, &Vector::zeros());
+        on_end += forces[0] * 1e-3;
+        let impulses = line.water_impulses.as_ref().unwrap();
+        from_water += impulses.iter().sum::<Vector<3>>();
+        size += impulses.iter().map(Vector::norm).sum::<f64>();
+    }
+    let gap = (momentum(&line) - start + on_end - from_water).norm();
+    assert!(size > 0.01 && gap < 1e-12 * size, "{gap} of {size} N s");
+}
