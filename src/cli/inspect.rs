@@ -6,7 +6,8 @@ use crate::{
     error::{Error, ErrorKind, Result},
     math::format::{bytes, duration, metric_prefix, three_digits},
     preflight::{
-        AbsorberSummary, BodyFlow, BodySummary, DiskUse, Finding, GeneratedWave, Preflight, Severity, WaveAtGauge,
+        AbsorberSummary, BodyFlow, BodySummary, DiskUse, Equilibrium, Finding, GeneratedWave, Preflight, Severity,
+        WaveAtGauge,
     },
     run::{self, CostEstimate, InspectOptions, InspectReport, Inspection, LARGE},
 };
@@ -288,7 +289,7 @@ fn bodies(bodies: &[BodySummary], dimension: usize) -> String {
     let mass = if dimension == 2 { "mass (kg/m)" } else { "mass (kg)" };
     let heads = ["body", mass, "displaced", "ratio", "draft (m)", "at rest", "GM (m)", "heave (s)", "roll (s)"];
     let mut rows = vec![heads.map(String::from).to_vec()];
-    let mut grain = vec![["body", "thinnest (dp)", "least ratio"].map(String::from).to_vec()];
+    let mut grain = vec![["body", "thinnest (dp)", "least ratio", "first swing"].map(String::from).to_vec()];
     for body in bodies {
         let mut row = vec![
             body.name.clone(),
@@ -317,7 +318,13 @@ fn bodies(bodies: &[BodySummary], dimension: usize) -> String {
             }),
         }
         rows.push(row);
-        grain.push(vec![body.name.clone(), three_digits(body.thinnest_dp), three_digits(body.least_ratio)]);
+        let swing = |afloat: &Equilibrium| format!("−{:.0} %", 100.0 * afloat.first_swing_error);
+        grain.push(vec![
+            body.name.clone(),
+            three_digits(body.thinnest_dp),
+            three_digits(body.least_ratio),
+            body.afloat.as_ref().map_or_else(|| "–".into(), swing),
+        ]);
     }
     let mut ties = String::new();
     for (i, body) in bodies.iter().enumerate() {
@@ -334,21 +341,14 @@ fn bodies(bodies: &[BodySummary], dimension: usize) -> String {
                 body.tied_to.join(", ")
             );
         }
-        if let Some(afloat) = &body.afloat {
-            let lost = three_digits(100.0 * afloat.first_swing_error);
-            let _ = writeln!(
-                ties,
-                "  {}: a free decay in heave loses about {lost} % of its first swing at this dp",
-                body.name
-            );
-        }
         if body.load_kg.abs() > 1e-6 * body.mass_kg {
             let (way, load) = (if body.load_kg > 0.0 { "down" } else { "up" }, three_digits(body.load_kg.abs()));
             let _ = writeln!(ties, "  {}: lines and forces pull it {way} with the weight of {load} kg", body.name);
         }
     }
     let said = "  heave: without and with an estimate of the water that heaves along; roll: without any\n";
-    format!("{}{said}{ties}\n{}", table(&rows), table(&grain))
+    let error = "  first swing: what a free decay in heave loses of it at this dp, as measured on a disc\n";
+    format!("{}{said}{ties}\n{}{error}", table(&rows), table(&grain))
 }
 
 /// The flow about the moving bodies.

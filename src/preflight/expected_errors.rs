@@ -1,8 +1,8 @@
 //! The errors that measurements lead one to expect at the dp of a scene.
 //!
 //! A half-immersed disc (2-D) that is released off its equilibrium swings, half a period later, 7.8 % less far than in the exact
-//! linear solution with ten particles a diameter, and 4.2 % less with twenty: about 0.8/N of the swing. N is the breadth of the
-//! waterplane over dp, in 3-D the diameter of a disc of its area.
+//! linear solution with ten particles a diameter, and 4.2 % less with twenty: about 0.8/N of the swing. N is the lesser of the breadth
+//! of the waterplane, in 3-D the diameter of a disc of its area, and twice the draft, over dp: both are D of the disc.
 //!
 //! Regular waves of a paddle in 2-D, with the default laws and five dp high, have a share s of their height half a length from the
 //! paddle, and lose a share e in every length from there on. Both depend on the length over dp.
@@ -10,7 +10,11 @@
 use serde::Serialize;
 
 use super::{GeneratedWave, PreflightContext, wavemaker_site::WavemakerSite};
-use crate::{math::Vector, model::PressureGradient, probe::{ProbeLocation, ProbePlan}};
+use crate::{
+    math::Vector,
+    model::PressureGradient,
+    probe::{ProbeLocation, ProbePlan},
+};
 
 /// Share of the first swing in heave that is lost, times N, –.
 const HEAVE: f64 = 0.8;
@@ -32,32 +36,35 @@ pub struct WaveAtGauge {
     pub height_share: f64,
 }
 
-impl<const D: usize> PreflightContext<'_, D> {
-    /// Returns the share of its first swing in heave that a body with this `waterplane` (m²; m in 2-D) loses.
-    pub(super) fn heave_error(&self, waterplane: f64) -> f64 {
-        let breadth = if D == 2 { waterplane } else { 2.0 * (waterplane / std::f64::consts::PI).sqrt() };
-        (HEAVE * self.dp() / breadth).min(1.0)
-    }
+/// Returns the share of its first swing in heave that a body with this `waterplane` (m²; m in 2-D) and `draft` (m) loses at a spacing
+/// `dp` (m).
+pub(super) fn heave_error<const D: usize>(waterplane: f64, draft: f64, dp: f64) -> f64 {
+    let breadth = if D == 2 { waterplane } else { 2.0 * (waterplane / std::f64::consts::PI).sqrt() };
+    (HEAVE * dp / breadth.min(2.0 * draft)).clamp(0.0, 1.0)
+}
 
-    /// Returns the heights of regular waves of a paddle at `stand` at the gauges before the first reflector and the first damping zone;
-    /// none in 3-D and with laws that were not measured.
-    pub(super) fn heights_at_gauges(&self, wave: &GeneratedWave, stand: &WavemakerSite<D>) -> Vec<WaveAtGauge> {
-        let model = self.system.model();
-        let is_measured = D == 2 && model.gradient != PressureGradient::Plain && model.h >= WAVE_SMOOTHING * model.dp;
-        if !is_measured || wave.kind != Some("regular") {
-            return Vec::new();
-        }
-        let reach = wave.damping_m.unwrap_or(f64::INFINITY).min(wave.reach_m);
-        let gauge = |probe: &ProbePlan| {
-            let Some(ProbeLocation::Columns(places)) = probe.kind.location() else { return None };
-            let place = places.first()?;
-            let at = Vector::from_fn(|i, _| place.get(i).copied().unwrap_or(self.still_water.level));
-            let distance_m = stand.distance_ahead(&at).filter(|way| (0.5 * wave.length_m..reach).contains(way))?;
-            let height_share = height_share(wave.length_dp, distance_m / wave.length_m);
-            Some(WaveAtGauge { probe: probe.name.clone(), distance_m, height_share })
-        };
-        self.plan.probes.iter().filter_map(gauge).collect()
+/// Returns the heights of regular waves of a paddle at `stand` at the gauges before the first reflector and the first damping zone;
+/// none in 3-D and with laws that were not measured.
+pub(super) fn heights_at_gauges<const D: usize>(
+    context: &PreflightContext<D>,
+    wave: &GeneratedWave,
+    stand: &WavemakerSite<D>,
+) -> Vec<WaveAtGauge> {
+    let model = context.system.model();
+    let is_measured = D == 2 && model.gradient != PressureGradient::Plain && model.h >= WAVE_SMOOTHING * model.dp;
+    if !is_measured || wave.kind != Some("regular") {
+        return Vec::new();
     }
+    let reach = wave.damping_m.unwrap_or(f64::INFINITY).min(wave.reach_m);
+    let gauge = |probe: &ProbePlan| {
+        let Some(ProbeLocation::Columns(places)) = probe.kind.location() else { return None };
+        let place = places.first()?;
+        let at = Vector::from_fn(|i, _| place.get(i).copied().unwrap_or(context.still_water.level));
+        let distance_m = stand.distance_ahead(&at).filter(|way| (0.5 * wave.length_m..reach).contains(way))?;
+        let height_share = height_share(wave.length_dp, distance_m / wave.length_m);
+        Some(WaveAtGauge { probe: probe.name.clone(), distance_m, height_share })
+    };
+    context.plan.probes.iter().filter_map(gauge).collect()
 }
 
 /// Height of waves `length_dp` long (dp) at a `distance` of so many lengths from the paddle over that asked for, –.

@@ -16,6 +16,7 @@ use serde::Serialize;
 
 use super::{
     Finding, PreflightContext,
+    expected_errors::heave_error,
     hollows::{hull, is_in_dry_hollow},
     surface_samples::SurfaceSample,
     thickness::thinnest_part,
@@ -225,13 +226,14 @@ impl<const D: usize> PreflightContext<'_, D> {
         // A body of revolution on its side has GM = 0 and no heel.
         let heel = |t: &Tilt| if t.gm_m > 0.0 { along(&t.axis) / t.gm_m } else { 0.0 };
         let turned = tilts.iter().map(|t| heel(t).powi(2)).sum::<f64>().sqrt();
+        let draft = level - world_bounds(&solid.spec.shape, &statics.pose(number)).min[D - 1];
         Equilibrium {
-            draft_m: level - world_bounds(&solid.spec.shape, &statics.pose(number)).min[D - 1],
+            draft_m: draft,
             waterplane_m2: area,
             heave_s: heave(mass),
             heave_added_kg: added,
             heave_with_added_s: heave(mass + added),
-            first_swing_error: self.heave_error(area),
+            first_swing_error: heave_error::<D>(area, draft, self.dp()),
             heel_deg: tilts.iter().all(|t| t.gm_m >= 0.0).then(|| turned.to_degrees()),
             tilts,
         }

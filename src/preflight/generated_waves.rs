@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use super::{
     Finding, PreflightContext,
-    expected_errors::WaveAtGauge,
+    expected_errors::{WaveAtGauge, heights_at_gauges},
     wavemaker_site::{WavemakerSite, is_wall},
 };
 use crate::{
@@ -195,7 +195,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         (wave.height_dp, wave.length_dp) = (wave.height_m / self.dp(), wave.length_m / self.dp());
         (wave.reach_m, wave.answers) = self.first_reflector(solid, &stand);
         wave.damping_m = self.damping_start(&stand).filter(|begins| *begins < wave.reach_m);
-        wave.gauges = self.heights_at_gauges(&wave, &stand);
+        wave.gauges = heights_at_gauges(self, &wave, &stand);
         (wave.far_s, wave.back_s) = (wave.reach_m / wave.group_mps, 2.0 * wave.reach_m / wave.group_mps);
         (wave.height_m.is_finite() && swing.stroke > 1e-3 * self.dp()).then_some((wave, stand))
     }

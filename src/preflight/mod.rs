@@ -32,7 +32,7 @@ use serde::Serialize;
 
 pub use absorption_limits::AbsorberSummary;
 pub use expected_errors::WaveAtGauge;
-pub use floating_bodies::BodySummary;
+pub use floating_bodies::{BodySummary, Equilibrium};
 pub use generated_waves::GeneratedWave;
 pub use moorings::{MooredSurge, MooringSummary};
 pub use reynolds::BodyFlow;

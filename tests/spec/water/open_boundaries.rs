@@ -258,7 +258,7 @@ fn a_current_changes_the_length_of_waves_as_theory_says() {
     let gauge = |x: &f64| ElevationProbe::new(sim.system(), &[*x]).expect("a place in the water");
     let gauges = places.map(|places| places.iter().map(gauge).collect::<Vec<_>>());
     let flows = [1.0, 6.5].map(|x| FlowProbe::<2>::new(&[x, 0.0], &[x, 0.6]).expect("a section"));
-    let omega = 2.0 * std::f64::consts::PI / 1.3;
+    let omega = std::f64::consts::TAU / 1.3;
     // Of each gauge the level and its parts in phase with the wavemaker and a quarter period off; then the discharges.
     let sample = |sim: &Simulation<2>| {
         let (sin, cos) = (omega * sim.time()).sin_cos();
@@ -288,8 +288,8 @@ fn a_current_changes_the_length_of_waves_as_theory_says() {
         assert!(
             (theory / k - 1.0).abs() < 0.03,
             "{} m long at {speed} m/s, in theory {} m",
-            6.2832 / k,
-            6.2832 / theory
+            std::f64::consts::TAU / k,
+            std::f64::consts::TAU / theory
         );
     }
 }
