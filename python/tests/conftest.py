@@ -1,8 +1,13 @@
 """Scenes of the tests: small tanks, which a step takes about a millisecond."""
 
+import signal
+
 import pytest
 
 import pontoon as pt
+
+# A job in the background of a shell begins with Ctrl-C ignored.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 TANK = """
 title = "A crate afloat"

@@ -44,8 +44,6 @@ def test_a_stopped_run_goes_on_to_the_same_bits(tank: pt.Scene, tmp_path: Path, 
     whole = pt.run(tank, out=tmp_path / "whole", report=False)
     tank["frames.every"] = 0.1
     if how == "signal":
-        # A job in the background of a shell begins with the signal ignored.
-        signal.signal(signal.SIGINT, signal.default_int_handler)
         # A second signal would fall into the code of this test.
         sent: list[pt.Progress] = []
 

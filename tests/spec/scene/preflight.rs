@@ -391,6 +391,26 @@ fn touching_solids_have_no_gap_finding_and_a_lifted_gate_needs_no_higher_sound_s
     assert!(topics(&pushed).contains(&"slow_sound"), "{:?}", pushed.sound);
 }
 
+/// Before a body in the surface a current slower than √(g dp), 0.70 m/s at a spacing of 0.05 m, is noted; a faster one, a submerged body
+/// and walls beside the channel are not.
+#[test]
+fn a_current_too_slow_for_its_surface_is_noted() {
+    let noted = |speed: f64, height: f64, size: &str| {
+        let text = format!(
+            "dimension = 2\ndp = 0.05\nuntil = 1.0\n\
+             inflow = [{{ x = 0.0, velocity = {speed} }}]\noutflow = [{{ x = 2.0, velocity = {speed} }}]\n\
+             water = [{{ fill = {{ box = {{ min = [0.0, 0.0], max = [2.0, 0.5] }} }} }}]\n\
+             [[solid]]\nname = \"bed\"\nfixed = true\nshape = {{ box = {{ size = [6.0, 0.3] }} }}\nat = {{ x = 1.0, y = -0.15 }}\n\
+             [[solid]]\nname = \"pier\"\nfixed = true\nshape = {{ box = {{ size = {size} }} }}\nat = {{ x = 1.0, y = {height} }}\n"
+        );
+        let scene = Scene::parse(&text, Path::new(""), &[]).unwrap();
+        topics(&preflight_report::<2>(&scene)).contains(&"slow_current")
+    };
+    let size = "[0.4, 0.2]";
+    assert_eq!([noted(0.6, 0.5, size), noted(0.8, 0.5, size), noted(0.6, 0.2, size)], [true, false, false]);
+    assert!(!noted(0.6, 0.5, "[6.0, 0.2]"));
+}
+
 #[test]
 fn the_bundled_scenes_have_no_warnings_except_documented_ones() {
     // Waves of two dp, as the README of the scene states.
