@@ -23,7 +23,7 @@ const HEAVE: f64 = 0.8;
 const WAVE_SMOOTHING: f64 = 1.95;
 
 /// Length of waves over dp, their height half a length from the paddle over the asked one, and the loss in a length, –.
-const WAVES: [[f64; 3]; 4] = [[63.0, 0.89, 0.034], [79.0, 0.9, 0.03], [112.0, 0.95, 0.02], [157.0, 0.986, 0.005]];
+const WAVES: [[f64; 3]; 3] = [[63.0, 0.89, 0.034], [157.0, 0.986, 0.005], [224.0, 0.984, 0.004]];
 
 /// The height of waves that is to be expected at a gauge.
 #[derive(Clone, Debug, PartialEq, Serialize)]
