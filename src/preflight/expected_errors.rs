@@ -5,7 +5,8 @@
 //! of the waterplane, in 3-D the diameter of a disc of its area, and twice the draft, over dp: both are D of the disc.
 //!
 //! Regular waves of a paddle in 2-D, with the default laws and five dp high, have a share s of their height half a length from the
-//! paddle, and lose a share e in every length from there on. Both depend on the length over dp.
+//! paddle, and lose a share e in every length from there on. Both depend on the length over dp; the loss is known within 0.007
+//! (`docs/explanation/decisions/0106-wave-resolution.md`).
 
 use serde::Serialize;
 
@@ -23,7 +24,8 @@ const HEAVE: f64 = 0.8;
 const WAVE_SMOOTHING: f64 = 1.95;
 
 /// Length of waves over dp, their height half a length from the paddle over the asked one, and the loss in a length, –.
-const WAVES: [[f64; 3]; 3] = [[63.0, 0.89, 0.034], [157.0, 0.986, 0.005], [224.0, 0.984, 0.004]];
+const WAVES: [[f64; 3]; 5] =
+    [[63.0, 0.893, 0.009], [79.0, 0.939, 0.003], [112.0, 0.975, 0.0], [157.0, 0.988, 0.007], [224.0, 0.984, 0.004]];
 
 /// The height of waves that is to be expected at a gauge.
 #[derive(Clone, Debug, PartialEq, Serialize)]
