@@ -5,10 +5,7 @@ use std::fmt::Write;
 use crate::{
     error::{Error, ErrorKind, Result},
     math::format::{bytes, duration, metric_prefix, three_digits},
-    preflight::{
-        AbsorberSummary, BodyFlow, BodySummary, DiskUse, Equilibrium, Finding, GeneratedWave, Preflight, Severity,
-        WaveAtGauge,
-    },
+    preflight::{AbsorberSummary, BodyFlow, BodySummary, DiskUse, Finding, GeneratedWave, Preflight, Severity},
     run::{self, CostEstimate, InspectOptions, InspectReport, Inspection, LARGE},
 };
 use clap::Args;
@@ -200,8 +197,8 @@ fn wave_facts(wave: &GeneratedWave) -> Vec<(&'static str, String)> {
         ("", wave.first_reflection()),
     ];
     if !wave.gauges.is_empty() {
-        let gauge = |at: &WaveAtGauge| format!("{} at \"{}\"", three_digits(at.height_share), at.probe);
-        let heights: Vec<String> = wave.gauges.iter().map(gauge).collect();
+        let heights = wave.gauges.iter().map(|at| format!("{} at \"{}\"", three_digits(at.height_share), at.probe));
+        let heights: Vec<String> = heights.collect();
         facts.push(("", format!("share of the height expected at this dp: {}", heights.join(", "))));
     }
     facts
@@ -318,12 +315,12 @@ fn bodies(bodies: &[BodySummary], dimension: usize) -> String {
             }),
         }
         rows.push(row);
-        let swing = |afloat: &Equilibrium| format!("−{:.0} %", 100.0 * afloat.first_swing_error);
+        let swing = body.afloat.as_ref().map(|afloat| format!("−{:.0} %", 100.0 * afloat.first_swing_error));
         grain.push(vec![
             body.name.clone(),
             three_digits(body.thinnest_dp),
             three_digits(body.least_ratio),
-            body.afloat.as_ref().map_or_else(|| "–".into(), swing),
+            swing.unwrap_or_else(|| "–".into()),
         ]);
     }
     let mut ties = String::new();

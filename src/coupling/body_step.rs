@@ -15,7 +15,7 @@ use crate::{
         ContactForce, Engine, EngineFault, Kinematics, Load, Role, Solid,
         constraint::assembly::{Assembly, AssemblyState, ConstraintLoads},
     },
-    system::{MomentumTransfer, System, face_reached, spread_impulses},
+    system::{MomentumTransfer, System, face_reached, return_impulse, spread_impulses},
 };
 
 /// The rigid bodies of a run with their engine. A scene without free bodies has no engine.
@@ -355,7 +355,7 @@ impl<const D: usize> BodyStep<'_, D> {
             returned.push((solid, added_mass.apply(self.system, self.over.dt, &push, &mut self.loads[solid])));
         }
         for (solid, impulse) in returned {
-            let transfer = self.system.return_impulse(solid, &impulse);
+            let transfer = return_impulse(self.system, solid, &impulse);
             self.add_transfer(transfer);
         }
     }

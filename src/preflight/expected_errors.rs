@@ -4,13 +4,13 @@
 //! linear solution with ten particles a diameter, and 4.2 % less with twenty: about 0.8/N of the swing. N is the lesser of the breadth
 //! of the waterplane, in 3-D the diameter of a disc of its area, and twice the draft, over dp: both are D of the disc.
 //!
-//! Regular waves of a paddle in 2-D, with the default laws and five dp high, have a share s of their height half a length from the
+//! Regular waves of a paddle in 2-D, with gradients corrected near the surface, h = 2 dp and five dp high, have a share s of their height half a length from the
 //! paddle, and lose a share e in every length from there on. Both depend on the length over dp; the loss is known within 0.007
 //! (`docs/explanation/decisions/0106-wave-resolution.md`).
 
 use serde::Serialize;
 
-use super::{GeneratedWave, PreflightContext, wavemaker_site::WavemakerSite};
+use super::{GeneratedWave, PreflightContext, generated_waves, wavemaker_site::WavemakerSite};
 use crate::{
     math::Vector,
     model::PressureGradient,
@@ -20,8 +20,8 @@ use crate::{
 /// Share of the first swing in heave that is lost, times N, –.
 const HEAVE: f64 = 0.8;
 
-/// Smoothing length over dp with which the waves were measured, less its tolerance.
-const WAVE_SMOOTHING: f64 = 1.95;
+/// Smoothing length over dp with which the waves were measured, less rounding.
+const WAVE_SMOOTHING: f64 = 2.0 - 1e-9;
 
 /// Length of waves over dp, their height half a length from the paddle over the asked one, and the loss in a length, –.
 const WAVES: [[f64; 3]; 5] =
@@ -46,7 +46,7 @@ pub(super) fn heave_error<const D: usize>(waterplane: f64, draft: f64, dp: f64) 
 }
 
 /// Returns the heights of regular waves of a paddle at `stand` at the gauges before the first reflector and the first damping zone;
-/// none in 3-D and with laws that were not measured.
+/// none in 3-D, for waves below five dp, and with laws that were not measured.
 pub(super) fn heights_at_gauges<const D: usize>(
     context: &PreflightContext<D>,
     wave: &GeneratedWave,
@@ -54,7 +54,7 @@ pub(super) fn heights_at_gauges<const D: usize>(
 ) -> Vec<WaveAtGauge> {
     let model = context.system.model();
     let is_measured = D == 2 && model.gradient != PressureGradient::Plain && model.h >= WAVE_SMOOTHING * model.dp;
-    if !is_measured || wave.kind != Some("regular") {
+    if !is_measured || wave.kind != Some("regular") || wave.height_dp < generated_waves::LEAST * (1.0 - 1e-9) {
         return Vec::new();
     }
     let reach = wave.damping_m.unwrap_or(f64::INFINITY).min(wave.reach_m);

@@ -31,8 +31,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 pub use absorption_limits::AbsorberSummary;
-pub use expected_errors::WaveAtGauge;
-pub use floating_bodies::{BodySummary, Equilibrium};
+pub use floating_bodies::BodySummary;
 pub use generated_waves::GeneratedWave;
 pub use moorings::{MooredSurge, MooringSummary};
 pub use reynolds::BodyFlow;

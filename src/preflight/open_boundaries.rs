@@ -14,6 +14,9 @@ use crate::{
 /// Difference between what enters and what leaves, over the larger, from which on a warning names it.
 const UNEQUAL: f64 = 0.02;
 
+/// Times after the start at which the flow through a face is compared, over the length of the run, –.
+const SAMPLE_TIMES: [f64; 3] = [0.37, 0.71, 1.0];
+
 /// Adds findings about the discharges and about slow currents.
 pub(super) fn check<const D: usize>(context: &PreflightContext<D>, findings: &mut Vec<Finding>) {
     check_discharges(context, findings);
@@ -21,17 +24,21 @@ pub(super) fn check<const D: usize>(context: &PreflightContext<D>, findings: &mu
 }
 
 /// Adds a note if in 2-D a current comes to a body in the surface with U² < g dp. The stagnation head U²/(2 g) then does not take the uppermost
-/// row of particles under the body: the row comes to rest before it and slows the rows below. Two metres before a block the row had
-/// 0.15, 0.41, 0.70 of its speed after 6 s with U²/(g dp) = 0.16, 0.5, 1.0.
+/// row of particles under the body: the row comes to rest before it and slows the rows below. A metre before a block the row
+/// had 0.15, 0.41, 0.70 of its speed after 6 s with U²/(g dp) = 0.16, 0.5, 1.0.
 fn check_surface<const D: usize>(context: &PreflightContext<D>, findings: &mut Vec<Finding>) {
-    let (system, level, dp) = (context.system, context.still_water.level, context.dp());
+    // In 3-D the surface goes round a body.
+    if D != 2 {
+        return;
+    }
+    let (level, dp) = (context.still_water.level, context.dp());
     let speed = |face: &OpenBoundary<D>| {
         let mut at = Vector::zeros();
         (at[face.axis], at[D - 1]) = (face.at, level - 0.5 * dp);
-        let times = [0.0, 0.37, 0.71, 1.0].map(|part| part * context.end_time());
-        times.iter().filter_map(|&t| Some(-face.outward_velocity(&at, t)?)).fold(0.0, f64::max)
+        let inward = |part: f64| Some(-face.outward_velocity(&at, part * context.end_time())?);
+        [0.0].into_iter().chain(SAMPLE_TIMES).filter_map(inward).fold(0.0, f64::max)
     };
-    let faces = system.open_boundaries();
+    let faces = context.system.open_boundaries();
     // Walls along the channel go on beyond the faces.
     let ends_inside = |x: &Vector<D>| faces.iter().all(|face| face.beyond(x) <= 0.0);
     let pierces = |solid: &&Solid<D>| {
@@ -41,10 +48,6 @@ fn check_surface<const D: usize>(context: &PreflightContext<D>, findings: &mut V
             && ends_inside(&bounds.min)
             && ends_inside(&bounds.max)
     };
-    // In 3-D the surface goes round a body.
-    if D != 2 {
-        return;
-    }
     let fastest = faces.iter().map(speed).fold(0.0, f64::max);
     let Some(body) = context.solids().iter().find(pierces) else { return };
     if fastest > 0.0 && fastest * fastest < context.g * dp {
@@ -70,7 +73,7 @@ fn check_discharges<const D: usize>(context: &PreflightContext<D>, findings: &mu
     let mut outward = Vec::new();
     for i in 0..faces.len() {
         let Some(now) = at(i, 0.0) else { return };
-        if [0.37, 0.71, 1.0].iter().any(|part| at(i, part * until).is_none_or(|q| (q - now).abs() > 1e-9 * now.abs())) {
+        if SAMPLE_TIMES.iter().any(|part| at(i, part * until).is_none_or(|q| (q - now).abs() > 1e-9 * now.abs())) {
             return;
         }
         outward.push(now);

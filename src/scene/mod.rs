@@ -55,6 +55,7 @@ mod section {
     pub(crate) mod water;
     pub(crate) mod wave;
     pub(crate) mod wavemaker;
+    pub(crate) mod winch;
     pub(crate) mod wind;
 }
 
@@ -92,6 +93,7 @@ pub use {
     section::sponge_layer::SpongeLayerConfig,
     section::water::WaterConfig,
     section::wave::WaveConfig,
+    section::winch::WinchConfig,
     section::wind::WindConfig,
     untagged::TimeValueConfig,
 };

@@ -7,7 +7,7 @@ use crate::{
     interaction::RequestedSums,
     model::Dimension,
     solid::{Constraints, Dim, HasEngine as _, Kinematics, Role, Solid, SolidSpec, containment::depth_inside_mesh},
-    system::Reordering,
+    system::{Reordering, return_impulse},
 };
 
 /// Largest overlap of a solid that is added, dp.
@@ -167,7 +167,7 @@ impl<const D: usize> Simulation<D> {
             return Ok(());
         }
         let pending = self.bodies.pending_impulse(solid);
-        let energy = self.system.return_impulse(solid, &pending).map_or(0.0, |transfer| transfer.energy);
+        let energy = return_impulse(&mut self.system, solid, &pending).map_or(0.0, |transfer| transfer.energy);
         if let Some(accounting) = &mut self.bodies.accounting {
             accounting.add_returned(energy);
             accounting.add_solid_energy(-self.system.solids()[solid].energy(&self.system.gravity()));

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::{System, periodic::Images, reflected};
-use crate::math::Vector;
+use crate::math::{Bounds, Vector};
 
 /// A momentum that some water particles and their images have received.
 pub(crate) struct MomentumTransfer<const D: usize> {
@@ -13,37 +13,76 @@ pub(crate) struct MomentumTransfer<const D: usize> {
     pub(crate) energy: f64,
 }
 
+/// Returns the `impulse` (N s) to the water nearest to `solid`, in equal shares. Across a plane that cuts the solid the images of
+/// that water get their share of it.
+pub(crate) fn return_impulse<const D: usize>(
+    system: &mut System<D>,
+    solid: usize,
+    impulse: &Vector<D>,
+) -> Option<MomentumTransfer<D>> {
+    if impulse.norm_squared() == 0.0 {
+        return None;
+    }
+    let mass = system.particle_mass() * system.symmetry_planes().multiplicity(!system.solids[solid].division.cut);
+    let (count, images_of_all) = (system.particle_count(), system.solid_multiplicity(solid));
+    let own = Bounds::around(&system.boundary.particles.r[system.home_boundary(solid)]);
+    let mut distance = system.model.support_radius();
+    loop {
+        let around = own.grown(distance);
+        let mut particles = system.neighbours.fluid_within(&around);
+        particles.retain(|&i| i < count && around.contains(&system.fluid.particles.r[i]));
+        if !particles.is_empty() {
+            let velocity = impulse / (particles.len() as f64 * mass);
+            let changes = particles.into_iter().map(|i| (i, velocity)).collect();
+            return Some(change_velocities(system, changes, mass * images_of_all));
+        }
+        distance *= 2.0;
+        if !distance.is_finite() {
+            return None;
+        }
+    }
+}
+
 /// Gives each of these impulses (N s) at its place (m) to the water around it, in shares V W of the kernel W as those of a mean over
-/// the water there. So what the impulse takes from the mean velocity is what all particles receive. A place without water gives none.
+/// the water there. So what the impulse takes from the mean velocity is what all particles receive. A place without water, or with
+/// that of a buffer alone, gives none.
 pub(crate) fn spread_impulses<const D: usize>(
     system: &mut System<D>,
     given: &[(Vector<D>, Vector<D>)],
 ) -> Option<MomentumTransfer<D>> {
-    let mass = system.particle_mass();
+    let (mass, count) = (system.particle_mass(), system.particle_count());
     let mut changes = BTreeMap::<usize, Vector<D>>::new();
     let mut shares = Vec::new();
     for (x, impulse) in given.iter().filter(|(_, impulse)| impulse.norm_squared() > 0.0) {
         shares.clear();
         let rho = system.fluid().rho;
-        system.visit_fluid_near(&system.wrapped(x), &mut |i, _, w| shares.push((i, w / rho[i])));
+        let mut add = |i: usize, w: f64| shares.extend((i < count).then(|| (i, w / rho[i])));
+        system.visit_fluid_near(&system.wrapped(x), &mut |i, _, w| add(i, w));
         let sum: f64 = shares.iter().map(|(_, share)| share).sum();
         for (i, share) in shares.iter().filter(|_| sum > 0.0) {
             *changes.entry(*i).or_insert_with(Vector::zeros) += impulse * (share / (sum * mass));
         }
     }
-    if changes.is_empty() {
-        return None;
-    }
+    (!changes.is_empty()).then(|| change_velocities(system, changes.into_iter().collect(), mass))
+}
+
+/// Changes the velocities (m/s) of these water particles, in the order of their numbers, and of their images. `mass` (kg) is that for
+/// which each particle stands.
+fn change_velocities<const D: usize>(
+    system: &mut System<D>,
+    mut changes: Vec<(usize, Vector<D>)>,
+    mass: f64,
+) -> MomentumTransfer<D> {
     let real = system.own_count();
     let water = &mut system.fluid.particles;
-    let gained: f64 = changes.iter().map(|(&i, change)| change.dot(&(water.v[i] + change * 0.5))).sum();
+    let gained: f64 = changes.iter().map(|(i, change)| change.dot(&(water.v[*i] + change * 0.5))).sum();
     let Images { originals, reflections, .. } = &system.fluid.images;
-    let of_image = |(k, i): (usize, &u32)| {
-        let change = changes.get(&(*i as usize))?;
-        Some((real + k, reflected(reflections.get(k).copied().unwrap_or(0), *change)))
+    let of_image = |(k, original): (usize, &u32)| {
+        let found = changes.binary_search_by_key(&(*original as usize), |(i, _)| *i).ok()?;
+        Some((real + k, reflected(reflections.get(k).copied().unwrap_or(0), changes[found].1)))
     };
     let images: Vec<_> = originals.iter().enumerate().filter_map(of_image).collect();
-    let changes: Vec<_> = changes.into_iter().chain(images).collect();
+    changes.extend(images);
     changes.iter().for_each(|(i, change)| water.v[*i] += change);
-    Some(MomentumTransfer { changes, energy: gained * mass })
+    MomentumTransfer { changes, energy: gained * mass }
 }

@@ -29,7 +29,7 @@ pub use driving::{Current, Driving, TowedFrame};
 pub(crate) use driving::{set_gravity_at, update_current};
 pub(crate) use fluid::{Fluid, permute};
 use gap_pressure::GapPressure;
-pub(crate) use impulses::{MomentumTransfer, spread_impulses};
+pub(crate) use impulses::{MomentumTransfer, return_impulse, spread_impulses};
 pub use open_boundary::{FaceExchange, OpenBoundary};
 pub(crate) use open_boundary::{
     buffer_length, check as check_open_boundary, face_reached, prescribed_discharge, update_buffer,
@@ -511,40 +511,5 @@ impl<const D: usize> System<D> {
     /// The largest values that limit the next step.
     pub fn step_limits(&self) -> StepLimits {
         self.status.step_limits
-    }
-
-    /// Returns the `impulse` (N s) to the water nearest to `solid`, in equal shares. Across a plane that cuts the solid the images of
-    /// that water get their share of it.
-    pub(crate) fn return_impulse(&mut self, solid: usize, impulse: &Vector<D>) -> Option<MomentumTransfer<D>> {
-        if impulse.norm_squared() == 0.0 {
-            return None;
-        }
-        let mass = self.particle_mass() * self.symmetry_planes().multiplicity(!self.solids[solid].division.cut);
-        let (real, count) = (self.own_count(), self.particle_count());
-        let images_of_all = self.solid_multiplicity(solid);
-        let own = Bounds::around(&self.boundary.particles.r[self.home_boundary(solid)]);
-        let water = &mut self.fluid.particles;
-        let mut distance = self.model.support_radius();
-        loop {
-            let around = own.grown(distance);
-            let mut particles = self.neighbours.fluid_within(&around);
-            particles.retain(|&i| i < count && around.contains(&water.r[i]));
-            if !particles.is_empty() {
-                let velocity = impulse / (particles.len() as f64 * mass);
-                let gained: f64 = particles.iter().map(|&i| velocity.dot(&(water.v[i] + velocity * 0.5))).sum();
-                let Images { originals, reflections, .. } = &self.fluid.images;
-                let is_moved = |(i, _): &(&u32, usize)| particles.binary_search(&(**i as usize)).is_ok();
-                let reflection = |k: usize| reflections.get(k).copied().unwrap_or(0);
-                let moved = originals.iter().zip(0..).filter(is_moved).map(|(_, k)| (real + k, reflection(k)));
-                let particles = particles.iter().map(|&i| (i, 0)).chain(moved);
-                let changes: Vec<_> = particles.map(|(i, axes)| (i, reflected(axes, velocity))).collect();
-                changes.iter().for_each(|(i, change)| water.v[*i] += change);
-                return Some(MomentumTransfer { changes, energy: gained * mass * images_of_all });
-            }
-            distance *= 2.0;
-            if !distance.is_finite() {
-                return None;
-            }
-        }
     }
 }

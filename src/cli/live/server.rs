@@ -29,8 +29,8 @@ use crate::{
     run::{Control, RunOutcome, RunRequest},
 };
 
-/// Most connections at one time.
-const MOST_CONNECTIONS: usize = 16;
+/// Most connections at one time, with the thread that accepts them.
+const MOST_CONNECTIONS: usize = 17;
 
 /// From one event to the next, at least; and from one sign of life to the next while nothing happens.
 const TICK: Duration = Duration::from_millis(250);
@@ -97,14 +97,9 @@ impl LiveServer {
         if self.0.run.set(LiveRun::new(folder)).is_err() {
             return Ok(());
         }
-        let server = self.0.clone();
         // The end of the run waits for this thread too, and so for connections that it has not accepted yet.
-        let place = ConnectionCount::add(server.clone());
-        let accept = move || {
-            server.accept();
-            drop(place);
-        };
-        thread::Builder::new().name("live page".into()).spawn(accept).map(|_| ())
+        let place = ConnectionCount::add(self.0.clone());
+        thread::Builder::new().name("live page".into()).spawn(move || place.server.accept()).map(|_| ())
     }
 
     /// Tells the pages how the run ended, and where its report is if it is `reported`, and stops answering.
@@ -168,7 +163,7 @@ impl Server {
                 continue;
             };
             let place = ConnectionCount::add(self.clone());
-            if place.number > MOST_CONNECTIONS + 1 {
+            if place.number > MOST_CONNECTIONS {
                 let _ = http::answer(&mut stream, 503, "text/plain", "too many connections\n");
                 continue;
             }
