@@ -13,6 +13,7 @@ mod json_log;
 mod live;
 mod report_page;
 mod progress;
+mod ranks;
 mod console_text;
 mod run;
 pub mod scene_lookup;
@@ -255,7 +256,9 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         }
     };
     dispatch(cli.command, &command_line(&arguments)).unwrap_or_else(|error| {
-        print_error(&format!("error: {error}\n"));
+        if !ranks::is_silent() {
+            print_error(&format!("error: {error}\n"));
+        }
         exit_code(&error)
     })
 }
@@ -267,6 +270,9 @@ fn exit_code(error: &Error) -> u8 {
 
 /// Runs `command`. Studies record `command_line`.
 fn dispatch(command: Command, command_line: &str) -> Result<u8> {
+    if !matches!(command, Command::Run(_) | Command::Resume(_)) {
+        ranks::require_one_process()?;
+    }
     match command {
         Command::Run(args) => run::run(&args),
         Command::Resume(args) => run::resume(&args),
@@ -338,9 +344,13 @@ fn interrupt_flag_with_message(words: &'static str) -> Result<Arc<AtomicBool>> {
         }
         print_error(words);
     };
-    ctrlc::set_handler(handler)
-        .map_err(|why| Error::new(ErrorKind::Usage, format!("Ctrl-C cannot be watched: {why}")))?;
+    watch_interrupts(handler)?;
     Ok(flag)
+}
+
+/// Calls `handler` at every Ctrl-C and SIGTERM.
+fn watch_interrupts(handler: impl FnMut() + Send + 'static) -> Result<()> {
+    ctrlc::set_handler(handler).map_err(|why| Error::new(ErrorKind::Usage, format!("Ctrl-C cannot be watched: {why}")))
 }
 
 /// Prints results. A closed output, as after `head`, is no error.

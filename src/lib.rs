@@ -27,6 +27,7 @@
 //! |---|---|
 //! | [`error`] | errors with place, expectation and remedy |
 //! | [`math`] | vectors, bivectors, poses, time series, formulas, SIMD numbers |
+//! | [`ranks`] | processes or threads that compute one simulation together |
 //! | [`sph`] | the equations of the water, one law a file |
 //! | [`particles`] | arrays of particles |
 //! | [`geometry`] | shapes, submerged volumes, meshes, filling and packing |
@@ -52,12 +53,14 @@
 //! | `dim2`, `dim3` (default) | the engine for bodies in 2-D, in 3-D; one of them at least |
 //! | `cli` (default) | the program `pontoon` and the modules behind it |
 //! | `gpu` | whole steps on a graphics card |
+//! | `mpi` | one run on several machines, by MPI |
 //! | `surface` | meshes of the free surface from 3-D frames |
 
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, reason = "tests may"))]
 
 pub mod error;
 pub mod math;
+pub mod ranks;
 pub mod sph;
 #[doc(hidden)]
 pub mod particles;

@@ -235,7 +235,7 @@ impl Model {
         }
     }
 
-    /// The same model with the defaults of scenes in which a paddle makes waves by name: gradients corrected near the surface, and in
+    /// The same model with the defaults of scenes in which a paddle or a face makes waves by name: gradients corrected near the surface, and in
     /// 2-D h = 2 dp.
     pub fn for_waves(self) -> Self {
         Self { gradient: PressureGradient::NearSurface, ..self.h_in_2d(WAVES_H_OVER_DP) }
@@ -479,11 +479,12 @@ impl Model {
                     plain,
                 ),
             },
-            KernelKind::Cubic { tensile: false } => make.with_shifting(kernel::Cubic::new(h, D), plain),
-            KernelKind::Cubic { tensile: true } => {
+            KernelKind::Cubic { tensile } => {
                 let kernel = kernel::Cubic::new(h, D);
-                let tensile = Tensile { inv_w_dp: 1.0 / kernel.normalised_on_lattice(&make.properties).w(dp * dp) };
-                make.with_shifting(kernel, ((Pressure, tensile), Continuity))
+                let w_dp: f64 = kernel.normalised_on_lattice(&make.properties).w(dp * dp);
+                // A correction of 0 adds an exact 0, and the pair loop is compiled once for both.
+                let inv_w_dp = if tensile { 1.0 / w_dp } else { 0.0 };
+                make.with_shifting(kernel, ((Pressure, Tensile { inv_w_dp }), Continuity))
             }
         }
     }

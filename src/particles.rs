@@ -1,5 +1,6 @@
 //! The parallel arrays, used for the water and for every skin. No laws.
 
+use bytemuck::Zeroable;
 use serde::{Deserialize, Serialize};
 
 use crate::math::Vector;
@@ -18,6 +19,11 @@ pub struct Particles<const D: usize> {
     pub rho: Vec<f64>,
     /// Name of the particle for life, from 0; sorting moves it with the rest.
     pub id: Vec<u32>,
+}
+
+/// An array of `n` zeros. Those that nothing writes take no memory.
+pub(crate) fn zeros<T: Zeroable>(n: usize) -> Vec<T> {
+    bytemuck::zeroed_vec(n)
 }
 
 /// Memory of an array that some models do not have, B.
@@ -44,6 +50,27 @@ impl<const D: usize> Particles<D> {
     /// Memory of the arrays, B.
     pub(crate) fn memory_bytes(&self) -> usize {
         size_of_val(&self.r[..]) + size_of_val(&self.v[..]) + size_of_val(&self.rho[..]) + size_of_val(&self.id[..])
+    }
+
+    /// How many numbers [`Particles::give`] appends.
+    pub(crate) const NUMBERS: usize = 2 * D + 2;
+
+    /// Appends position, velocity, density and name of particle `i`.
+    pub(crate) fn give(&self, i: usize, numbers: &mut Vec<f64>) {
+        numbers.extend(self.r[i].iter().chain(self.v[i].iter()).chain([&self.rho[i], &f64::from(self.id[i])]));
+    }
+
+    /// Sets particle `i` to what [`Particles::give`] appended.
+    pub(crate) fn take(&mut self, i: usize, numbers: &[f64]) {
+        self.r[i] = Vector::from_column_slice(&numbers[..D]);
+        self.v[i] = Vector::from_column_slice(&numbers[D..2 * D]);
+        self.rho[i] = numbers[2 * D];
+        self.id[i] = numbers[2 * D + 1] as u32;
+    }
+
+    /// Arrays of `n` particles, whose places take no memory until they are written.
+    pub(crate) fn unwritten(n: usize) -> Self {
+        Self { r: zeros(n), v: zeros(n), rho: zeros(n), id: zeros(n) }
     }
 
     /// Makes room for `more` particles, and no more than that.

@@ -14,6 +14,7 @@ mod controls;
 mod device;
 mod runner;
 mod energy_drift;
+mod orders;
 pub(crate) mod run_folder;
 mod inspect;
 pub(crate) mod resume_point;
@@ -33,6 +34,8 @@ pub use inspect::{
 pub(crate) use lock::Lock;
 #[doc(hidden)]
 pub use lock::lock_owner;
+#[cfg(feature = "cli")]
+pub(crate) use orders::agree;
 #[doc(hidden)]
 pub use statistics::{RAO_FILE, RaoResult, RunStatistics, SPECTRA_FILE, Statistic, StatisticsFilter, statistics};
 
@@ -45,6 +48,7 @@ use crate::{
     model::Dimension,
     output::{Checkpoint, Manifest, manifest::RunStatus},
     plan::ControlChange,
+    ranks::Ranks,
     scene::{RenamedName, Scene},
     simulation::Rollback,
     solid::ConstraintEvent,
@@ -191,11 +195,32 @@ impl RunOutcome {
 /// `Scene`, `Usage` or `File` before anything is written; `File` when a file cannot be written; `Fault` when the
 /// computation cannot continue. After a `Fault` the run's folder holds all output up to the fault and `failure.json`.
 pub fn run(path: &Path, options: &RunOptions, watch: &mut dyn RunObserver) -> Result<RunOutcome> {
+    run_on(&Ranks::default(), path, options, watch).and_then(of_first_rank)
+}
+
+/// Runs the scene at `path` on several `ranks`, each of which calls this function with the same arguments. The first rank writes the
+/// files and reports to its `watch`; the others return `None`.
+///
+/// # Errors
+/// As [`run`], of the first rank; of another rank, if its step failed and that of the first did not.
+pub fn run_on(
+    ranks: &Ranks,
+    path: &Path,
+    options: &RunOptions,
+    watch: &mut dyn RunObserver,
+) -> Result<Option<RunOutcome>> {
     let file = run_folder::scene_file(path);
-    let scene = Scene::read(&file, &options.overrides)?;
-    let origin =
-        RunOrigin::Fresh { file: &file, text: None, out: options.out.as_deref(), overrides: &options.overrides };
-    with_threads(options.threads, || by_dimension(&scene, origin, watch))
+    let prepared = || Ok((thread_pool(options.threads)?, Scene::read(&file, &options.overrides)?));
+    let digest = |(_, scene): &(_, Scene)| orders::scene_digest(scene, file.parent().unwrap_or(Path::new("")));
+    match orders::agree(ranks, prepared(), digest) {
+        Err(_) if ranks.rank() > 0 => Ok(None),
+        prepared => {
+            let (pool, scene) = prepared?;
+            let (text, out, overrides) = (None, options.out.as_deref(), &options.overrides[..]);
+            let origin = RunOrigin::Fresh { file: &file, text, out, overrides };
+            pool.install(|| by_dimension(&scene, origin, ranks, watch))
+        }
+    }
 }
 
 /// Runs the scene in `text`. The files that the scene names must be in `folder`, as in [`Scene::parse`].
@@ -206,7 +231,7 @@ pub fn run_text(text: &str, folder: &Path, options: &RunOptions, watch: &mut dyn
     let scene = Scene::parse(text, folder, &options.overrides)?;
     let (file, out) = (folder.join("scene.toml"), options.out.as_deref());
     let origin = RunOrigin::Fresh { file: &file, text: Some(text), out, overrides: &options.overrides };
-    with_threads(options.threads, || by_dimension(&scene, origin, watch))
+    with_threads(options.threads, || by_dimension(&scene, origin, &Ranks::default(), watch)).and_then(of_first_rank)
 }
 
 /// Continues the interrupted run in `folder`; the results are bitwise identical to an uninterrupted run. The run
@@ -223,6 +248,42 @@ pub fn resume(
     threads: Option<usize>,
     watch: &mut dyn RunObserver,
 ) -> Result<RunOutcome> {
+    resume_on(&Ranks::default(), folder, guards, threads, watch).and_then(of_first_rank)
+}
+
+/// Continues the interrupted run in `folder` on several `ranks`, as [`run_on`] runs a scene. The number of ranks may be another than
+/// before.
+///
+/// # Errors
+/// As [`resume`] and [`run_on`].
+pub fn resume_on(
+    ranks: &Ranks,
+    folder: &Path,
+    guards: &[(String, String)],
+    threads: Option<usize>,
+    watch: &mut dyn RunObserver,
+) -> Result<Option<RunOutcome>> {
+    let prepared = || {
+        let lock = if ranks.rank() == 0 { Some(lock_unfinished(folder)?) } else { None };
+        let found = resume_point::latest_resume_point(folder)?.with_guard_overrides(folder, guards)?;
+        Ok((thread_pool(threads)?, lock, found))
+    };
+    let digest = |(_, _, point): &(_, _, ResumePoint)| {
+        let scene = orders::scene_digest(&point.scene, &folder.join("scene"));
+        format!("{scene} {:x}", crate::output::checkpoint::fnv1a(&point.checkpoint.state))
+    };
+    match orders::agree(ranks, prepared(), digest) {
+        Err(_) if ranks.rank() > 0 => Ok(None),
+        prepared => {
+            let (pool, lock, ResumePoint { checkpoint, scene, warning }) = prepared?;
+            let origin = RunOrigin::Resumed { folder, checkpoint: Box::new(checkpoint), warning, lock };
+            pool.install(|| by_dimension(&scene, origin, ranks, watch))
+        }
+    }
+}
+
+/// Locks the `folder` of a run that has not finished.
+fn lock_unfinished(folder: &Path) -> Result<Lock> {
     Manifest::read(folder)?;
     let lock = Lock::acquire(folder)?;
     // The manifest is read again under the lock, because a run in progress may have finished since.
@@ -232,10 +293,12 @@ pub fn resume(
             Error::new(ErrorKind::Restart, what).help("`pontoon run` with a larger --until starts a longer one")
         );
     }
-    let ResumePoint { checkpoint, scene, warning } =
-        resume_point::latest_resume_point(folder)?.with_guard_overrides(folder, guards)?;
-    let origin = RunOrigin::Resumed { folder, checkpoint: Box::new(checkpoint), warning, lock };
-    with_threads(threads, || by_dimension(&scene, origin, watch))
+    Ok(lock)
+}
+
+/// The outcome of a run that the first rank leads.
+pub(crate) fn of_first_rank(outcome: Option<RunOutcome>) -> Result<RunOutcome> {
+    outcome.ok_or_else(|| Error::new(ErrorKind::Usage, "the first rank alone has the outcome of a run"))
 }
 
 /// The origin of a run.
@@ -244,25 +307,42 @@ enum RunOrigin<'a> {
     /// the file, which need not exist.
     Fresh { file: &'a Path, text: Option<&'a str>, out: Option<&'a Path>, overrides: &'a [(String, String)] },
     /// A checkpoint in the run's folder.
-    Resumed { folder: &'a Path, checkpoint: Box<Checkpoint>, warning: Option<String>, lock: Lock },
+    Resumed { folder: &'a Path, checkpoint: Box<Checkpoint>, warning: Option<String>, lock: Option<Lock> },
 }
 
 /// Selects the dimension; no other function does.
-fn by_dimension(scene: &Scene, origin: RunOrigin, watch: &mut dyn RunObserver) -> Result<RunOutcome> {
+fn by_dimension(
+    scene: &Scene,
+    origin: RunOrigin,
+    ranks: &Ranks,
+    watch: &mut dyn RunObserver,
+) -> Result<Option<RunOutcome>> {
     match scene.dimension {
         #[cfg(feature = "dim2")]
-        2 => run_in_dimension::<2>(scene, origin, watch),
+        2 => run_in_dimension::<2>(scene, origin, ranks, watch),
         #[cfg(feature = "dim3")]
-        3 => run_in_dimension::<3>(scene, origin, watch),
+        3 => run_in_dimension::<3>(scene, origin, ranks, watch),
         other => Err(missing_dimension(other)),
     }
 }
 
-fn run_in_dimension<const D: usize>(scene: &Scene, origin: RunOrigin, watch: &mut dyn RunObserver) -> Result<RunOutcome>
+fn run_in_dimension<const D: usize>(
+    scene: &Scene,
+    origin: RunOrigin,
+    ranks: &Ranks,
+    watch: &mut dyn RunObserver,
+) -> Result<Option<RunOutcome>>
 where
     Dim<D>: Dimension<D>,
 {
-    runner::Runner::<D>::new(scene, origin)?.run(scene.renamed_names(), watch)
+    if ranks.rank() > 0 {
+        let checkpoint = match origin {
+            RunOrigin::Fresh { .. } => None,
+            RunOrigin::Resumed { checkpoint, .. } => Some(*checkpoint),
+        };
+        return orders::follow::<D>(scene, checkpoint, ranks).map(|()| None);
+    }
+    runner::Runner::<D>::new(scene, origin, ranks)?.run(scene.renamed_names(), watch).map(Some)
 }
 
 /// Returns the error for a scene whose dimension is not compiled into this program.

@@ -36,12 +36,15 @@ use crate::{
     interaction::{PairLoop, RequestedSums},
     math::{Bivector, Vector},
     model::Dimension,
+    ranks::Ranks,
     solid::{
         ContactForce, Dim, HasEngine as _, Role, SolidSpec,
         constraint::assembly::{Assembly, AssemblyState},
         mooring::LineState,
     },
-    system::{LimitViolation, System, SystemState, set_gravity_at, update_buffer, update_current},
+    system::{
+        LimitViolation, System, SystemState, own_water, set_buffer_time, set_gravity_at, update_buffer, update_current,
+    },
     time_integration::{Stepper, step_size},
 };
 #[cfg(feature = "gpu")]
@@ -113,8 +116,30 @@ impl<const D: usize> Simulation<D> {
     where
         Dim<D>: Dimension<D>,
     {
+        Self::on_ranks(setup, &Ranks::default())
+    }
+
+    /// As [`Simulation::new`], on several ranks: each of them makes the simulation of the same setup and the same calls, in the same
+    /// order.
+    ///
+    /// # Errors
+    /// As [`Simulation::new`].
+    pub fn on_ranks(setup: Setup<D>, ranks: &Ranks) -> Result<Self>
+    where
+        Dim<D>: Dimension<D>,
+    {
+        Self::set_up(setup, ranks, true)
+    }
+
+    /// As [`Simulation::on_ranks`]; all water is on the first rank, or on all if `everyone`.
+    pub(crate) fn set_up(setup: Setup<D>, ranks: &Ranks, everyone: bool) -> Result<Self>
+    where
+        Dim<D>: Dimension<D>,
+    {
         let pair_loop = Dim::<D>::pair_loop(&setup.model);
-        Self::with_bodies(setup, pair_loop, false)
+        let mut simulation = Self::with_bodies(setup, pair_loop, false, ranks)?;
+        simulation.gather_water(everyone);
+        Ok(simulation)
     }
 
     /// As [`Simulation::new`], with a pair loop of your own terms: see [`Model::custom_pair_loop`](crate::model::Model).
@@ -125,14 +150,14 @@ impl<const D: usize> Simulation<D> {
     where
         Dim<D>: Dimension<D>,
     {
-        let simulation = Self::with_bodies(setup, pair_loop, false)?;
+        let simulation = Self::with_bodies(setup, pair_loop, false, &Ranks::default())?;
         #[cfg(feature = "gpu")]
         let simulation = Self { custom_terms: true, ..simulation };
         Ok(simulation)
     }
 
     /// Sets up a simulation whose free solids the engine moves, or an `external` program.
-    fn with_bodies(mut setup: Setup<D>, pair_loop: Box<dyn PairLoop<D>>, external: bool) -> Result<Self>
+    fn with_bodies(mut setup: Setup<D>, pair_loop: Box<dyn PairLoop<D>>, external: bool, ranks: &Ranks) -> Result<Self>
     where
         Dim<D>: Dimension<D>,
     {
@@ -152,12 +177,12 @@ impl<const D: usize> Simulation<D> {
         };
         let rig = Assembly::new(&setup.constraints, start.clone());
         let stepper = Stepper::new(&setup.model);
-        let mut system = System::new(setup, pair_loop)?;
+        let mut system = System::new(setup, pair_loop, ranks)?;
         let moorings = Moorings::new(&system, &start)?;
         let bodies = Bodies::new(engine, AcousticAddedMass::find_all(&mut system), rig, moorings, external);
         let clock = Clock { time: 0.0, dt: 0.0, steps: 0 };
         let (rescue, lost, stepping) = (RollbackControl::default(), Vec::new(), Duration::ZERO);
-        let simulation = Self {
+        let mut simulation = Self {
             system,
             stepper,
             bodies,
@@ -193,7 +218,20 @@ impl<const D: usize> Simulation<D> {
             on_device::steps(self, (1, end), end, None)?;
             return self.fetch_from_device();
         }
-        self.step_with_hook(end, &mut |_| Ok(()))
+        let outcome = self.step_with_own_water(end);
+        self.gather_water(true);
+        outcome
+    }
+
+    /// Advances by one step, not past time `end` (s). Where ranks share the water, each has its own after that, and all water if the
+    /// step fails: see [`Simulation::gather_water`].
+    pub(crate) fn step_with_own_water(&mut self, end: f64) -> Result<()> {
+        self.step_with_hook(end, &mut |_| Ok(())).inspect_err(|_| self.gather_water(true))
+    }
+
+    /// Completes the water and its sums on the first rank, or on all if `everyone`. All ranks must call this.
+    pub(crate) fn gather_water(&mut self, everyone: bool) {
+        own_water::gather(&mut self.system, everyone);
     }
 
     /// Advances by one step, calling `hook` when the water has moved and the bodies have not.
@@ -205,6 +243,7 @@ impl<const D: usize> Simulation<D> {
         }
         let start = Instant::now();
         if self.needs_rollback_state() {
+            self.gather_water(false);
             self.rollback.drop_oldest_state();
             let state = self.rollback_state()?;
             self.rollback.store(self.clock.steps, self.clock.time, state);
@@ -220,7 +259,7 @@ impl<const D: usize> Simulation<D> {
     pub(crate) fn step_to_pause(&mut self, pause: f64, end: f64) -> Result<()> {
         match self.device {
             Some(_) => on_device::steps(self, (u64::MAX, pause), end, None),
-            None => self.step_to(end),
+            None => self.step_with_own_water(end),
         }
     }
 
@@ -272,7 +311,11 @@ impl<const D: usize> Simulation<D> {
     }
 
     /// The present state: in the folder for such states, or in memory if there is none or it cannot be written to.
+    /// Of ranks that share the water the first alone stores it.
     fn rollback_state(&self) -> Result<StoredState> {
+        if own_water::ranks(&self.system).rank() > 0 {
+            return Ok(StoredState::Memory(Vec::new()));
+        }
         let write = |out: &mut dyn Write| self.write_state(self.rollback.log.len(), out);
         let stored = self.rollback.folder.as_ref().and_then(|folder| StoredState::in_folder(folder, write).ok());
         stored.map_or_else(|| self.save().map(StoredState::Memory), Ok)
@@ -283,15 +326,13 @@ impl<const D: usize> Simulation<D> {
         if error.kind != ErrorKind::Fault {
             return Err(error);
         }
-        match self.rollback.state_before(&error.message, self.clock.steps, self.clock.time) {
-            Some(good) => {
-                let rescue = std::mem::take(&mut self.rollback);
-                self.restore(&good)?;
-                self.rollback = rescue;
-                Ok(())
-            }
-            None => Err(error),
-        }
+        let of_first = |own: Vec<u8>| own_water::ranks(&self.system).gather_bytes(&own).swap_remove(0);
+        let stored = self.rollback.state_before(&error.message, self.clock.steps, self.clock.time, of_first);
+        let Some(good) = stored else { return Err(error) };
+        let rescue = std::mem::take(&mut self.rollback);
+        self.restore(&good)?;
+        self.rollback = rescue;
+        Ok(())
     }
 
     /// Disables the rollback: the first alarm ends the run.
@@ -330,6 +371,9 @@ impl<const D: usize> Simulation<D> {
     }
 
     fn advance(&mut self, end: f64, hook: &mut Hook<D>) -> Result<()> {
+        let divided = own_water::may_be_divided(&self.system, self.clock.time) && !self.bodies.read_water();
+        own_water::divide(&mut self.system, divided);
+        set_buffer_time(&mut self.system, self.clock.time);
         if let Some(reordering) = self.system.rebuild_neighbours() {
             self.stepper.reorder(&reordering, self.system.properties().rho0);
             if let Some(accounting) = &mut self.bodies.accounting {
@@ -345,6 +389,7 @@ impl<const D: usize> Simulation<D> {
         // The last two steps have equal lengths, so that none is far shorter than the others.
         let dt = if left <= allowed { left } else { allowed.min(0.5 * left) };
         if dt.is_nan() || dt <= 0.0 {
+            self.gather_water(true);
             return Err(self.fault((0, ErrorCode::NoTimeStep, "time step of no length", NO_STEP)));
         }
         let over = Interval { t: self.clock.time, dt };
@@ -391,7 +436,10 @@ impl<const D: usize> Simulation<D> {
     }
 
     /// Stops at the first particle that has left the valid range.
-    fn guard(&self) -> Result<()> {
+    fn guard(&mut self) -> Result<()> {
+        if !self.system.status.step_check.valid {
+            self.gather_water(true);
+        }
         match self.system.first_invalid_particle() {
             None => Ok(()),
             Some(violation) => Err(self.fault(violation)),

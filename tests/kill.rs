@@ -4,6 +4,9 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::print_stdout, clippy::print_stderr, reason = "tests may")]
 #![cfg(unix)]
 
+#[path = "support/run_files.rs"]
+mod support;
+
 use std::{
     collections::BTreeMap,
     fs,
@@ -15,6 +18,8 @@ use std::{
 };
 
 use pontoon::output::Checkpoint;
+
+use support::{assert_same_files, files};
 
 const LAST: &str = "checkpoint.bin";
 const PREVIOUS: &str = "checkpoint.previous.bin";
@@ -110,33 +115,12 @@ fn assert_refused(output: &Output, parts: &[&str]) {
     }
 }
 
-/// Every file below `folder` by its relative name.
-fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
-    fn collect(folder: &Path, from: &Path, into: &mut BTreeMap<String, Vec<u8>>) {
-        for path in fs::read_dir(folder).unwrap().flatten().map(|entry| entry.path()) {
-            match path.is_dir() {
-                true => collect(&path, from, into),
-                false => {
-                    let name = path.strip_prefix(from).unwrap().display().to_string();
-                    into.insert(name, fs::read(&path).unwrap());
-                }
-            }
-        }
-    }
-    let mut all = BTreeMap::new();
-    collect(folder, folder, &mut all);
-    all
-}
-
 /// Asserts that two runs have the same state and the same files, byte for byte, without the files that contain wall time.
 #[track_caller]
 fn assert_same_bits(killed: &Path, uninterrupted: &Path) {
-    let (a, b) = (files(killed), files(uninterrupted));
-    assert!(a.keys().eq(b.keys()), "{:?}\n{:?}", a.keys(), b.keys());
-    for (name, bytes) in &a {
-        let times = [LAST, PREVIOUS, "manifest.json"].contains(&name.as_str());
-        assert!(times || *bytes == b[name], "{name} differs");
-    }
+    let [a, b] = [killed, uninterrupted].map(|folder| files(folder).into_keys().collect::<Vec<_>>());
+    assert_eq!(a, b, "the same files");
+    assert_same_files(uninterrupted, killed, "killed");
     let [a, b] = [killed, uninterrupted].map(|folder| Checkpoint::read(&folder.join(LAST)).unwrap());
     assert!(a.state == b.state && a.outputs == b.outputs, "the states differ");
     assert_eq!((a.time, a.particle_steps), (b.time, b.particle_steps));

@@ -4,6 +4,8 @@
 //! layout of a checkpoint. It hashes the series as files. On a mismatch it prints the new table, which replaces the
 //! record after an intended change.
 //!
+//! Each scene has the same bits on three ranks.
+//!
 //! `.ci/without-slp` repeats the test in a build with `-C no-vectorize-slp`: a compiler fault in one of the builds, in this crate
 //! or in its dependencies, changes bits of only one of them (decision record 0130).
 
@@ -13,6 +15,7 @@ use std::{fmt::Write as _, path::Path};
 
 use pontoon::{
     model::Dimension,
+    ranks::Ranks,
     run::{self, Progress, RunOptions},
     scene::{BuiltScene, Scene},
     simulation::Simulation,
@@ -55,13 +58,13 @@ impl Hash {
     }
 }
 
-/// Hash of water, boundary particles, bodies and their loads after the steps.
-fn state<const D: usize>(scene: &Scene) -> u64
+/// Hash of water, boundary particles, bodies and their loads after the steps, on one of several ranks or alone.
+fn state<const D: usize>(scene: &Scene, ranks: Ranks) -> u64
 where
     Dim<D>: Dimension<D>,
 {
     let BuiltScene { setup, .. } = scene.build::<D>().unwrap();
-    let mut sim = Simulation::new(setup).unwrap();
+    let mut sim = Simulation::on_ranks(setup, &ranks).unwrap();
     let count = sim.system().fluid().len();
     for _ in 0..STEPS {
         sim.step().unwrap();
@@ -82,6 +85,23 @@ where
     hash.number(sim.time());
     assert_holds_water(scene, count, system);
     hash.0
+}
+
+/// Asserts that each of three ranks, which share the pairs, has the state `alone`.
+fn assert_same_on_ranks<const D: usize>(name: &str, scene: &Scene, alone: u64)
+where
+    Dim<D>: Dimension<D>,
+{
+    let of_rank = |ranks| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+        pool.install(|| state::<D>(scene, ranks))
+    };
+    let states: Vec<u64> = std::thread::scope(|scope| {
+        let threads: Vec<_> =
+            Ranks::in_threads(3).into_iter().map(|ranks| scope.spawn(move || of_rank(ranks))).collect();
+        threads.into_iter().map(|thread| thread.join().unwrap()).collect()
+    });
+    assert_eq!(states, [alone; 3], "{name} on three ranks");
 }
 
 /// Asserts that no water is lost or inside a solid.
@@ -129,7 +149,13 @@ fn every_bundled_scene_holds_its_water_and_has_the_recorded_bits_after_fifty_ste
             if pair_loop == "reference" && !few {
                 continue;
             }
-            let state = if scene.dimension == 2 { state::<2>(&scene) } else { state::<3>(&scene) };
+            let (flat, alone) = (scene.dimension == 2, Ranks::default());
+            let state = if flat { state::<2>(&scene, alone) } else { state::<3>(&scene, alone) };
+            match (pair_loop, flat) {
+                ("fast", true) => assert_same_on_ranks::<2>(name, &scene, state),
+                ("fast", false) => assert_same_on_ranks::<3>(name, &scene, state),
+                _ => {}
+            }
             let series = series(&path, &sets, &folder.join(format!("{name}-{pair_loop}")));
             writeln!(table, "{name} {pair_loop} {state:016x} {series:016x}").unwrap();
         }

@@ -58,7 +58,7 @@ pub fn start_text(start: &RunStart) -> String {
         "{} water and {} boundary particles, {}, results in {}",
         count.fluid,
         count.boundary,
-        threads(manifest.threads),
+        manifest.workers(),
         start.folder.display()
     );
     text
@@ -81,14 +81,19 @@ pub fn end_text(outcome: &RunOutcome) -> String {
         vec![
             "wall time".into(),
             format!(
-                "{} with {}, {} of processors",
+                "{} with {}, {} of {}",
                 duration(manifest.wall_s),
-                threads(manifest.threads),
-                duration(manifest.cpu_s)
+                manifest.workers(),
+                duration(manifest.cpu_s),
+                if manifest.ranks.is_some() { "the first rank's processors" } else { "processors" }
             ),
         ],
         vec!["speed".into(), format!("{} particle-steps/s", metric_prefix(manifest.particle_steps_per_second))],
     ]);
+    if let Some(ranks) = manifest.ranks {
+        let (share, size) = (100.0 * ranks.time_share, bytes(ranks.received_bytes as f64));
+        let _ = writeln!(text, "\nthe first rank exchanged data for {share:.0} % of the time, and received {size}");
+    }
     if manifest.removed > 0 {
         let what = if manifest.removed == 1 { "particle" } else { "particles" };
         let _ = writeln!(text, "\n{} water {what} left the domain and went: removed.csv", manifest.removed);

@@ -5,7 +5,9 @@ use std::fmt::Write;
 use crate::{
     error::{Error, ErrorKind, Result},
     math::format::{bytes, duration, metric_prefix, three_digits},
-    preflight::{AbsorberSummary, BodyFlow, BodySummary, DiskUse, Finding, GeneratedWave, Preflight, Severity},
+    preflight::{
+        AbsorberSummary, BodyFlow, BodySummary, DiskUse, FaceWave, Finding, GeneratedWave, Preflight, Severity,
+    },
     run::{self, CostEstimate, InspectOptions, InspectReport, Inspection, LARGE},
 };
 use clap::Args;
@@ -171,6 +173,9 @@ fn facts(report: &InspectReport) -> Vec<Vec<String>> {
     for wave in &report.preflight.waves {
         wave_facts(wave).into_iter().for_each(|(name, text)| row(name, text));
     }
+    for wave in &report.preflight.face_waves {
+        face_wave_facts(wave).into_iter().for_each(|(name, text)| row(name, text));
+    }
     for absorber in &report.preflight.absorbers {
         absorber_facts(absorber).into_iter().for_each(|(name, text)| row(name, text));
     }
@@ -202,6 +207,28 @@ fn wave_facts(wave: &GeneratedWave) -> Vec<(&'static str, String)> {
         facts.push(("", format!("share of the height expected at this dp: {}", heights.join(", "))));
     }
     facts
+}
+
+/// A wave that enters through a face, and the current that it meets.
+fn face_wave_facts(wave: &FaceWave) -> [(&'static str, String); 3] {
+    let [height, high, period, length, long, depth, kd] =
+        [wave.height_m, wave.height_dp, wave.period_s, wave.length_m, wave.length_dp, wave.depth_m, wave.kd]
+            .map(three_digits);
+    let [crests, energy, orbital, ramp] =
+        [wave.celerity_mps, wave.group_mps, wave.orbital_mps, wave.ramp_s].map(three_digits);
+    let current = three_digits(wave.current_mps.abs());
+    let sense = if wave.current_mps < 0.0 { "against them" } else { "with them" };
+    [
+        ("waves", format!("{height} m high, {high} dp, period {period} s, {length} m long, {long} dp")),
+        ("", format!("kd {kd}, {depth} m deep; crests {crests} m/s, energy {energy} m/s")),
+        (
+            "",
+            format!(
+                "through \"{}\", ramp {ramp} s: water at up to {orbital} m/s, on {current} m/s of current {sense}",
+                wave.face
+            ),
+        ),
+    ]
 }
 
 /// A paddle that absorbs.

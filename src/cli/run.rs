@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use crate::{
     error::{Error, Result},
     output::manifest::RunStatus,
-    run::{self, RunOptions, RunOutcome},
+    ranks::Ranks,
+    run::{self, Progress, RunObserver, RunOptions, RunOutcome},
 };
 use clap::{Args, ValueEnum};
 
@@ -15,7 +16,7 @@ use super::{
     live::{LiveObserver, LiveServer, LiveState},
     print_error, print_output,
     progress::{CliObserver, ProgressDisplay},
-    report_page, scene_lookup,
+    ranks, report_page, scene_lookup, watch_interrupts,
 };
 
 /// Which scene is run, and how.
@@ -106,14 +107,11 @@ enum LogFormat {
 /// # Errors
 /// As [`run::run`].
 pub fn run(args: &RunArgs) -> Result<u8> {
-    let started = |args: &RunArgs| {
-        let found = scene_lookup::find_scene(&args.scene.scene)?;
-        let options = RunOptions { out: args.out.clone(), overrides: args.overrides(), threads: args.threads };
-        let (mut follow, live) = make_observer(&args.log_args)?;
-        let outcome = found.with_scene_name(run::run(found.path(), &options, &mut *follow));
-        finish(outcome, follow, live, &args.log_args)
-    };
-    report_outcome(started(args), &args.log_args)
+    let find = || scene_lookup::find_scene(&args.scene.scene);
+    on_all_processes(&args.log_args, args.threads, find, |ranks, threads, found, watch| {
+        let options = RunOptions { out: args.out.clone(), overrides: args.overrides(), threads };
+        found.with_scene_name(run::run_on(ranks, found.path(), &options, watch))
+    })
 }
 
 /// `pontoon resume`.
@@ -121,12 +119,45 @@ pub fn run(args: &RunArgs) -> Result<u8> {
 /// # Errors
 /// As [`run::resume`].
 pub fn resume(args: &ResumeArgs) -> Result<u8> {
-    let resumed = |args: &ResumeArgs| {
-        let (mut follow, live) = make_observer(&args.log_args)?;
-        let outcome = run::resume(&args.folder, &args.set, args.threads, &mut *follow);
-        finish(outcome, follow, live, &args.log_args)
+    on_all_processes(
+        &args.log_args,
+        args.threads,
+        || Ok(()),
+        |ranks, threads, (), watch| run::resume_on(ranks, &args.folder, &args.set, threads, watch),
+    )
+}
+
+/// Finds what is run, and runs it on all processes that were started together. The first of them follows the run and says what came
+/// of it; another one speaks only of a fault that is its own.
+fn on_all_processes<T>(
+    log_args: &LogArgs,
+    threads: Option<usize>,
+    find: impl FnOnce() -> Result<T>,
+    run: impl FnOnce(&Ranks, Option<usize>, &T, &mut dyn RunObserver) -> Result<Option<RunOutcome>>,
+) -> Result<u8> {
+    let processes = match ranks::join() {
+        Ok(processes) => processes,
+        Err(error) if ranks::is_silent() => return Err(error),
+        Err(error) => return report_outcome(Err(error), log_args),
     };
-    report_outcome(resumed(args), &args.log_args)
+    let ranks = &processes.ranks;
+    if ranks.rank() > 0 {
+        // Ctrl-C stops the first, which stops the others.
+        let prepared = watch_interrupts(|| {}).and_then(|()| find());
+        let Ok(found) = run::agree(ranks, prepared, |_| String::new()) else { return Ok(0) };
+        let threads = threads.or_else(|| ranks::default_threads(ranks));
+        return run(ranks, threads, &found, &mut |_: &Progress| true)
+            .map(|_| 0)
+            .inspect_err(|error| print_error(&format!("error of rank {}: {error}\n", ranks.rank())));
+    }
+    let led = || {
+        let prepared = find().and_then(|found| Ok((found, make_observer(log_args)?)));
+        let (found, (mut watch, live)) = run::agree(ranks, prepared, |_| String::new())?;
+        let threads = threads.or_else(|| ranks::default_threads(ranks));
+        let outcome = run(ranks, threads, &found, &mut *watch).and_then(run::of_first_rank);
+        finish(outcome, watch, live, log_args)
+    };
+    report_outcome(led(), log_args)
 }
 
 /// What comes of a run, its error said as the user wants it.

@@ -45,6 +45,11 @@ impl<const D: usize> Bodies<D> {
         Self { engine, added_masses, constraints, moorings, accounting: None, external, steps, spent }
     }
 
+    /// Whether the bodies, or what accounts for them, read or change the water itself beside its loads.
+    pub(crate) fn read_water(&self) -> bool {
+        self.external || self.accounting.is_some() || !self.added_masses.is_empty() || !self.moorings.is_empty()
+    }
+
     /// Whether an external program moves the free bodies.
     pub(crate) fn has_external_bodies(&self) -> bool {
         self.external

@@ -110,12 +110,12 @@ impl<K: Kernel, const FLOW: bool, const D: usize> SimdTask for BoundarySlabTask<
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
         let Self { kernel, packed, slab, sums } = self;
-        let Slab { first, middle, end, .. } = slab;
+        let [first, middle, end] = packed.clusters_of(slab);
         let (rows, zero) = (row_count(D, FLOW), f32x8::splat(simd, 0.0));
         sums.fill(LaneRow::default());
-        for c in *first..*end {
+        for c in first..end {
             for l in 0..LANES {
-                let is_water = c < *middle;
+                let is_water = c < middle;
                 let PackedCluster { x, v, s } = &packed.clusters[c];
                 let all = |x: f32| f32x8::splat(simd, x);
                 let (p, volume) = (all(s[2][l]), all(s[3][l]));

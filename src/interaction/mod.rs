@@ -6,6 +6,7 @@
 mod accumulators;
 mod boundary_sums;
 mod compiled;
+mod exchange;
 mod pair_contribution;
 mod reference;
 mod simd;
@@ -129,6 +130,12 @@ pub trait PairLoop<const D: usize>: Send + Sync {
 
     /// Frees the buffers of a pass, before the neighbour lists are rebuilt; the sums of the last pass go with them.
     fn free_buffers(&mut self);
+
+    /// Completes the sums of the water by the last [`PairLoop::rates`] on the first rank, or on all if `everyone`, where ranks have
+    /// those of their own particles only.
+    fn share_fluid_sums(&mut self, neighbours: &NeighbourLists<D>, everyone: bool) {
+        let _ = (neighbours, everyone);
+    }
 
     /// The sums of water particle `i`, gravity included, by the last [`PairLoop::rates`], which had these lists.
     fn fluid_sums(&self, neighbours: &NeighbourLists<D>, i: usize) -> PairSums<D>;

@@ -16,6 +16,7 @@ use super::{
     accumulators::{Accumulators, RequiredSums, for_each_auxiliary, for_each_symmetric_entry},
     boundary_sums::{self, BoundarySums},
     compiled::{CompiledTerms, PairTerms},
+    exchange,
     pair_contribution::PairContribution,
     simd_layout::{PackedCluster, PackedParticles, clusters},
 };
@@ -24,6 +25,7 @@ use crate::{
     math::{Matrix, Vector},
     neighbours::{Clusters, ListPart, NeighbourLists, Slab},
     particles::PARTICLES_PER_TASK,
+    ranks,
     sph::{AuxiliarySums, FluidProperties, PairSide, Term, Units, boundary::WallExtrapolation, kernel::Kernel},
 };
 
@@ -44,8 +46,15 @@ pub(super) struct SimdPairLoop<const D: usize> {
     has_water: bool,
     /// The sums of each slab and of the one after it, slab by slab; at the end rows of zeros.
     sums: Vec<LaneRow>,
-    /// Where the rows of a cluster begin in `sums`: in its own slab and in the slab before.
+    /// The first cluster with rows in `sums`.
+    first: usize,
+    /// Where the rows of a cluster begin in `sums`, from the first on: in its own slab and in the slab before.
     at: Vec<[u32; 2]>,
+    /// Whether `sums` are those of [`PairLoop::rates`].
+    has_rates: bool,
+    /// Acceleration, gravity included, and density rate of all water particles, where they were gathered from all ranks after the
+    /// last pass.
+    gathered: Vec<PairSums<D>>,
     spent: Duration,
 }
 
@@ -59,25 +68,62 @@ impl<const D: usize> SimdPairLoop<D> {
         level: Level,
     ) -> Self {
         let (packed, sums, at) = (PackedParticles::default(), Vec::new(), Vec::new());
-        let (gravity, spent) = (Vector::zeros(), Duration::ZERO);
-        Self { laws, moments, fits, units, level, gravity, packed, has_water: false, sums, at, spent }
+        let (gravity, gathered, spent) = (Vector::zeros(), Vec::new(), Duration::ZERO);
+        let (has_water, has_rates, first) = (false, false, 0);
+        Self {
+            laws,
+            moments,
+            fits,
+            units,
+            level,
+            gravity,
+            packed,
+            has_water,
+            sums,
+            first,
+            at,
+            has_rates,
+            gathered,
+            spent,
+        }
     }
 
-    /// Allocates the sums of all slabs, `rows` a cluster; returns the number of rows that each slab writes.
+    /// Packs the particles: the boundary particles alone if the water is packed for this pass already.
+    fn pack(&mut self, input: &PairLoopInput<'_, D>, clusters: &Clusters) {
+        let has_water = std::mem::replace(&mut self.has_water, true);
+        self.packed.pack(input, clusters, &self.units, has_water);
+        if !has_water {
+            exchange::receive_next_water(&mut self.packed, clusters);
+        }
+    }
+
+    /// Allocates the sums, `rows` a cluster, of the slabs that this rank computes and of the one before, or of all slabs if it needs
+    /// the sums of all. Returns the number of rows that each slab writes.
     fn lay_out(&mut self, clusters: &Clusters, rows: usize) -> Vec<usize> {
-        self.at.resize(clusters.len(), [0; 2]);
-        let mut lengths = Vec::with_capacity(clusters.slabs.len());
+        self.has_rates = false;
+        let own = clusters.own_slabs();
+        let laid_out = match clusters.division.by_owner {
+            true if own.is_empty() => own,
+            true => own.start.saturating_sub(1)..own.end,
+            false => 0..clusters.slabs.len(),
+        };
+        let these = clusters.clusters_of(laid_out.clone());
+        self.first = these.start;
+        self.at.clear();
+        self.at.resize(these.len(), [0; 2]);
+        let mut lengths = vec![0; clusters.slabs.len()];
         let (mut offset, mut before) = (0, None);
-        for (s, slab) in clusters.slabs.iter().enumerate() {
-            for c in slab.first..slab.end {
-                self.at[c][0] = (offset + (c - slab.first) * rows) as u32;
-                self.at[c][1] = before.map_or(u32::MAX, |(offset, first)| (offset + (c - first) * rows) as u32);
+        for s in laid_out {
+            let slab = &clusters.slabs[s];
+            for (c, at) in (slab.first..slab.end).zip(&mut self.at[slab.first - these.start..]) {
+                at[0] = (offset + (c - slab.first) * rows) as u32;
+                at[1] = before.map_or(u32::MAX, |(offset, first)| (offset + (c - first) * rows) as u32);
             }
             let last = clusters.slabs.get(s + 1).map_or(slab.end, |next| next.end);
             before = Some((offset, slab.first));
             // And rows for discarded sums.
-            lengths.push((last - slab.first + 1) * rows);
-            offset += (last - slab.first + 1) * rows;
+            lengths[s] = (last - slab.first + 1) * rows;
+            offset += lengths[s];
         }
         // The first slab has no slab before it: rows of zeros replace it.
         self.at.iter_mut().take_while(|at| at[1] == u32::MAX).for_each(|at| at[1] = offset as u32);
@@ -91,7 +137,7 @@ impl<const D: usize> SimdPairLoop<D> {
     #[inline(always)]
     fn of_slot(&self, slot: u32, rows: usize) -> impl Fn(usize) -> f64 {
         let (c, l) = (slot as usize / LANES, slot as usize % LANES);
-        let [own, before] = self.at[c];
+        let [own, before] = self.at[c - self.first];
         let (own, before) = (&self.sums[own as usize..][..rows], &self.sums[before as usize..][..rows]);
         move |row| f64::from(own[row].0[l]) + f64::from(before[row].0[l])
     }
@@ -125,16 +171,28 @@ impl<const D: usize> SimdPairLoop<D> {
     }
 }
 
-/// The slabs, each with the rows of `sums` that it writes.
+/// The slabs of this rank, each with the rows of `sums` that it writes.
 fn works<'a>(clusters: &'a Clusters, lengths: &[usize], sums: &'a mut [LaneRow]) -> Vec<(&'a Slab, &'a mut [LaneRow])> {
-    let mut rest = sums;
-    let mut works = Vec::with_capacity(lengths.len());
-    for (slab, &length) in clusters.slabs.iter().zip(lengths) {
+    let own = clusters.own_slabs();
+    let mut rest = &mut sums[lengths[..own.start].iter().sum()..];
+    let mut works = Vec::with_capacity(own.len());
+    for (slab, &length) in clusters.slabs[own.clone()].iter().zip(&lengths[own]) {
         let (these, others) = rest.split_at_mut(length);
         works.push((slab, these));
         rest = others;
     }
     works
+}
+
+/// Calls `set` with the item of each boundary particle near water whose sums this rank has, and with its slot.
+fn for_each_own<T: Send>(clusters: &Clusters, items: &mut [T], set: impl Fn(&mut T, u32) + Sync) {
+    let own = match clusters.division.by_owner {
+        true => clusters.clusters_of(clusters.own_slabs()),
+        false => 0..clusters.len(),
+    };
+    let slots = (own.start * LANES) as u32..(own.end * LANES) as u32;
+    let items = items.par_iter_mut().zip(&clusters.boundary_slots).with_min_len(PARTICLES_PER_TASK);
+    items.filter(|(_, slot)| slots.contains(slot)).for_each(|(item, &slot)| set(item, slot));
 }
 
 /// Computes the sums `requested` of all slabs by `terms`; returns the largest |v_ab·r_ab|/(r² + η²), in the units of the pair loop.
@@ -161,31 +219,30 @@ impl<const D: usize> PairLoop<D> for SimdPairLoop<D> {
         extrapolate_to_boundary: &mut [WallExtrapolation<f64, D>],
     ) {
         let clusters = clusters(input.neighbours);
-        self.packed.pack(input, clusters, &self.units, false);
-        self.has_water = true;
+        self.pack(input, clusters);
         let lengths = self.lay_out(clusters, boundary_sums::row_count(D, flow));
         let start = Instant::now();
         let works = works(clusters, &lengths, &mut self.sums);
         let (sums, level, packed) = (&self.fits, self.level, &self.packed);
         works.into_par_iter().with_max_len(1).for_each(|(slab, rows)| sums.sum_slab(level, packed, slab, flow, rows));
         self.spent += start.elapsed();
+        exchange::complete_sums(&mut self.sums, clusters, &lengths);
         let Units { length, time } = self.units;
-        extrapolate_to_boundary.par_iter_mut().zip(&clusters.boundary_slots).with_min_len(PARTICLES_PER_TASK).for_each(
-            |(fit, &slot)| {
-                let sum = self.of_slot(slot, boundary_sums::row_count(D, flow));
-                boundary_sums::for_each_row(fit, flow, |row, x| *x = sum(row));
-                fit.pressure_sum *= (length / time).powi(2);
-                fit.offset_sum = fit.offset_sum.map(|x| x * length);
-                fit.velocity_sum = fit.velocity_sum.map(|x| x * (length / time));
-            },
-        );
+        let rows = boundary_sums::row_count(D, flow);
+        for_each_own(clusters, extrapolate_to_boundary, |fit, slot| {
+            let sum = self.of_slot(slot, rows);
+            boundary_sums::for_each_row(fit, flow, |row, x| *x = sum(row));
+            fit.pressure_sum *= (length / time).powi(2);
+            fit.offset_sum = fit.offset_sum.map(|x| x * length);
+            fit.velocity_sum = fit.velocity_sum.map(|x| x * (length / time));
+        });
+        exchange::share_extrapolations(extrapolate_to_boundary, clusters, flow);
     }
 
     fn moments(&mut self, input: &PairLoopInput<'_, D>, moments: &mut [Matrix<D>]) {
         let Some(needs) = self.moments.as_ref().map(|terms| terms.required_sums()) else { return };
         let clusters = clusters(input.neighbours);
-        self.packed.pack(input, clusters, &self.units, self.has_water);
-        self.has_water = true;
+        self.pack(input, clusters);
         let lengths = self.lay_out(clusters, needs.sum_rows(D));
         let start = Instant::now();
         if let Some(terms) = &self.moments {
@@ -193,8 +250,12 @@ impl<const D: usize> PairLoop<D> for SimdPairLoop<D> {
             sum_slabs(&**terms, self.level, &self.packed, RequestedSums::All, works);
         }
         self.spent += start.elapsed();
-        let slots = clusters.fluid_slots.par_iter().with_min_len(PARTICLES_PER_TASK);
-        moments.par_iter_mut().zip(slots).for_each(|(moment, &slot)| {
+        exchange::complete_sums(&mut self.sums, clusters, &lengths);
+        let these = clusters.division.own_range(moments.len());
+        let slots = clusters.fluid_slots[these.clone()].par_iter().enumerate().with_min_len(PARTICLES_PER_TASK);
+        let is_own = clusters.division.own_water().map(|(_, is_own)| &is_own[these.clone()]);
+        let own = moments[these].par_iter_mut().zip(slots).filter(|(_, (k, _))| is_own.is_none_or(|is_own| is_own[*k]));
+        own.for_each(|(moment, (_, &slot))| {
             let sums = self.auxiliary_sums_of(slot, needs).renormalization;
             *moment = Matrix::from_fn(|i, j| sums[i.max(j)][i.min(j)]);
         });
@@ -212,7 +273,8 @@ impl<const D: usize> PairLoop<D> for SimdPairLoop<D> {
     ) -> StepLimits {
         let clusters = clusters(input.neighbours);
         let needs = self.laws.required_sums();
-        self.packed.pack(input, clusters, &self.units, std::mem::take(&mut self.has_water));
+        self.pack(input, clusters);
+        self.has_water = false;
         if needs.input_rows(D) > 0 {
             self.packed.pack_rows(input, clusters, &self.units, needs);
         }
@@ -221,18 +283,36 @@ impl<const D: usize> PairLoop<D> for SimdPairLoop<D> {
         let works = works(clusters, &lengths, &mut self.sums);
         let closing = sum_slabs(&*self.laws, self.level, &self.packed, requested, works);
         self.spent += start.elapsed();
+        exchange::complete_sums(&mut self.sums, clusters, &lengths);
         self.gravity = input.properties.gravity;
-        let water = clusters.fluid_slots.par_iter().with_min_len(PARTICLES_PER_TASK);
-        let a2 = water
-            .map(|&slot| (self.pair_sums_of(slot).acceleration + self.gravity).norm_squared())
-            .reduce(|| 0.0, f64::max);
-        let skin = boundary.par_iter_mut().zip(&clusters.boundary_slots).with_min_len(PARTICLES_PER_TASK);
-        skin.for_each(|(out, &slot)| *out = self.pair_sums_of(slot));
+        let acceleration2 = |slot: u32| (self.pair_sums_of(slot).acceleration + self.gravity).norm_squared();
+        let slots = &clusters.fluid_slots;
+        let a2 = match clusters.division.own_water() {
+            None => slots
+                .par_iter()
+                .with_min_len(PARTICLES_PER_TASK)
+                .map(|&slot| acceleration2(slot))
+                .reduce(|| 0.0, f64::max),
+            Some((own, _)) => {
+                let own = own.par_iter().with_min_len(PARTICLES_PER_TASK);
+                own.map(|&i| acceleration2(slots[i as usize])).reduce(|| 0.0, f64::max)
+            }
+        };
+        let [low, high] = ranks::words_of(a2);
+        let mut largest = (0.0, 0.0);
+        for [low, high, closing] in clusters.division.ranks.gather_words([low, high, closing.to_bits()]) {
+            largest.0 = f64::max(largest.0, ranks::from_words(low, high));
+            largest.1 = f32::max(largest.1, f32::from_bits(closing));
+        }
+        let (a2, closing) = largest;
+        (self.has_rates, self.gathered) = (true, Vec::new());
+        for_each_own(clusters, boundary, |out, slot| *out = self.pair_sums_of(slot));
+        exchange::share_boundary_sums(boundary, clusters);
         StepLimits { acceleration: a2.sqrt(), approach_rate: f64::from(closing) / self.units.time }
     }
 
     fn memory_bytes(&self) -> usize {
-        let PackedParticles { clusters, rows, corrected } = &self.packed;
+        let PackedParticles { clusters, rows, corrected, .. } = &self.packed;
         // The extrapolation to the walls has more rows of sums than some pair loops, and shorter vectors keep their
         // memory.
         let packed = size_of_val(&clusters[..]) + rows.capacity() * size_of::<LaneRow>() + corrected.capacity();
@@ -243,9 +323,20 @@ impl<const D: usize> PairLoop<D> for SimdPairLoop<D> {
 
     fn free_buffers(&mut self) {
         (self.packed, self.sums, self.at) = (PackedParticles::default(), Vec::new(), Vec::new());
+        (self.has_rates, self.gathered) = (false, Vec::new());
+    }
+
+    fn share_fluid_sums(&mut self, neighbours: &NeighbourLists<D>, everyone: bool) {
+        if !self.has_rates {
+            return;
+        }
+        self.gathered = exchange::gather_sums(clusters(neighbours), everyone, |i| self.fluid_sums(neighbours, i));
     }
 
     fn fluid_sums(&self, neighbours: &NeighbourLists<D>, i: usize) -> PairSums<D> {
+        if let Some(sums) = self.gathered.get(i) {
+            return *sums;
+        }
         let mut sums = self.pair_sums_of(clusters(neighbours).fluid_slots[i]);
         sums.acceleration += self.gravity;
         sums
@@ -300,7 +391,7 @@ struct SlabInput<'a, S: Simd, K, const D: usize> {
     rows: &'a [LaneRow],
     /// Whether a particle of the cluster has a gradient correction, if terms read it.
     corrected: &'a [bool],
-    /// The slab's first cluster.
+    /// Where the slab's first cluster is packed.
     first: usize,
     /// The needs of all terms together.
     needs: RequiredSums,
@@ -315,7 +406,7 @@ impl<K: Kernel, T: Term<D>, W: Term<D>, const D: usize> SimdTask for SlabTask<'_
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> f32 {
         let Self { laws, packed, requested, slab, sums } = self;
-        let Slab { first, middle, end, .. } = slab;
+        let [first, middle, end] = packed.clusters_of(slab);
         let needs = const { RequiredSums::of_terms::<(T, W), D>() };
         let given = SlabInput {
             simd,
@@ -326,21 +417,21 @@ impl<K: Kernel, T: Term<D>, W: Term<D>, const D: usize> SimdTask for SlabTask<'_
             clusters: &packed.clusters,
             rows: &packed.rows,
             corrected: &packed.corrected,
-            first: *first,
+            first,
             needs,
             auxiliary: needs.any_auxiliary() && requested == RequestedSums::All,
             sum_rows: needs.requested_rows(D, requested),
         };
         sums.fill(LaneRow::default());
         let mut closing = given.zero;
-        for c in *first..*end {
+        for c in first..end {
             for l in 0..LANES {
                 let slot = (c - first) * LANES + l;
                 if slab.is_unpaired(slot) {
                     continue;
                 }
                 let (one, mut sum) = (given.particle_in_lane(c, l), Accumulators::filled_with(given.zero));
-                let is_water = c < *middle;
+                let is_water = c < middle;
                 // First pairs of water particles; a boundary particle is paired with water only, by the wall terms.
                 for ListPart { base, water, .. } in slab.list(slot) {
                     let water = if is_water { water } else { &[] };

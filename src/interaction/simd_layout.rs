@@ -1,12 +1,14 @@
 //! Memory layout of the particles for the SIMD pair loop.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
 use super::{PairLoopInput, accumulators::RequiredSums};
 use crate::{
     math::simd::{LANES, LaneRow},
     math::{Matrix, Vector},
-    neighbours::{self, Clusters, NeighbourLists, PairLists},
+    neighbours::{self, Clusters, NeighbourLists, PairLists, Slab},
     sph::{Units, pressure::repulsion},
 };
 
@@ -31,6 +33,9 @@ pub(super) struct PackedCluster<const D: usize> {
 }
 
 impl<const D: usize> PackedCluster<D> {
+    /// Words of 32 bits.
+    pub(super) const WORDS: usize = (2 * D + 4) * LANES;
+
     const EMPTY: Self =
         Self { x: [[0; LANES]; D], v: [[0.0; LANES]; D], s: [[0.0; LANES], [0.0; LANES], [0.0; LANES], [1.0; LANES]] };
 }
@@ -38,6 +43,8 @@ impl<const D: usize> PackedCluster<D> {
 /// The packed particles, with additional rows where terms read a mark or a tensor.
 #[derive(Clone, Debug, Default)]
 pub(super) struct PackedParticles<const D: usize> {
+    /// The first packed cluster: a rank packs those that it reads.
+    pub(super) first: usize,
     pub(super) clusters: Vec<PackedCluster<D>>,
     pub(super) rows: Vec<LaneRow>,
     /// Whether a particle of the cluster has a gradient correction, if terms read it.
@@ -47,10 +54,13 @@ pub(super) struct PackedParticles<const D: usize> {
 impl<const D: usize> PackedParticles<D> {
     /// Packs all particles that may have pairs; only the boundary particles if the water has not changed.
     pub(super) fn pack(&mut self, input: &PairLoopInput<'_, D>, clusters: &Clusters, units: &Units, water_stays: bool) {
-        self.clusters.reserve_exact(clusters.len().saturating_sub(self.clusters.len()));
-        self.clusters.resize(clusters.len(), PackedCluster::EMPTY);
+        let these = clusters.clusters_of(clusters.read_slabs());
+        self.first = these.start;
+        self.clusters.reserve_exact(these.len().saturating_sub(self.clusters.len()));
+        self.clusters.resize(these.len(), PackedCluster::EMPTY);
         let inv_unit = 1.0 / units.length;
-        clusters.split_by_slab(&mut self.clusters, 1).into_par_iter().with_max_len(1).for_each(|(slab, packed)| {
+        let works = clusters.split_by_slab(clusters.read_slabs(), &mut self.clusters, 1);
+        works.into_par_iter().with_max_len(1).for_each(|(slab, packed)| {
             let skip = if water_stays { slab.middle - slab.first } else { 0 };
             for (c, cluster) in (slab.first..).zip(packed).skip(skip) {
                 let source = &clusters.source[c * LANES..(c + 1) * LANES];
@@ -65,6 +75,37 @@ impl<const D: usize> PackedParticles<D> {
         });
     }
 
+    /// Where the slab's first cluster of water, its first of boundary particles, and its end are packed.
+    pub(super) fn clusters_of(&self, slab: &Slab) -> [usize; 3] {
+        [slab.first, slab.middle, slab.end].map(|c| c - self.first)
+    }
+
+    /// Where the clusters `these` are packed.
+    fn places(&self, these: Range<usize>) -> Range<usize> {
+        if these.is_empty() { 0..0 } else { these.start - self.first..these.end - self.first }
+    }
+
+    /// The clusters `these` as words.
+    pub(super) fn words(&self, these: Range<usize>) -> Vec<u32> {
+        let words = |cluster: &PackedCluster<D>| {
+            let PackedCluster { x, v, s } = *cluster;
+            let integers = x.into_iter().flatten().map(|x| x as u32);
+            integers.chain(v.into_iter().chain(s).flatten().map(f32::to_bits))
+        };
+        self.clusters[self.places(these)].iter().flat_map(words).collect()
+    }
+
+    /// Sets the clusters `these` to what [`PackedParticles::words`] gave.
+    pub(super) fn set_words(&mut self, these: Range<usize>, words: &[u32]) {
+        let these = self.places(these);
+        for (cluster, words) in self.clusters[these].iter_mut().zip(words.chunks_exact(PackedCluster::<D>::WORDS)) {
+            let row = |k: usize| -> [u32; LANES] { std::array::from_fn(|l| words[k * LANES + l]) };
+            cluster.x = std::array::from_fn(|k| row(k).map(|x| x as i32));
+            cluster.v = std::array::from_fn(|k| row(D + k).map(f32::from_bits));
+            cluster.s = std::array::from_fn(|k| row(2 * D + k).map(f32::from_bits));
+        }
+    }
+
     /// Packs the additional rows: marks of boundary particles, stress and gradient correction of the water, repulsion of both.
     pub(super) fn pack_rows(
         &mut self,
@@ -75,14 +116,15 @@ impl<const D: usize> PackedParticles<D> {
     ) {
         let (mark, count) = (needs.suppression, needs.input_rows(D));
         self.rows.clear();
-        self.rows.reserve_exact(clusters.len() * count);
-        self.rows.resize(clusters.len() * count, LaneRow::default());
+        self.rows.reserve_exact(self.clusters.len() * count);
+        self.rows.resize(self.clusters.len() * count, LaneRow::default());
         let scale = (units.time / units.length).powi(2);
-        let packed = &self.clusters;
-        clusters.split_by_slab(&mut self.rows, count).into_par_iter().with_max_len(1).for_each(|(slab, rows)| {
+        let (packed, first_packed) = (&self.clusters, self.first);
+        let works = clusters.split_by_slab(clusters.read_slabs(), &mut self.rows, count);
+        works.into_par_iter().with_max_len(1).for_each(|(slab, rows)| {
             for (c, rows) in (slab.first..).zip(rows.chunks_mut(count)) {
                 if needs.repulsion {
-                    let [_, _, p, s] = packed[c].s;
+                    let [_, _, p, s] = packed[c - first_packed].s;
                     let of = |l: usize| repulsion(f64::from(p[l]), f64::from(s[l])) as f32;
                     rows[needs.repulsion_row()] = LaneRow(std::array::from_fn(of));
                 }
@@ -113,7 +155,7 @@ impl<const D: usize> PackedParticles<D> {
             let first = needs.gradient_correction_row(D);
             let any = |rows: &[LaneRow]| rows[first..].iter().any(|row| row.0.iter().any(|&c| c != 0.0));
             self.corrected.clear();
-            self.corrected.reserve_exact(clusters.len());
+            self.corrected.reserve_exact(self.clusters.len());
             self.corrected.extend(self.rows.chunks(count).map(any));
         }
     }

@@ -144,6 +144,11 @@ impl<const D: usize> UnsteadyField<D> {
         read(text, names).map(|root| Self { root })
     }
 
+    /// Whether it is the same everywhere, at all times.
+    pub(crate) fn is_constant(&self) -> bool {
+        self.root.is_constant()
+    }
+
     /// The field that is `value` everywhere, at all times.
     pub fn constant(value: f64) -> Self {
         Self { root: Node::Number(value) }

@@ -5,11 +5,14 @@
 //! particle within the lists' reach: so each pair of particles is met once, and what a slab writes lies in itself and the
 //! slab after it. A water particle's list begins with its own cluster; boundary particles do not meet.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
 use super::{
     columns::{Columns, Sorted},
-    search::{self, SearchSizes},
+    division::Division,
+    search::{self, SearchInput, SearchSizes},
     to_integer,
 };
 use crate::{
@@ -88,6 +91,8 @@ pub struct Clusters {
     pub fluid_slots: Vec<u32>,
     /// The slot of each wet boundary particle, in the order of [`super::NeighbourLists::boundary_near_fluid`].
     pub boundary_slots: Vec<u32>,
+    /// What each rank computes.
+    pub(crate) division: Division,
 }
 
 /// The extent of a cluster, for the search for pairs.
@@ -129,31 +134,74 @@ impl Clusters {
     ) -> Vec<u32> {
         self.source.clear();
         self.slabs.resize_with(columns.slab_count(), Slab::default);
-        let mut extents = Vec::with_capacity(self.source.capacity() / LANES);
+        let (up, span, read) = (columns.up, SPAN * sizes.width, self.read_slabs());
+        let lacking = self.lacking_clusters(columns, (water_r, water), span);
+        // Lists are made of the slabs that this rank reads, and only their clusters need an extent.
+        let [mut extents, mut unread] = [Vec::with_capacity(self.source.capacity() / LANES), Vec::new()];
         let (mut ranges, mut end) = ([vec![0..0; columns.len()], vec![0..0; columns.len()]], 0);
         for (s, slab) in self.slabs.iter_mut().enumerate() {
             slab.first = end;
+            let extents = if read.contains(&s) { &mut extents } else { &mut unread };
+            self.source.resize((end + lacking.get(s).map_or(0, |&n| n as usize)) * LANES, PAD);
             for (kind, (r, sorted)) in [(water_r, water), (skin_r, skin)].into_iter().enumerate() {
                 for column in columns.columns_of_slab(s) {
-                    let before = extents.len() as u32;
+                    let before = (self.source.len() / LANES) as u32;
                     let particles = &sorted.order[sorted.start[column] as usize..sorted.start[column + 1] as usize];
-                    cut(particles, r, columns.up, SPAN * sizes.width, column as u32, &mut self.source, &mut extents);
-                    ranges[kind][column] = before..extents.len() as u32;
+                    cut(particles, r, up, span, column as u32, &mut self.source, extents);
+                    ranges[kind][column] = before..(self.source.len() / LANES) as u32;
                 }
                 if kind == 0 {
-                    slab.middle = extents.len();
+                    slab.middle = self.source.len() / LANES;
                 }
             }
-            end = extents.len();
+            unread.clear();
+            end = self.source.len() / LANES;
             slab.end = end;
         }
         self.source.shrink_to_fit();
         let x = self.places(water_r, skin_r, &mut extents, sizes.inv_unit);
-        let touched = search::fill_lists(columns, &mut self.slabs, &self.source, &x, &extents, &ranges, sizes, level);
-        self.maps(water_r.len(), &touched)
+        let (own, first) = (self.own_slabs(), self.slabs.get(read.start).map_or(0, |slab| slab.first));
+        let given = SearchInput { columns, source: &self.source, x: &x, extents: (first, &extents), ranges: &ranges };
+        let mut touched = search::fill_lists(given, &mut self.slabs, own, sizes, level);
+        self.division.combine_lists(&self.slabs, &mut touched);
+        let wet = self.maps(water_r.len(), &touched);
+        self.division.find_owners(&self.slabs, &self.source, &self.boundary_slots, water_r.len());
+        wet
     }
 
-    /// The positions of all slots in integer units, and the boxes around the clusters.
+    /// The number of clusters of water in each slab whose water this rank lacks; empty if it lacks none.
+    fn lacking_clusters<const D: usize>(
+        &self,
+        columns: &Columns<D>,
+        (r, water): (&[Vector<D>], &Sorted),
+        span: f64,
+    ) -> Vec<u32> {
+        if !self.division.is_apart {
+            return Vec::new();
+        }
+        let mut counts = vec![0; self.slabs.len()];
+        for slab in self.own_slabs() {
+            for column in columns.columns_of_slab(slab) {
+                let particles = &water.order[water.start[column] as usize..water.start[column + 1] as usize];
+                counts[slab] += runs(particles, r, columns.up, span).count() as u32;
+            }
+        }
+        self.division.share_by_slab(&mut counts);
+        counts[self.read_slabs()].fill(0);
+        counts
+    }
+
+    /// The slabs that this rank computes.
+    pub(crate) fn own_slabs(&self) -> Range<usize> {
+        self.division.own_slabs()
+    }
+
+    /// The slabs that the sums of this rank read: its own and the next.
+    pub(crate) fn read_slabs(&self) -> Range<usize> {
+        self.division.read_slabs(self.slabs.len())
+    }
+
+    /// The positions of the slots of the read slabs in integer units, and the boxes around their clusters.
     fn places<const D: usize>(
         &self,
         water: &[Vector<D>],
@@ -162,8 +210,11 @@ impl Clusters {
         inv_unit: f64,
     ) -> Vec<[[i32; LANES]; D]> {
         let mut x = vec![[[0; LANES]; D]; self.len()];
-        let work = self.split_by_slab(&mut x, 1).into_par_iter().zip(self.split_by_slab(extents, 1));
-        work.for_each(|((slab, x), (_, extents))| {
+        let read = self.read_slabs();
+        let these = self.clusters_of(read.clone());
+        let places = self.split_by_slab(read.clone(), &mut x[these], 1);
+        let places: Vec<_> = places.into_iter().zip(self.split_by_slab(read, extents, 1)).collect();
+        places.into_par_iter().for_each(|((slab, x), (_, extents))| {
             for ((c, x), extent) in (slab.first..).zip(x).zip(extents) {
                 let source = &self.source[c * LANES..(c + 1) * LANES];
                 fill_positions(x, source, if c < slab.middle { water } else { skin }, inv_unit);
@@ -181,11 +232,25 @@ impl Clusters {
         x
     }
 
-    /// `items`, of which each cluster has `each`, slab by slab.
-    pub(crate) fn split_by_slab<'a, T>(&'a self, items: &'a mut [T], each: usize) -> Vec<(&'a Slab, &'a mut [T])> {
+    /// The clusters of these slabs.
+    pub(crate) fn clusters_of(&self, slabs: Range<usize>) -> Range<usize> {
+        match &self.slabs[slabs] {
+            [] => 0..0,
+            [first, .., last] => first.first..last.end,
+            [slab] => slab.first..slab.end,
+        }
+    }
+
+    /// `items` of these slabs, of which each cluster has `each`, slab by slab.
+    pub(crate) fn split_by_slab<'a, T>(
+        &'a self,
+        slabs: Range<usize>,
+        items: &'a mut [T],
+        each: usize,
+    ) -> Vec<(&'a Slab, &'a mut [T])> {
         let mut rest = items;
-        let mut parts = Vec::with_capacity(self.slabs.len());
-        for slab in &self.slabs {
+        let mut parts = Vec::with_capacity(slabs.len());
+        for slab in &self.slabs[slabs] {
             let (these, others) = rest.split_at_mut((slab.end - slab.first) * each);
             parts.push((slab, these));
             rest = others;
@@ -195,8 +260,7 @@ impl Clusters {
 
     /// Records the slot of each particle; returns the boundary particles near water in ascending order.
     fn maps(&mut self, water: usize, touched: &[u8]) -> Vec<u32> {
-        self.fluid_slots.clear();
-        self.fluid_slots.resize(water, 0);
+        self.fluid_slots = vec![0; water];
         let mut wet = Vec::new();
         for slab in &self.slabs {
             for slot in slab.first * LANES..slab.middle * LANES {
@@ -253,16 +317,29 @@ fn cut<const D: usize>(
     extents: &mut Vec<ClusterExtent<D>>,
 ) {
     let height = |i: u32| r[i as usize][up];
-    let mut rest = particles;
-    while let Some(&lowest) = rest.first() {
-        let low = height(lowest);
-        let n = 1 + rest[1..].iter().take(LANES - 1).take_while(|&&i| height(i) - low <= span).count();
-        let (these, others) = rest.split_at(n);
+    for these in runs(particles, r, up, span) {
         source.extend(these);
-        source.extend(std::iter::repeat_n(PAD, LANES - n));
+        source.extend(std::iter::repeat_n(PAD, LANES - these.len()));
+        let low = height(these[0]);
         let high = these.iter().map(|&i| height(i)).fold(low, f64::max);
         let low = these.iter().map(|&i| height(i)).fold(low, f64::min);
         extents.push(ClusterExtent { column, low, high, centre: [0; D], half: [0.0; D] });
-        rest = others;
     }
+}
+
+/// The particles of a column in runs of at most a cluster, none higher than `span` (m).
+fn runs<'a, const D: usize>(
+    particles: &'a [u32],
+    r: &'a [Vector<D>],
+    up: usize,
+    span: f64,
+) -> impl Iterator<Item = &'a [u32]> {
+    let (height, mut rest) = (move |i: u32| r[i as usize][up], particles);
+    std::iter::from_fn(move || {
+        let low = height(*rest.first()?);
+        let n = 1 + rest[1..].iter().take(LANES - 1).take_while(|&&i| height(i) - low <= span).count();
+        let (these, others) = rest.split_at(n);
+        rest = others;
+        Some(these)
+    })
 }

@@ -16,7 +16,7 @@ const COLUMNS_PER_PARTICLE: f64 = 4.0;
 
 /// The division of space into columns.
 #[derive(Clone, Debug)]
-pub(super) struct Columns<const D: usize> {
+pub(crate) struct Columns<const D: usize> {
     /// Around all places within reach of the water.
     around: Bounds<D>,
     min: Vector<D>,
@@ -47,11 +47,10 @@ pub(super) struct Sorted {
 }
 
 impl<const D: usize> Columns<D> {
-    /// Divides the space of the water `r` (m) into columns at least `width` (m) wide, for neighbours
+    /// Divides the space of `count` particles within `bounds` (m) into columns at least `width` (m) wide, for neighbours
     /// within `reach` (m).
-    pub(super) fn new(r: &[Vector<D>], width: f64, reach: f64) -> Self {
-        let bounds =
-            if r.is_empty() { Bounds { min: Vector::zeros(), max: Vector::zeros() } } else { Bounds::around(r) };
+    pub(super) fn new(bounds: Bounds<D>, count: usize, width: f64, reach: f64) -> Self {
+        let bounds = if count == 0 { Bounds { min: Vector::zeros(), max: Vector::zeros() } } else { bounds };
         let size = bounds.size();
         let mut axes: Vec<usize> = (0..D).collect();
         axes.sort_by(|&a, &b| size[b].total_cmp(&size[a]));
@@ -59,7 +58,7 @@ impl<const D: usize> Columns<D> {
         let wanted = |axis: usize, width: f64| (size[axis] / width).floor() + 1.0;
         let cross = |width: f64| if D == 2 { 1.0 } else { wanted(across, width) };
         let mut width = width;
-        while wanted(along, width) * cross(width) > 1000.0 + COLUMNS_PER_PARTICLE * r.len() as f64 {
+        while wanted(along, width) * cross(width) > 1000.0 + COLUMNS_PER_PARTICLE * count as f64 {
             width *= 2.0;
         }
         Self {
@@ -89,6 +88,11 @@ impl<const D: usize> Columns<D> {
     /// The slab of a column.
     pub(super) fn slab_of_column(&self, column: usize) -> usize {
         column / (self.count[1] * self.ring)
+    }
+
+    /// The slab of the place `x` (m).
+    pub(crate) fn slab_at(&self, x: &Vector<D>) -> usize {
+        self.slab_of_column(self.column_at(x))
     }
 
     /// The columns of a slab.
@@ -147,9 +151,14 @@ impl<const D: usize> Columns<D> {
         Sorted { order: keys.into_par_iter().with_min_len(PARTICLES_PER_TASK).map(|key| key as u32).collect(), start }
     }
 
-    /// Which of the places `skin` may be within `reach` of the sorted water, in ascending order.
-    pub(super) fn near_fluid(&self, water: &[Vector<D>], sorted: &Sorted, skin: &[Vector<D>], reach: f64) -> Vec<u32> {
-        let heights = self.heights(water, sorted, reach);
+    /// Which of the places `skin` may be within reach of the water, in ascending order, by the heights (m) of the water in each
+    /// column.
+    pub(super) fn near_fluid(&self, heights: &[Option<(f64, f64)>], skin: &[Vector<D>]) -> Vec<u32> {
+        let around = |c: usize| {
+            let heights = self.neighbouring_columns(c).filter_map(|c| heights[c]);
+            heights.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
+        };
+        let heights: Vec<Option<(f64, f64)>> = (0..self.len()).map(around).collect();
         let may = |x: &Vector<D>| {
             let within = |(low, high)| low <= x[self.up] && x[self.up] <= high;
             self.around.contains(x) && heights[self.column_at(x)].is_some_and(within)
@@ -161,18 +170,14 @@ impl<const D: usize> Columns<D> {
             .collect()
     }
 
-    /// For each column, between which heights (m) lie the places within `reach` of the sorted water: a box around
-    /// it. A column without water near it has none.
-    fn heights(&self, r: &[Vector<D>], sorted: &Sorted, reach: f64) -> Vec<Option<(f64, f64)>> {
+    /// For each column, between which heights (m) places within `reach` (m) of its sorted water may lie. A column without water has
+    /// none.
+    pub(super) fn heights(&self, r: &[Vector<D>], sorted: &Sorted, reach: f64) -> Vec<Option<(f64, f64)>> {
         let height = |k: u32| r[sorted.order[k as usize] as usize][self.up];
-        let own: Vec<Option<(f64, f64)>> = (0..self.len())
-            .map(|c| {
-                let (from, to) = (sorted.start[c], sorted.start[c + 1]);
-                (from < to).then(|| (height(from) - reach, height(to - 1) + reach))
-            })
-            .collect();
-        (0..self.len())
-            .map(|c| self.neighbouring_columns(c).filter_map(|c| own[c]).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))))
-            .collect()
+        let of = |c: usize| {
+            let (from, to) = (sorted.start[c], sorted.start[c + 1]);
+            (from < to).then(|| (height(from) - reach, height(to - 1) + reach))
+        };
+        (0..self.len()).map(of).collect()
     }
 }

@@ -6,23 +6,28 @@
 
 mod clusters;
 mod columns;
+mod division;
 mod grid;
 mod lists;
 mod search;
 
 pub use clusters::{Clusters, ListPart, PAD};
 pub(crate) use clusters::{Slab, fill_positions, occupied_lanes};
+pub(crate) use columns::Columns;
+pub(crate) use division::Division;
 pub(crate) use grid::CellGrid;
 pub use lists::CHUNK;
 pub(crate) use lists::{ParticleListChunk, ParticleLists};
 
-use std::sync::OnceLock;
+use std::{ops::Range, sync::OnceLock};
 
 use crate::{
-    math::simd::Level,
-    math::{Bounds, Vector},
+    math::simd::{LANES, Level},
+    math::{Bounds, Matrix, Vector},
+    particles::{Particles, zeros},
+    ranks::Ranks,
 };
-use columns::Columns;
+use columns::Sorted;
 
 /// Margin of the lists beyond the support, over the support: they are rebuilt about every ten steps.
 const MARGIN: f64 = 0.1;
@@ -76,13 +81,37 @@ impl<const D: usize> NeighbourLists<D> {
         }
     }
 
+    /// The same lists, whose pairs these ranks share. The lists of single neighbours are not shared: every rank has them all.
+    pub fn on_ranks(mut self, ranks: Ranks) -> Self {
+        if let PairLists::Clusters(clusters, _) = &mut self.pair_lists {
+            clusters.division.ranks = ranks;
+        }
+        self
+    }
+
+    /// How ranks share the particles; `None` with lists of single neighbours, which every rank has.
+    pub(crate) fn division(&self) -> Option<&Division> {
+        match &self.pair_lists {
+            PairLists::Clusters(clusters, _) => Some(&clusters.division),
+            PairLists::Lists(_) => None,
+        }
+    }
+
+    /// The same, for changes.
+    pub(crate) fn division_mut(&mut self) -> Option<&mut Division> {
+        match &mut self.pair_lists {
+            PairLists::Clusters(clusters, _) => Some(&mut clusters.division),
+            PairLists::Lists(_) => None,
+        }
+    }
+
     /// The unit of length in which positions are whole numbers, m.
     pub fn length_unit(reach: f64) -> f64 {
         reach / UNITS
     }
 
     /// Removes the boundary particles `gone`; the later ones are renumbered.
-    pub(crate) fn remove_boundary(&mut self, gone: std::ops::Range<usize>) {
+    pub(crate) fn remove_boundary(&mut self, gone: Range<usize>) {
         self.boundary_near_fluid.retain(|&i| !gone.contains(&(i as usize)));
         let later = self.boundary_near_fluid.partition_point(|&i| (i as usize) < gone.start);
         self.boundary_near_fluid[later..].iter_mut().for_each(|i| *i -= gone.len() as u32);
@@ -93,10 +122,29 @@ impl<const D: usize> NeighbourLists<D> {
         MARGIN * self.support_radius
     }
 
-    /// The order in which water at `r` lies along the columns: `order[new] = old`.
+    /// The order in which water at `r` (m) lies along the columns: `order[new] = old`.
     pub(crate) fn column_order(&self, r: &[Vector<D>]) -> Vec<u32> {
-        let columns = Columns::new(r, WIDTH * self.dp, self.list_radius());
-        columns.sort(r, &all_indices(r.len())).order
+        self.columns(Bounds::around(r), r.len()).sort(r, &all_indices(r.len())).order
+    }
+
+    /// The columns of `count` particles of water within `bounds` (m).
+    fn columns(&self, bounds: Bounds<D>, count: usize) -> Columns<D> {
+        Columns::new(bounds, count, WIDTH * self.dp, self.list_radius())
+    }
+
+    /// The columns of the water of all ranks, of which this one has its own at the places `r` (m); shares the slabs out anew.
+    pub(crate) fn share_out(&mut self, r: &[Vector<D>]) -> Columns<D> {
+        let own = self.division().and_then(Division::own_water).map_or(&[][..], |(own, _)| own);
+        let own = || own.iter().map(|&i| &r[i as usize]);
+        let bounds = Bounds::around(own());
+        let columns = self.columns(self.division().map_or(bounds, |division| division.union(&bounds)), r.len());
+        let mut particles = vec![0; columns.slab_count()];
+        own().for_each(|r| particles[columns.slab_at(r)] += 1);
+        if let Some(division) = self.division_mut() {
+            division.ranks.add_numbers(&mut particles);
+            division.share_out(&particles);
+        }
+        columns
     }
 
     /// Search radius of the lists, m.
@@ -104,16 +152,53 @@ impl<const D: usize> NeighbourLists<D> {
         self.support_radius + self.margin()
     }
 
+    /// The order of this rank's water at `r` (m) in `columns`.
+    pub(crate) fn own_order(&self, columns: &Columns<D>, r: &[Vector<D>]) -> Vec<u32> {
+        let own = self.division().and_then(Division::own_water).map_or(&[][..], |(own, _)| own);
+        columns.sort(r, own).order
+    }
+
     /// Builds the lists for these positions of water and boundary particles.
     pub fn build(&mut self, water: &[Vector<D>], skin: &[Vector<D>]) {
-        self.grids = Default::default();
         self.positions_at_build.clear();
         self.positions_at_build.reserve_exact(water.len());
         self.positions_at_build.extend_from_slice(water);
+        let columns = self.columns(Bounds::around(water), water.len());
+        let sorted = columns.sort(water, &all_indices(water.len()));
+        if let Some(division) = self.division_mut() {
+            let start = |column: usize| sorted.start[column];
+            let slabs = (0..columns.slab_count()).map(|slab| columns.columns_of_slab(slab));
+            division.share_out(&slabs.map(|of| start(of.end) - start(of.start)).collect::<Vec<_>>());
+        }
+        self.build_sorted(&columns, (water, &sorted), skin);
+    }
+
+    /// Builds the lists in `columns` that [`NeighbourLists::share_out`] gave, where this rank has its own water and the particles
+    /// `next` of the next rank's first slab.
+    pub(crate) fn build_own(&mut self, columns: &Columns<D>, water: &[Vector<D>], next: &[u32], skin: &[Vector<D>]) {
+        self.positions_at_build = zeros(water.len());
+        let own = match &self.pair_lists {
+            PairLists::Clusters(clusters, _) => clusters.division.own_water(),
+            PairLists::Lists(_) => None,
+        };
+        let mut which = own.map_or(Vec::new(), |(own, _)| own.to_vec());
+        which.iter().for_each(|&i| self.positions_at_build[i as usize] = water[i as usize]);
+        which.extend(next);
+        self.build_sorted(columns, (water, &columns.sort(water, &which)), skin);
+    }
+
+    fn build_sorted(&mut self, columns: &Columns<D>, (water, sorted): (&[Vector<D>], &Sorted), skin: &[Vector<D>]) {
+        self.grids = Default::default();
         let look = self.list_radius();
-        let columns = Columns::new(water, WIDTH * self.dp, look);
-        let water_sorted = columns.sort(water, &all_indices(water.len()));
-        let near = columns.near_fluid(water, &water_sorted, skin, look);
+        let mut heights = columns.heights(water, sorted, look);
+        if let Some(division) = self.division().filter(|division| division.is_apart) {
+            let mut ends: Vec<f64> =
+                heights.iter().flat_map(|h| h.map_or([f64::NAN; 2], |(low, high)| [low, high])).collect();
+            let of_slab = |slab: usize| columns.columns_of_slab(slab);
+            division.share_by_column(&mut ends, |slab| 2 * of_slab(slab).start..2 * of_slab(slab).end);
+            heights = ends.chunks_exact(2).map(|ends| (!ends[0].is_nan()).then_some((ends[0], ends[1]))).collect();
+        }
+        let near = columns.near_fluid(&heights, skin);
         self.boundary_near_fluid = match &mut self.pair_lists {
             PairLists::Lists(lists) => {
                 let (grid, skin_grid) = (CellGrid::new(water, look), CellGrid::new(skin, look));
@@ -126,9 +211,58 @@ impl<const D: usize> NeighbourLists<D> {
                     inv_unit: 1.0 / Self::length_unit(self.support_radius),
                 };
                 let skin_sorted = columns.sort(skin, &near);
-                clusters.build(&columns, (water, &water_sorted), (skin, &skin_sorted), &sizes, *level)
+                clusters.build(columns, (water, sorted), (skin, &skin_sorted), &sizes, *level)
             }
         };
+    }
+
+    /// Leaves the positions at the last build of `these` particles alone.
+    pub(crate) fn leave_positions(&mut self, these: &Range<usize>) {
+        let mut left = zeros(self.positions_at_build.len());
+        left[these.clone()].copy_from_slice(&self.positions_at_build[these.clone()]);
+        (self.positions_at_build, self.grids) = (left, Default::default());
+    }
+
+    /// Gives the first rank, or all if `everyone`, all `water`, its positions at the last build, and its gradient `corrections` if
+    /// there are any.
+    pub(crate) fn share_water(
+        &mut self,
+        water: &mut Particles<D>,
+        corrections: Option<&mut [Matrix<D>]>,
+        everyone: bool,
+    ) {
+        let Self { pair_lists: PairLists::Clusters(clusters, _), positions_at_build, .. } = self else { return };
+        let division = &clusters.division;
+        let Some((own, _)) = division.own_water() else { return };
+        let takes = everyone || division.ranks.rank() == 0;
+        let numbers = Particles::<D>::NUMBERS;
+        let width = numbers + D + if corrections.is_some() { D * D } else { 0 };
+        type Data<'a, const D: usize> = (&'a mut Particles<D>, &'a mut [Vector<D>], Option<&'a mut [Matrix<D>]>);
+        let give = |(water, then, corrections): &Data<'_, D>, i: usize, given: &mut Vec<f64>| {
+            water.give(i, given);
+            given.extend(then[i].iter());
+            corrections.iter().for_each(|corrections| given.extend(corrections[i].iter()));
+        };
+        let take = |(water, then, corrections): &mut Data<'_, D>, i: usize, given: &[f64]| {
+            if takes {
+                water.take(i, given);
+                then[i] = Vector::from_column_slice(&given[numbers..numbers + D]);
+                let correction = &given[numbers + D..];
+                corrections.iter_mut().for_each(|all| all[i] = Matrix::from_column_slice(correction));
+            }
+        };
+        division.share_water(own, &mut (water, &mut positions_at_build[..], corrections), width, give, take);
+    }
+
+    /// The water particles of a slab that this rank reads, in the order of their slots.
+    pub(crate) fn water_of_slab(&self, slab: usize) -> impl Iterator<Item = usize> {
+        let clusters = match &self.pair_lists {
+            PairLists::Clusters(clusters, _) => Some(clusters),
+            PairLists::Lists(_) => None,
+        };
+        let slots = |clusters: &Clusters| clusters.slabs[slab].first * LANES..clusters.slabs[slab].middle * LANES;
+        let source = clusters.map_or(&[][..], |clusters| &clusters.source[slots(clusters)]);
+        source.iter().filter(|&&i| i != PAD).map(|&i| i as usize)
     }
 
     /// Takes the positions (m) of water that a device has moved, for queries at a point. The lists of pairs stay as they are.

@@ -1,5 +1,7 @@
 //! The search for pairs of a particle and a later cluster, eight particles at a time.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
 use fearless_simd::{SimdBase, SimdCvtFloat, SimdMask};
@@ -20,43 +22,52 @@ pub(super) struct SearchSizes {
     pub(super) inv_unit: f64,
 }
 
+/// What a search reads.
+pub(super) struct SearchInput<'a, const D: usize> {
+    pub(super) columns: &'a Columns<D>,
+    /// The particle in each slot.
+    pub(super) source: &'a [u32],
+    /// The positions of each cluster in units.
+    pub(super) x: &'a [[[i32; LANES]; D]],
+    /// The first cluster that has an extent, and the extents from there on.
+    pub(super) extents: (usize, &'a [ClusterExtent<D>]),
+    /// The clusters of water and of boundary particles in each column.
+    pub(super) ranges: &'a [Ranges; 2],
+}
+
 /// Data that all slabs share in a search.
 struct Search<'a, const D: usize> {
-    columns: &'a Columns<D>,
+    given: SearchInput<'a, D>,
     bounds: &'a [[usize; 3]],
-    source: &'a [u32],
-    x: &'a [[[i32; LANES]; D]],
-    extents: &'a [ClusterExtent<D>],
-    ranges: &'a [Ranges; 2],
     reach: f64,
     /// Square of the reach in units, with room for rounding.
     reach2: f32,
 }
 
-/// Fills the lists of all slabs; returns for each cluster which of its lanes have a pair.
-#[allow(clippy::too_many_arguments, reason = "one caller; a struct would be filled and emptied again")]
+/// Fills the lists of the slabs `own` and empties those of the others; returns for each cluster which of its lanes have a pair.
 pub(super) fn fill_lists<const D: usize>(
-    columns: &Columns<D>,
+    given: SearchInput<'_, D>,
     slabs: &mut [Slab],
-    source: &[u32],
-    x: &[[[i32; LANES]; D]],
-    extents: &[ClusterExtent<D>],
-    ranges: &[Ranges; 2],
+    own: Range<usize>,
     sizes: &SearchSizes,
     level: Level,
 ) -> Vec<u8> {
     let bounds: Vec<[usize; 3]> = slabs.iter().map(|s| [s.first, s.middle, s.end]).collect();
     let reach2 = (sizes.reach * sizes.inv_unit * (1.0 + 1e-6)).powi(2) as f32;
-    let search = Search { columns, bounds: &bounds, source, x, extents, ranges, reach: sizes.reach, reach2 };
-    let parts: Vec<Vec<u8>> = slabs
+    let search = Search { given, bounds: &bounds, reach: sizes.reach, reach2 };
+    for (s, slab) in slabs.iter_mut().enumerate().filter(|(s, _)| !own.contains(s)) {
+        let [first, middle, end] = bounds[s];
+        *slab = Slab { first, middle, end, ..Slab::default() };
+    }
+    let parts: Vec<Vec<u8>> = slabs[own.clone()]
         .par_iter_mut()
         .enumerate()
         .with_max_len(1)
-        .map(|(s, slab)| simd::dispatch(level, OfSlab { search: &search, s, slab }))
+        .map(|(k, slab)| simd::dispatch(level, OfSlab { search: &search, s: own.start + k, slab }))
         .collect();
     // A slab's part covers itself and the next.
-    let mut touched = vec![0; x.len()];
-    for (part, [first, ..]) in parts.iter().zip(&bounds) {
+    let mut touched = vec![0; search.given.x.len()];
+    for (part, [first, ..]) in parts.iter().zip(&bounds[own]) {
         touched[*first..].iter_mut().zip(part).for_each(|(all, one)| *all |= one);
     }
     touched
@@ -86,14 +97,14 @@ impl<const D: usize> SimdTask for OfSlab<'_, '_, D> {
             let middle = search.candidates(s, c, &mut later);
             let kinds = [&later[..middle], &later[middle..]];
             for l in 0..LANES {
-                let (start, pad) = (used, search.source[c * LANES + l] == PAD);
+                let (start, pad) = (used, search.given.source[c * LANES + l] == PAD);
                 let most = used + later.len() + 1;
                 if slab.index.len() < most {
                     // Lists are the larger part of the memory: an eighth to spare, not as much again.
                     slab.index.reserve_exact(most + most / 8 - slab.index.len());
                     slab.index.resize(most + most / 8, 0);
                 }
-                let at: [i32x8<S>; D] = std::array::from_fn(|k| i32x8::splat(simd, search.x[c][k][l]));
+                let at: [i32x8<S>; D] = std::array::from_fn(|k| i32x8::splat(simd, search.given.x[c][k][l]));
                 for base in (0..slab.parts).map(|part| first + part * PART) {
                     let [water, skin] = kinds.map(|clusters| if pad { &[][..] } else { part_from(base, clusters) });
                     let begin = used;
@@ -131,20 +142,24 @@ impl<const D: usize> Search<'_, D> {
     /// Appends the later clusters that cluster `c` of slab `s` may have pairs with, water first; returns how many of
     /// them are water.
     fn candidates(&self, s: usize, c: usize, later: &mut Vec<u32>) -> usize {
-        let own = self.extents[c].column as usize;
+        let (first, extents) = self.given.extents;
+        let own = extents[c - first].column as usize;
         let is_water = c < self.bounds[s][1];
-        for column in self.columns.neighbouring_columns(own) {
-            let fits = if is_water { column >= own } else { self.columns.slab_of_column(column) > s };
+        for column in self.given.columns.neighbouring_columns(own) {
+            let fits = if is_water { column >= own } else { self.given.columns.slab_of_column(column) > s };
             if fits {
-                self.column(c, &self.ranges[0][column], later);
+                self.column(c, &self.given.ranges[0][column], later);
             }
         }
         let middle = later.len();
         if is_water {
-            for column in
-                self.columns.neighbouring_columns(own).filter(|&column| self.columns.slab_of_column(column) >= s)
+            for column in self
+                .given
+                .columns
+                .neighbouring_columns(own)
+                .filter(|&column| self.given.columns.slab_of_column(column) >= s)
             {
-                self.column(c, &self.ranges[1][column], later);
+                self.column(c, &self.given.ranges[1][column], later);
             }
         }
         middle
@@ -152,9 +167,10 @@ impl<const D: usize> Search<'_, D> {
 
     /// Appends those of the clusters `range` of a column that come after `c` and whose box is near its box.
     #[inline(always)]
-    fn column(&self, c: usize, range: &std::ops::Range<u32>, later: &mut Vec<u32>) {
-        let me = &self.extents[c];
-        let these = &self.extents[range.start as usize..range.end as usize];
+    fn column(&self, c: usize, range: &Range<u32>, later: &mut Vec<u32>) {
+        let (first, extents) = self.given.extents;
+        let me = &extents[c - first];
+        let these = &extents[range.start as usize - first..range.end as usize - first];
         let skip = these.partition_point(|e| e.high < me.low - self.reach);
         for (k, e) in these.iter().enumerate().skip(skip) {
             if e.low > me.high + self.reach {
@@ -188,7 +204,7 @@ impl<const D: usize> Search<'_, D> {
         let reach2 = f32x8::splat(simd, self.reach2);
         let mut met = 0;
         for &j in clusters {
-            let x = &self.x[j as usize];
+            let x = &self.given.x[j as usize];
             let mut r2 = f32x8::splat(simd, 0.0);
             for k in 0..D {
                 let d: f32x8<S> = f32x8::float_from(at[k] - simd::load_integers(simd, &x[k]));

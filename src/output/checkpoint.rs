@@ -273,7 +273,7 @@ pub(crate) fn fnv1a(bytes: &[u8]) -> u64 {
 }
 
 /// Returns the hash of earlier data with the hash `before`, followed by `bytes`.
-fn fnv1a_continue(before: u64, bytes: &[u8]) -> u64 {
+pub(crate) fn fnv1a_continue(before: u64, bytes: &[u8]) -> u64 {
     bytes.iter().fold(before, |h, &b| (h ^ u64::from(b)).wrapping_mul(0x0000_0100_0000_01b3))
 }
 

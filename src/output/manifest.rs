@@ -26,8 +26,11 @@ pub struct Manifest {
     pub commit: Option<String>,
     /// Name and version of the engine that moves the bodies.
     pub engine: String,
-    /// Threads used.
+    /// Threads used, of each rank.
     pub threads: usize,
+    /// Figures of the exchange between ranks, of a run on several.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub ranks: Option<ExchangeFigures>,
     /// Numbers of particles of each kind.
     pub particles: ParticleCounts,
     /// Number of water particles that left the domain and were removed.
@@ -108,6 +111,17 @@ pub enum RunStatus {
     Failed,
 }
 
+/// What the first rank exchanged with the others since the run began or was resumed.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ExchangeFigures {
+    /// Number of ranks.
+    pub count: usize,
+    /// Received from the others, B.
+    pub received_bytes: u64,
+    /// Share of the wall time in exchanges, with the wait for slower ranks, –.
+    pub time_share: f64,
+}
+
 /// Numbers of particles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ParticleCounts {
@@ -159,6 +173,16 @@ impl Machine {
 }
 
 impl Manifest {
+    /// Returns the number of threads, and of ranks if there are several, as a text.
+    #[cfg(feature = "cli")]
+    pub(crate) fn workers(&self) -> String {
+        let threads = format!("{} thread{}", self.threads, if self.threads == 1 { "" } else { "s" });
+        match self.ranks {
+            Some(ranks) => format!("{} ranks of {threads}", ranks.count),
+            None => threads,
+        }
+    }
+
     /// Returns the numeric value with the scene key `key`, or `None` if the key has no numeric value.
     pub fn numeric_value(&self, key: &str) -> Option<f64> {
         self.values.iter().find(|value| value.key == key)?.value.parse().ok()

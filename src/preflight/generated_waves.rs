@@ -74,6 +74,25 @@ pub struct GeneratedWave {
     pub back_s: f64,
 }
 
+/// Adds findings about waves that dp does not resolve: what `does` with them, their height and their length, each in m and over dp.
+pub(super) fn check_resolution(
+    (name, does): (&str, &str),
+    height: (f64, f64),
+    length: (f64, f64),
+    findings: &mut Vec<Finding>,
+) {
+    let mut check = |topic, [about, sense, loss]: [&str; 3], (size, size_dp): (f64, f64), least: f64| {
+        if size_dp < least {
+            let [size_m, size_dp] = [size, size_dp].map(three_digits);
+            let waves = format!("\"{name}\" {does} waves {about}{size_m} m {sense}, {size_dp} dp");
+            let what = format!("{waves}; with less than {least} dp they {loss}");
+            findings.push(Finding::warning(topic, what, format!("dp = {}", two_digits_down(size / least))));
+        }
+    };
+    check("low_waves", ["about ", "high", "lose height"], height, LEAST);
+    check("short_waves", ["", "long", "die away"], length, SHORTEST);
+}
+
 impl<const D: usize> PreflightContext<'_, D> {
     /// Returns the waves of the driven solids that oscillate through the water surface, and adds findings about them.
     pub(super) fn generated_waves(&self, findings: &mut Vec<Finding>) -> Vec<GeneratedWave> {
@@ -93,7 +112,8 @@ impl<const D: usize> PreflightContext<'_, D> {
                 self.check_site(solid, motion, law, findings);
             }
             let Some((wave, stand)) = self.generated_wave(solid, motion) else { continue };
-            self.check_resolution(&wave, findings);
+            let (height, length) = ((wave.height_m, wave.height_dp), (wave.length_m, wave.length_dp));
+            check_resolution((&wave.solid, "makes"), height, length, findings);
             self.misplaced_zones(&wave, &stand, findings);
             if let Some(law) = motion.wave() {
                 self.check_wave(&wave, solid, law, findings);
@@ -105,35 +125,6 @@ impl<const D: usize> PreflightContext<'_, D> {
         self.dry_zones(findings);
         self.check_statistic_periods(&waves, findings);
         waves
-    }
-
-    /// Adds findings about waves that dp does not resolve.
-    fn check_resolution(&self, wave: &GeneratedWave, findings: &mut Vec<Finding>) {
-        let name = &wave.solid;
-        if wave.height_dp < LEAST {
-            let what = format!(
-                "\"{name}\" makes waves about {} m high, {} dp; with less than {LEAST} dp they lose height",
-                three_digits(wave.height_m),
-                three_digits(wave.height_dp)
-            );
-            findings.push(Finding::warning(
-                "low_waves",
-                what,
-                format!("dp = {}", two_digits_down(wave.height_m / LEAST)),
-            ));
-        }
-        if wave.length_dp < SHORTEST {
-            let what = format!(
-                "\"{name}\" makes waves {} m long, {} dp; with less than {SHORTEST} dp they die away",
-                three_digits(wave.length_m),
-                three_digits(wave.length_dp)
-            );
-            findings.push(Finding::warning(
-                "short_waves",
-                what,
-                format!("dp = {}", two_digits_down(wave.length_m / SHORTEST)),
-            ));
-        }
     }
 
     fn generated_wave(

@@ -22,6 +22,7 @@ mod sound_speed;
 mod wavemaker_site;
 mod driven_motion;
 mod expected_errors;
+mod face_waves;
 mod thickness;
 mod thin_parts;
 mod generated_waves;
@@ -31,6 +32,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 pub use absorption_limits::AbsorberSummary;
+pub use face_waves::FaceWave;
 pub use floating_bodies::BodySummary;
 pub use generated_waves::GeneratedWave;
 pub use moorings::{MooredSurge, MooringSummary};
@@ -123,6 +125,9 @@ pub struct Preflight {
     pub step: StepSizeLimits,
     /// The waves that driven solids make.
     pub waves: Vec<GeneratedWave>,
+    /// The waves that enter through faces.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub face_waves: Vec<FaceWave>,
     /// The paddles that absorb incident waves.
     pub absorbers: Vec<AbsorberSummary>,
     /// The free bodies.
@@ -220,10 +225,11 @@ pub fn preflight<const D: usize>(
     look.check_probes(&sound, &mut findings);
     lifetimes::check(&look, &mut findings);
     let (waves, absorbers) = (look.generated_waves(&mut findings), look.absorbers());
+    let face_waves = face_waves::face_waves(&look, &mut findings);
     let flows = reynolds::body_flows(&look, &waves, &mut findings);
     let (moorings, moored_surge) = moorings::summaries(&look, sim, &mut findings);
     findings.sort_by_key(|f| f.severity);
-    Preflight { size, sound, step, waves, absorbers, bodies, moorings, moored_surge, flows, findings }
+    Preflight { size, sound, step, waves, face_waves, absorbers, bodies, moorings, moored_surge, flows, findings }
 }
 
 impl<const D: usize> PreflightContext<'_, D> {

@@ -8,7 +8,7 @@ use crate::{
     },
     scene::world_bounds,
     solid::Solid,
-    system::{OpenBoundary, prescribed_discharge},
+    system::{OpenBoundary, driven_speeds, prescribed_discharge},
 };
 
 /// Difference between what enters and what leaves, over the larger, from which on a warning names it.
@@ -48,7 +48,8 @@ fn check_surface<const D: usize>(context: &PreflightContext<D>, findings: &mut V
             && ends_inside(&bounds.min)
             && ends_inside(&bounds.max)
     };
-    let fastest = faces.iter().map(speed).fold(0.0, f64::max);
+    let driven = SAMPLE_TIMES.iter().flat_map(|part| driven_speeds(context.system, part * context.end_time()));
+    let fastest = faces.iter().map(speed).chain(driven).fold(0.0, f64::max);
     let Some(body) = context.solids().iter().find(pierces) else { return };
     if fastest > 0.0 && fastest * fastest < context.g * dp {
         let what = format!(

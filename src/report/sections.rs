@@ -47,10 +47,7 @@ pub(crate) fn facts(run: &RunData) -> Vec<(&'static str, String)> {
     ));
     let reached = if m.simulated_s < m.until_s { format!("{} of ", four_digits(m.simulated_s)) } else { String::new() };
     facts.push(("Simulated", format!("{reached}{} s in {} steps", m.until_s, thousands(m.steps))));
-    facts.push((
-        "Wall time",
-        format!("{}, {} thread{}", duration(m.wall_s), m.threads, if m.threads == 1 { "" } else { "s" }),
-    ));
+    facts.push(("Wall time", format!("{}, {}", duration(m.wall_s), m.workers())));
     facts.extend(run.written.map(|time| ("Written", date(time))));
     facts.push(("Program", program_version(m)));
     facts
@@ -191,7 +188,7 @@ pub(crate) fn scene_and_values(run: &RunData) -> String {
         ("processor", format!("{}, {} processors", machine.processor, machine.cpus)),
         ("instructions", machine.instructions.clone().unwrap_or_else(|| "no lanes".into())),
         ("system", format!("{}, {}", machine.os, machine.arch)),
-        ("processor time", duration(m.cpu_s)),
+        (if m.ranks.is_some() { "processor time of the first rank" } else { "processor time" }, duration(m.cpu_s)),
         (
             "particle-steps",
             format!("{}, {:.2} million a second", thousands(m.particle_steps), m.particle_steps_per_second / 1e6),

@@ -1,11 +1,34 @@
-//! A run whose water is on a device: what is fetched for the outputs, and when.
+//! A run whose water is on a device, or on several ranks: what is fetched for the outputs, and when.
 
-use super::outputs::Outputs;
-#[cfg(not(feature = "gpu"))]
-use crate::error::{Error, ErrorCode, ErrorKind};
+use super::{
+    orders::{Leader, Order},
+    outputs::Outputs,
+};
 #[cfg(feature = "gpu")]
-use crate::{device::refused, probe::ProbeReads};
-use crate::{error::Result, scene::Scene, simulation::Simulation};
+use crate::device::refused;
+#[cfg(not(feature = "gpu"))]
+use crate::error::ErrorCode;
+use crate::{
+    error::{Error, ErrorKind, Result},
+    probe::ProbeReads,
+    ranks::Ranks,
+    scene::Scene,
+    simulation::Simulation,
+};
+
+/// Checks that no device is asked for on several `ranks`.
+///
+/// # Errors
+/// `Usage` if one is.
+pub(super) fn check_ranks(scene: &Scene, ranks: &Ranks) -> Result<()> {
+    match scene.device_name() {
+        Some(name) if ranks.count() > 1 => {
+            let what = format!("the device {name:?} computes a run alone, and this one has {} ranks", ranks.count());
+            Err(Error::new(ErrorKind::Usage, what).help("leave --device (model.device) out, or start one process"))
+        }
+        _ => Ok(()),
+    }
+}
 
 /// Puts the water of `sim` on the device that `scene` names, if it names one.
 #[cfg(feature = "gpu")]
@@ -34,8 +57,14 @@ pub(super) fn place_on_device<const D: usize>(
         .help("build it with the feature gpu:  cargo build --release --features gpu;  or leave --device (model.device) out"))
 }
 
-/// Advances by a step, or on a device until an output is due, and fetches what the outputs then read; not past `until` (s).
-pub(super) fn step<const D: usize>(sim: &mut Simulation<D>, outputs: &Outputs<D>, until: f64) -> Result<()> {
+/// Advances by a step, or on a device until an output is due, and fetches what the outputs then read; not past `until` (s). The ranks
+/// that `leader` leads take the step too.
+pub(super) fn step<const D: usize>(
+    sim: &mut Simulation<D>,
+    outputs: &Outputs<D>,
+    leader: &Leader,
+    until: f64,
+) -> Result<()> {
     #[cfg(feature = "gpu")]
     if sim.device().is_some() {
         sim.step_to_pause(outputs.next_due(), until)?;
@@ -46,14 +75,18 @@ pub(super) fn step<const D: usize>(sim: &mut Simulation<D>, outputs: &Outputs<D>
             (false, true) => Ok(()),
         };
     }
-    let _ = outputs;
-    sim.step_to(until)
+    leader.order(Order::Step, sim.time())?;
+    sim.step_with_own_water(until)?;
+    if outputs.reads_at(sim.time()).contains(&ProbeReads::Water) { fetch(sim, leader) } else { Ok(()) }
 }
 
-/// Fetches the state from a device, if one has it.
-pub(super) fn fetch<const D: usize>(sim: &mut Simulation<D>) -> Result<()> {
+/// Fetches the state from a device or from other ranks, if they have it.
+pub(super) fn fetch<const D: usize>(sim: &mut Simulation<D>, leader: &Leader) -> Result<()> {
     #[cfg(feature = "gpu")]
     sim.fetch_from_device()?;
-    let _ = sim;
+    if !sim.system().status.has_all_water {
+        leader.order(Order::Gather, sim.time())?;
+        sim.gather_water(false);
+    }
     Ok(())
 }

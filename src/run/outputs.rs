@@ -8,12 +8,10 @@ use std::{
     path::{Path, PathBuf},
 };
 
-#[cfg(feature = "gpu")]
-use crate::probe::ProbeReads;
 use crate::{
     error::{Error, ErrorCode, ErrorKind, Result},
     output::{CsvTable, FrameWriter, IntervalMean, OutputPositions, manifest::FrameTotals},
-    probe::{self, Probe},
+    probe::{self, Probe, ProbeReads},
     scene::Plan,
     simulation::Simulation,
 };
@@ -186,7 +184,6 @@ impl<const D: usize> Outputs<D> {
     }
 
     /// Returns the parts of the simulation that the outputs read which are due at time `t` (s).
-    #[cfg(feature = "gpu")]
     pub(crate) fn reads_at(&self, t: f64) -> Vec<ProbeReads> {
         let is_due = |due: &OutputSchedule| t * (1.0 + 1e-12) >= due.next as f64 * due.every;
         let probes = self.probes.iter().filter(|own| own.mean.is_some() || is_due(&own.due));

@@ -100,12 +100,18 @@ pub(crate) fn copy_scene(file: &Path, text: Option<&str>, words: &str, folder: &
         .try_for_each(|name| copy(&from.join(name), &to.join(name)))
 }
 
+/// All strings in the TOML `words`.
+pub(super) fn strings(words: &str) -> Vec<String> {
+    let mut strings = Vec::new();
+    if let Ok(table) = words.parse::<toml::Table>() {
+        table.values().for_each(|value| collect_strings(value, &mut strings));
+    }
+    strings
+}
+
 /// All strings in the TOML `words` that could name a file beside it.
 pub(crate) fn referenced_files(words: &str) -> Vec<String> {
-    let mut names = Vec::new();
-    if let Ok(table) = words.parse::<toml::Table>() {
-        table.values().for_each(|value| collect_strings(value, &mut names));
-    }
+    let mut names = strings(words);
     let inside = |part: Component| matches!(part, Component::Normal(_) | Component::CurDir);
     names.retain(|name| !name.is_empty() && Path::new(name).components().all(inside));
     names

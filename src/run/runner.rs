@@ -8,6 +8,7 @@ use super::{
     device,
     energy_drift::DriftMonitor,
     lock::Lock,
+    orders::{self, Leader, Order},
     outputs::{Outputs, series_folder},
     probe_factory,
     processor_time::ProcessorTime,
@@ -19,10 +20,11 @@ use crate::{
     model::Dimension,
     output::{
         Checkpoint, Manifest, OutputPositions, checkpoint,
-        manifest::{FrameTotals, Machine, ParticleCounts, RunStatus, ValueInForce},
+        manifest::{ExchangeFigures, FrameTotals, Machine, ParticleCounts, RunStatus, ValueInForce},
         removed_particles, write_atomically,
     },
     preflight,
+    ranks::Ranks,
     scene::{BuiltScene, Plan, RenamedName, ResolvedValue, Scene},
     simulation::Simulation,
     solid::{Dim, HasEngine as _, Role},
@@ -52,7 +54,9 @@ pub(crate) struct Runner<const D: usize> {
     started_at: Instant,
     /// Processor time of the program when the run began, where the system tells.
     cpu_at_start: ProcessorTime,
-    _lock: Lock,
+    leader: Leader,
+    ranks: Ranks,
+    _lock: Option<Lock>,
 }
 
 impl<const D: usize> Runner<D>
@@ -60,10 +64,13 @@ where
     Dim<D>: Dimension<D>,
 {
     /// Builds the scene and, once all is known to be right, makes the run's folder or opens it again.
-    pub(crate) fn new(scene: &Scene, origin: RunOrigin) -> Result<Self> {
+    pub(crate) fn new(scene: &Scene, origin: RunOrigin, ranks: &Ranks) -> Result<Self> {
         let (begun, begun_cpu) = (Instant::now(), ProcessorTime::now());
-        let BuiltScene { setup, plan, initial_water, file_notes } = scene.build::<D>()?;
-        let mut sim = Simulation::new(setup).map_err(|e| scene.with_location(e))?;
+        let built = scene.build::<D>().and_then(|built| device::check_ranks(scene, ranks).map(|()| built));
+        let digest = |built: &BuiltScene<D>| orders::water_digest(&built.setup);
+        let BuiltScene { setup, plan, initial_water, file_notes } = orders::agree(ranks, built, digest)?;
+        let leader = Leader::new(ranks.clone());
+        let mut sim = Simulation::set_up(setup, ranks, false).map_err(|e| scene.with_location(e))?;
         let probes = probe_factory::probes_from_plan(&plan, &mut sim)?;
         let checks = probe_factory::checks_from_plan(&plan, &probes)?;
         let columns: Vec<usize> = probes.iter().map(|p| p.columns().len()).collect();
@@ -78,7 +85,7 @@ where
                 let folder = run_folder::create_run_folder(file, out)?;
                 let lock = Lock::acquire(&folder)?;
                 run_folder::copy_scene(file, text, &in_force, &folder)?;
-                (folder, Checkpoint::initial(&in_force, overrides), false, None, lock)
+                (folder, Checkpoint::initial(&in_force, overrides), false, None, Some(lock))
             }
             RunOrigin::Resumed { folder, checkpoint, warning, lock } => {
                 (folder.to_owned(), *checkpoint, true, warning, lock)
@@ -123,6 +130,8 @@ where
             last_checkpoint: saved,
             started_at: begun,
             cpu_at_start: begun_cpu,
+            leader,
+            ranks: ranks.clone(),
             _lock: lock,
         })
     }
@@ -173,7 +182,7 @@ impl<const D: usize> Runner<D> {
             }
             let (clock, passes, rescued) = (Instant::now(), self.sim.force_passes(), self.sim.rollbacks().len());
             let known_events = self.sim.events().len();
-            let stepped = device::step(&mut self.sim, &self.outputs, until);
+            let stepped = device::step(&mut self.sim, &self.outputs, &self.leader, until);
             self.checkpoint.stepping_seconds += clock.elapsed().as_secs_f64();
             // Dry boundary particles are not updated and are not counted.
             let moved = self.sim.system().fluid().len() + self.sim.system().boundary_near_fluid_count();
@@ -200,7 +209,7 @@ impl<const D: usize> Runner<D> {
             self.write_removed()?;
             return Ok(RunStatus::Interrupted);
         }
-        device::fetch(&mut self.sim)?;
+        device::fetch(&mut self.sim, &self.leader)?;
         self.outputs.finish(&self.sim)?;
         self.write_removed()?;
         Ok(RunStatus::Finished)
@@ -219,6 +228,7 @@ impl<const D: usize> Runner<D> {
                 }
                 RunRequest::Stop => going = false,
                 RunRequest::Set { control, value } => {
+                    self.leader.order(Order::Set { control, value }, self.sim.time())?;
                     if let Some(change) = self.controls.set(&mut self.sim, control, value) {
                         self.manifest.notes.push(change.to_string());
                         watch.control_changed(&change);
@@ -265,7 +275,7 @@ impl<const D: usize> Runner<D> {
 
     /// Writes the checkpoint, of outputs that are on the disk.
     fn save_checkpoint(&mut self) -> Result<()> {
-        device::fetch(&mut self.sim)?;
+        device::fetch(&mut self.sim, &self.leader)?;
         self.outputs.sync()?;
         self.write_checkpoint(self.sim.rollbacks().len(), self.outputs.positions())
     }
@@ -326,6 +336,7 @@ impl<const D: usize> Runner<D> {
         self.manifest.simulated_s = now.time;
         self.manifest.wall_s = now.wall;
         self.manifest.cpu_s = self.cpu_seconds();
+        self.manifest.ranks = self.exchange_figures();
         self.manifest.particle_steps = self.checkpoint.particle_steps;
         self.manifest.particle_steps_per_second = now.rate;
         self.manifest.frames = self.outputs.frame_totals();
@@ -345,6 +356,13 @@ impl<const D: usize> Runner<D> {
         files.extend(fixed.iter().filter(|name| there(name)).map(|name| name.to_string()));
         files.push("manifest.json".into());
         self.manifest.files = files;
+    }
+
+    /// Returns what the ranks have exchanged, if there are several.
+    fn exchange_figures(&self) -> Option<ExchangeFigures> {
+        let (count, traffic) = (self.ranks.count(), self.ranks.traffic());
+        let time_share = traffic.time.as_secs_f64() / self.started_at.elapsed().as_secs_f64();
+        (count > 1).then_some(ExchangeFigures { count, received_bytes: traffic.bytes, time_share })
     }
 
     /// Returns the wall time so far, s.
@@ -383,6 +401,7 @@ fn initial_manifest<const D: usize>(sim: &Simulation<D>, plan: &Plan, checkpoint
         commit: option_env!("PONTOON_COMMIT").map(String::from),
         engine: String::new(),
         threads: rayon::current_num_threads(),
+        ranks: None,
         particles: ParticleCounts { fluid: sim.system().fluid().len(), boundary: sim.system().boundary().len() },
         removed: 0,
         steps: 0,

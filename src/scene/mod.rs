@@ -86,7 +86,7 @@ pub use {
     section::model::ModelConfig,
     section::mooring::{ClumpConfig, LineTypeConfig, MooringConfig, MooringPointConfig},
     section::motion::DrivenConfig,
-    section::open_boundary::OpenBoundaryConfig,
+    section::open_boundary::{FaceWaveConfig, OpenBoundaryConfig},
     section::output::FramesChoice,
     section::shape::{CompoundPartConfig, PlacementConfig, ShapeConfig},
     section::solid::{FreeBodyConfig, SolidConfig},

@@ -125,7 +125,8 @@ impl Scene {
         let usual = Model::water(self.dimension, 1.0, 1.0);
         let weightless = self.context().gravity.is_some_and(|gravity| gravity.strongest == 0.0);
         let free = self.solid.iter().any(|solid| solid.free.is_some());
-        let waves = self.solid.iter().any(|solid| solid.driven.as_ref().is_some_and(DrivenConfig::makes_waves));
+        let waves = self.solid.iter().any(|solid| solid.driven.as_ref().is_some_and(DrivenConfig::makes_waves))
+            || self.inflow.iter().chain(&self.outflow).any(|face| face.wave.is_some());
         let mut usual = match (waves && !weightless, free) {
             (true, _) => usual.for_waves(),
             (false, true) => usual.for_free_bodies(),
@@ -234,7 +235,8 @@ impl Scene {
     /// `Scene` if the scene is wrong, or a file with a shape is missing or wrong.
     pub fn resolve(&self) -> Result<Vec<ResolvedValue>> {
         let (scene, defaults) = self.with_defaults()?;
-        let values = toml::Table::try_from(&scene).unwrap_or_default();
+        // From the text, so that the writing of scenes is compiled once.
+        let values: toml::Table = scene.to_toml()?.parse().unwrap_or_default();
         let mut lines = Vec::new();
         for section in ORDER {
             if let Some(value) = values.get(section) {

@@ -43,6 +43,7 @@ impl<const D: usize> Simulation<D> {
     where
         Dim<D>: Dimension<D>,
     {
+        self.gather_water(true);
         self.bodies.accounting = Some(Accounting::new(&self.system, energy, interval));
     }
 

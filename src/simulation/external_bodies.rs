@@ -4,6 +4,7 @@ use super::{BodyStep, Setup, Simulation};
 use crate::{
     error::{Error, Result},
     model::Dimension,
+    ranks::Ranks,
     solid::{Dim, SolidSpec},
 };
 
@@ -29,7 +30,7 @@ impl<const D: usize> Simulation<D> {
         }
         setup.solids.iter().try_for_each(refuse_ballast)?;
         let pair_loop = Dim::<D>::pair_loop(&setup.model);
-        Ok(Self::with_bodies(setup, pair_loop, true)?.without_rollback())
+        Ok(Self::with_bodies(setup, pair_loop, true, &Ranks::default())?.without_rollback())
     }
 
     /// Goes one step on, and not past time `end` (s), and calls `hook` once, when the water has moved and the bodies have

@@ -8,6 +8,7 @@ use std::{
     fs::{self, File},
     io::{self, BufWriter, Read as _, Seek as _, Write},
     path::{Path, PathBuf},
+    sync::atomic::{AtomicUsize, Ordering},
 };
 
 use serde::{Deserialize, Serialize};
@@ -21,8 +22,8 @@ const AGE: u64 = 100;
 /// Times that a run is rescued; a run that needs more is not computed but nursed.
 const MOST: usize = 3;
 
-/// Name of the file of a state while it is made.
-const FILE: &str = "rollback.part";
+/// Number of files made so far: ranks on one machine share a folder, and ranks in one process a process number.
+static CREATED: AtomicUsize = AtomicUsize::new(0);
 
 /// One time that a run was rescued.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -58,7 +59,8 @@ pub(super) enum StoredState {
 impl StoredState {
     /// Stores in `folder` the state that `write` writes.
     pub(super) fn in_folder(folder: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<Self> {
-        let path = folder.join(FILE);
+        let number = CREATED.fetch_add(1, Ordering::Relaxed);
+        let path = folder.join(format!("rollback-{}-{number}.part", std::process::id()));
         let file = File::options().read(true).write(true).create(true).truncate(true).open(&path)?;
         fs::remove_file(&path)?;
         let mut out = BufWriter::with_capacity(BUFFER, file);
@@ -131,9 +133,15 @@ impl RollbackControl {
         self.states.push((steps, time, state));
     }
 
-    /// The state to go back to after an `alarm` at `time` (s), `steps` steps into the run; none if that is no use, or if its file
-    /// cannot be read.
-    pub(super) fn state_before(&mut self, alarm: &str, steps: u64, time: f64) -> Option<Vec<u8>> {
+    /// The state to go back to after an `alarm` at `time` (s), `steps` steps into the run: what `shared` makes of the stored one, which
+    /// is empty if its file cannot be read. None if that is empty, or no use.
+    pub(super) fn state_before(
+        &mut self,
+        alarm: &str,
+        steps: u64,
+        time: f64,
+        shared: impl FnOnce(Vec<u8>) -> Vec<u8>,
+    ) -> Option<Vec<u8>> {
         let again = self.log.last().is_some_and(|last| time <= last.halved_until);
         if again || self.log.len() >= MOST {
             return None;
@@ -141,7 +149,10 @@ impl RollbackControl {
         let old = self.states.iter().rposition(|(at, ..)| at + AGE <= steps).unwrap_or(0);
         self.states.truncate(old + 1);
         let (_, back_to, state) = self.states.pop()?;
-        let bytes = state.into_bytes().ok()?;
+        let bytes = shared(state.into_bytes().unwrap_or_default());
+        if bytes.is_empty() {
+            return None;
+        }
         // As long again beyond the alarm as the way back.
         let halved_until = time + (time - back_to);
         self.log.push(Rollback { alarm: alarm.into(), at: time, back_to, halved_until });

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use serde::{Deserialize, Serialize};
 
-use super::{AxisSet, Escape, FaceExchange, System, driving::CurrentState, open_boundary::Buffer};
+use super::{AxisSet, Escape, FaceExchange, System, driving::CurrentState, open_boundary::Buffer, own_water};
 use crate::{
     error::{Error, ErrorKind, Result},
     interaction::PairSums,
@@ -132,13 +132,15 @@ impl<const D: usize> System<D> {
             return Err(Error::new(ErrorKind::Restart, "the checkpoint holds a particle that is nowhere"));
         }
         self.status.passes = state.passes;
+        own_water::set_apart(self, false);
         self.fluid.particles = state.fluid.into_owned();
         self.fluid.stress = self.fluid.stress.take().map(|_| state.stress.into_owned());
         self.fluid.gradient_correction =
             self.fluid.gradient_correction.take().map(|_| state.gradient_correction.into_owned());
         let (faces, next_id, exchange) = state.buffer;
         self.driving.current = state.current;
-        self.fluid.buffer = Buffer { faces: faces.into_owned(), next_id, exchange: exchange.into_owned() };
+        self.fluid.buffer =
+            Buffer { faces: faces.into_owned(), next_id, exchange: exchange.into_owned(), ..Buffer::default() };
         self.fluid.images.originals = state.images.into_owned();
         self.fluid.images.reflections = state.reflections.into_owned();
         // The corrections of the state belong to its lists, whatever this system was about to do.

@@ -135,6 +135,14 @@ impl DrivingState {
     }
 }
 
+/// Speeds (m/s) of the current that is held, and of the water past a towed frame at time `t` (s).
+pub(crate) fn driven_speeds<const D: usize>(system: &System<D>, t: f64) -> impl Iterator<Item = f64> {
+    let Driving { current, towed } = &system.driving.driving;
+    let held = current.map(|current| current.discharge / mean_section(system, current.axis));
+    let passing = towed.as_ref().map(|frame| frame.velocity.value_and_rate(t).0);
+    held.into_iter().chain(passing).map(f64::abs)
+}
+
 /// Discharge (m³/s; m²/s in 2-D) of water that moves at 1 m/s along `axis`, m² (m).
 fn mean_section<const D: usize>(system: &System<D>, axis: usize) -> f64 {
     let length = system.periodic()[axis].map_or(1.0, |[from, to]| to - from);

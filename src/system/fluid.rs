@@ -6,7 +6,7 @@ use super::{Images, System, open_boundary::Buffer};
 use crate::{
     math::{Matrix, Vector},
     model::{Model, PressureGradient},
-    particles::{PARTICLES_PER_TASK, Particles},
+    particles::{PARTICLES_PER_TASK, Particles, zeros},
 };
 
 /// The water: particles, then those in the buffers of open boundaries, then the images of those near periodic sides, and what the
@@ -33,10 +33,10 @@ impl<const D: usize> Fluid<D> {
         images: Images<D>,
     ) -> Self {
         v.resize(r.len(), Vector::zeros());
-        let zeros = |needed: bool| needed.then(|| vec![Matrix::zeros(); r.len()]);
+        let tensors = |needed: bool| needed.then(|| zeros(r.len()));
         Self {
-            stress: zeros(model.viscosity.stress().is_some()),
-            gradient_correction: zeros(model.gradient != PressureGradient::Plain),
+            stress: tensors(model.viscosity.stress().is_some()),
+            gradient_correction: tensors(model.gradient != PressureGradient::Plain),
             buffer: Buffer::default(),
             particles: Particles { id: (0..r.len() as u32).collect(), r, v, rho },
             images,

@@ -14,6 +14,7 @@ mod free_surface;
 mod gap_pressure;
 mod impulses;
 mod open_boundary;
+pub(crate) mod own_water;
 pub(crate) mod periodic;
 mod setup;
 mod sponge_layer;
@@ -26,13 +27,13 @@ pub(crate) use boundary::Boundary;
 pub(crate) use checkpoint::SystemState;
 use driving::DrivingState;
 pub use driving::{Current, Driving, TowedFrame};
-pub(crate) use driving::{set_gravity_at, update_current};
+pub(crate) use driving::{driven_speeds, set_gravity_at, update_current};
 pub(crate) use fluid::{Fluid, permute};
 use gap_pressure::GapPressure;
 pub(crate) use impulses::{MomentumTransfer, return_impulse, spread_impulses};
 pub use open_boundary::{FaceExchange, OpenBoundary};
 pub(crate) use open_boundary::{
-    buffer_length, check as check_open_boundary, face_reached, prescribed_discharge, update_buffer,
+    buffer_length, check as check_open_boundary, face_reached, prescribed_discharge, set_buffer_time, update_buffer,
 };
 pub(crate) use periodic::Periodic;
 use periodic::{Images, SortedWater};
@@ -42,6 +43,7 @@ pub use step_check::{Escape, ExitPath, ParticleLimits, RemovedParticle};
 pub(crate) use step_check::{LimitViolation, StepCheck};
 pub(crate) use symmetry::{AxisSet, reflected};
 
+use own_water::WaterAtStart;
 use symmetry::{reflected_auxiliary, reflected_sums, reflected_tensor};
 
 pub use crate::interaction::StepLimits;
@@ -58,8 +60,9 @@ use crate::{
     interaction::{PairLoop, PairLoopInput, PairSums, RequestedSums},
     math::{Bounds, Matrix, Pose, Vector},
     model::{Model, PressureGradient},
-    neighbours::{CHUNK, NeighbourLists},
+    neighbours::{CHUNK, Columns, NeighbourLists},
     particles::{PARTICLES_PER_TASK, Particles},
+    ranks::Ranks,
     solid::{Constraints, Load, Solid, TimeFunction},
     sph::{AuxiliarySums, FluidProperties, equation_of_state::EquationOfState, gradient_correction},
 };
@@ -152,6 +155,11 @@ impl<'a, const D: usize> FluidRates<'a, D> {
         self.neighbours.positions_at_build()
     }
 
+    /// The range of particles that this rank advances, and which ones there; `None` if all.
+    pub(crate) fn own_water(&self) -> (Range<usize>, Option<&'a [bool]>) {
+        own_water::own(self.neighbours, self.neighbours.positions_at_build().len())
+    }
+
     fn original(&self, i: usize) -> usize {
         i.checked_sub(self.real).map_or(i, |image| self.originals[image] as usize)
     }
@@ -169,11 +177,14 @@ pub(crate) struct Status {
     solids_added: bool,
     /// Time spent on neighbour lists and sorting so far.
     neighbour_time: Duration,
+    /// Whether this rank has the present water of all ranks.
+    pub(crate) has_all_water: bool,
 }
 
 /// How arrays of particles change when the neighbour lists are rebuilt.
+#[derive(Default)]
 pub(crate) struct Reordering<const D: usize> {
-    /// New order of the water: `order[new] = old`.
+    /// New order of the water: `order[new] = old`. Empty where each rank has its own water.
     pub(crate) order: Vec<u32>,
     /// Along which axes the vectors of each particle, in the new order, are reflected; empty without a symmetry plane.
     pub(crate) reflections: Vec<AxisSet>,
@@ -186,8 +197,9 @@ pub(crate) struct Reordering<const D: usize> {
 }
 
 impl<const D: usize> System<D> {
-    /// Places the water of `setup` in hydrostatic balance below its levels, and the solids with their boundary particles.
-    pub(crate) fn new(setup: Setup<D>, pair_loop: Box<dyn PairLoop<D>>) -> Result<Self> {
+    /// Places the water of `setup` in hydrostatic balance below its levels, and the solids with their boundary particles. Each of
+    /// `ranks` has its own water then, where it may.
+    pub(crate) fn new(setup: Setup<D>, pair_loop: Box<dyn PairLoop<D>>, ranks: &Ranks) -> Result<Self> {
         let planes = setup.symmetry_planes();
         let Setup {
             mut model,
@@ -232,7 +244,8 @@ impl<const D: usize> System<D> {
         };
         let mut system = Self {
             pair_loop,
-            neighbours: NeighbourLists::new(support, model.dp, model.pair_loop.instruction_set()),
+            neighbours: NeighbourLists::new(support, model.dp, model.pair_loop.instruction_set())
+                .on_ranks(ranks.clone()),
             rates: Rates { current: false, corrections_current: false, boundary: Vec::new() },
             boundary: Boundary::new(&model),
             gap_pressure: GapPressure::new(&model),
@@ -251,6 +264,7 @@ impl<const D: usize> System<D> {
                 passes: 0,
                 solids_added: false,
                 neighbour_time: Duration::ZERO,
+                has_all_water: true,
             },
         };
         let extensions: Vec<_> =
@@ -283,6 +297,7 @@ impl<const D: usize> System<D> {
         system.check_water();
         system.init_hydrostatic(0..system.boundary.particles.len());
         driving::set_gravity_at(&mut system, 0.0);
+        own_water::leave_own(&mut system);
         system.update_rates(RequestedSums::All);
         Ok(system)
     }
@@ -294,23 +309,33 @@ impl<const D: usize> System<D> {
             return None;
         }
         let start = Instant::now();
+        if own_water::is_apart(&self.neighbours) && self.fluid.displaced.is_none() {
+            self.pair_loop.free_buffers();
+            let (columns, removed) = own_water::sort(self);
+            self.status.neighbour_time += start.elapsed();
+            let dried = self.rebuild_lists(columns);
+            return Some(Reordering { dried, removed, ..Reordering::default() });
+        }
+        own_water::gather(self, true);
         let exchanged = |system: &Self| system.face_exchange().iter().map(|face| face.energy).sum::<f64>();
         let before = exchanged(self);
         let (SortedWater { order, reflections }, removed) = self.sort_water();
         let exchanged_energy = exchanged(self) - before;
         self.status.neighbour_time += start.elapsed();
-        Some(Reordering { order, reflections, dried: self.rebuild_lists(), removed, exchanged_energy })
+        Some(Reordering { order, reflections, dried: self.rebuild_lists(None), removed, exchanged_energy })
     }
 
-    /// Rebuilds the neighbour lists within a step, if that is needed; the water keeps its order.
-    pub(crate) fn rebuild_within_step(&mut self) {
+    /// Rebuilds the neighbour lists within a step that began at `at_start`, if that is needed; the water keeps its order.
+    pub(crate) fn rebuild_within_step(&mut self, at_start: &mut WaterAtStart<D>) {
         if self.needs_rebuild() {
-            self.rebuild_lists();
+            self.pair_loop.free_buffers();
+            let columns = own_water::is_apart(&self.neighbours).then(|| own_water::share_out(self, Some(at_start)));
+            self.rebuild_lists(columns);
         }
     }
 
     /// Whether particles have moved so far that the lists may miss a pair.
-    fn needs_rebuild(&self) -> bool {
+    pub(crate) fn needs_rebuild(&self) -> bool {
         let moved = |(solid, (then, bounds)): (&Solid<D>, (&Pose<D>, &Bounds<D>))| {
             // A rigid motion moves no point of a box further than its furthest corner.
             let now = &solid.kinematics.pose;
@@ -324,13 +349,19 @@ impl<const D: usize> System<D> {
     }
 
     /// Rebuilds the neighbour lists and resets boundary particles without water near them to ρ₀. Returns those that had
-    /// water near them before.
-    fn rebuild_lists(&mut self) -> Vec<u32> {
+    /// water near them before. Where each rank has its own water, `columns` are those by which it is shared out, if it is already.
+    fn rebuild_lists(&mut self, columns: Option<Columns<D>>) -> Vec<u32> {
         let start = Instant::now();
         (self.rates.current, self.rates.corrections_current) = (false, false);
         self.pair_loop.free_buffers();
         let mut dried = self.neighbours.boundary_near_fluid().to_vec();
-        self.neighbours.build(&self.fluid.particles.r, &self.boundary.particles.r);
+        if own_water::is_apart(&self.neighbours) {
+            let columns = columns.unwrap_or_else(|| own_water::share_out(self, None));
+            let next = own_water::take_next_slab(self, &columns);
+            self.neighbours.build_own(&columns, &self.fluid.particles.r, &next, &self.boundary.particles.r);
+        } else {
+            self.neighbours.build(&self.fluid.particles.r, &self.boundary.particles.r);
+        }
         self.boundary.poses_at_rebuild = Some(self.solids.iter().map(|s| s.kinematics.pose).collect());
         self.status.step_check.max_displacement2 = 0.0;
         self.rates.boundary = vec![PairSums::zero(); self.neighbours.boundary_near_fluid().len()];
@@ -450,8 +481,10 @@ impl<const D: usize> System<D> {
         pair_loop.moments(&input, &mut corrections);
         let weight = properties.gravity.norm() * properties.dp;
         let everywhere = self.model.gradient == PressureGradient::Corrected;
-        let (rho, rho0) = (&fluid.particles.rho, properties.rho0);
-        corrections.par_iter_mut().zip(rho).with_min_len(PARTICLES_PER_TASK).for_each(|(correction, &rho)| {
+        let rho0 = properties.rho0;
+        let (these, _) = own_water::own(neighbours, corrections.len());
+        let rho = &fluid.particles.rho[these.clone()];
+        corrections[these].par_iter_mut().zip(rho).with_min_len(PARTICLES_PER_TASK).for_each(|(correction, &rho)| {
             let share = if everywhere {
                 1.0
             } else {
@@ -461,6 +494,7 @@ impl<const D: usize> System<D> {
             let rows = if share > 0.0 { gradient_correction::correction(&moment) } else { [[0.0; D]; D] };
             *correction = Matrix::from_fn(|i, j| share * rows[i][j]);
         });
+        own_water::take_next_corrections(neighbours, &mut corrections);
         let real = corrections.len() - fluid.images.originals.len();
         let (real, images) = corrections.split_at_mut(real);
         let Images { originals, reflections, .. } = &fluid.images;

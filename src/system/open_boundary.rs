@@ -15,7 +15,7 @@
 //!   u = that of the water, x_b = x_rest + x   where nothing is.
 //!
 //! The second is the relation of velocity and pressure in a linear wave that moves out, at every depth @dean1991; for long waves it is
-//! that of @flather1976.
+//! that of @flather1976. Waves that enter add their velocity to U and their pressure to x_rest.
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -27,6 +27,7 @@ use crate::{
     model::Model,
     particles::Particles,
     solid::{Role, TimeFunction},
+    wavemaker::{IncidentWaves, Orbit},
 };
 
 /// Distance from the face at which the water is observed, over h: there most of the kernel lies in the water.
@@ -75,6 +76,8 @@ pub struct OpenBoundary<const D: usize> {
     pub level: Option<f64>,
     /// Speed of waves that leave through the face (m/s); the velocity is kept exactly if there is none.
     pub absorbed_speed: Option<f64>,
+    /// Waves that enter through the face, along its normal and on its current.
+    pub waves: Option<IncidentWaves>,
 }
 
 impl<const D: usize> OpenBoundary<D> {
@@ -90,6 +93,7 @@ impl<const D: usize> OpenBoundary<D> {
             factor: None,
             level: None,
             absorbed_speed: None,
+            waves: None,
         }
     }
 
@@ -119,6 +123,11 @@ impl<const D: usize> OpenBoundary<D> {
         Self { absorbed_speed: Some(speed), ..self }
     }
 
+    /// The same face, through which these waves enter; their current is its velocity into the water.
+    pub fn waves(self, waves: IncidentWaves) -> Self {
+        Self { waves: Some(waves), ..self }
+    }
+
     /// The same face with this factor (–) on its velocity.
     pub fn factor(self, factor: impl Into<TimeFunction>) -> Self {
         Self { factor: Some(factor.into()), ..self }
@@ -134,10 +143,56 @@ impl<const D: usize> OpenBoundary<D> {
         if self.is_lower { -1.0 } else { 1.0 }
     }
 
+    /// The orbit in the waves that enter, at time `t` (s), of the particle at `x` (m), with its velocity as a vector (m/s).
+    fn orbit(&self, x: &Vector<D>, t: f64) -> Option<(Orbit, Vector<D>)> {
+        let (orbit, _) = self.waves.as_ref()?.orbit(-self.beyond(x), x[D - 1] - self.level.unwrap_or(0.0), t);
+        Some((orbit, self.along_waves(orbit.velocity)))
+    }
+
+    /// The vector with the part `along` into the water and the part `up`.
+    fn along_waves(&self, [along, up]: [f64; 2]) -> Vector<D> {
+        let mut vector = Vector::zeros();
+        (vector[self.axis], vector[D - 1]) = (-self.outward() * along, up);
+        vector
+    }
+
+    /// Whether the particle at `x` (m) is beyond the far end of the buffer, `length` (m) away, at time `t` (s). In waves that is
+    /// decided where it rests without them; one that crosses the face, and its successor, rest up to the excursion further out.
+    fn is_beyond_buffer(&self, x: &Vector<D>, length: f64, t: f64) -> bool {
+        let moved = self.orbit(x, t).map_or(0.0, |(orbit, _)| orbit.displacement[0]);
+        self.beyond(x) + moved > length + self.excursion()
+    }
+
+    /// The greatest displacement (m) normal to the face by waves that enter.
+    fn excursion(&self) -> f64 {
+        self.waves.as_ref().map_or(0.0, IncidentWaves::excursion)
+    }
+
+    /// The way (m) at time `t` (s) from a particle at `x` (m) to the one that rests `length` (m) further out without waves, and the
+    /// difference of their velocities (m/s).
+    fn way_out(&self, x: &Vector<D>, length: f64, t: f64) -> (Vector<D>, Vector<D>) {
+        let (mut way, mut velocity_change) = (Vector::zeros(), Vector::zeros());
+        way[self.axis] = self.outward() * length;
+        if let Some(waves) = &self.waves {
+            let along = -self.beyond(x);
+            let (here, height) = waves.orbit(along, x[D - 1] - self.level.unwrap_or(0.0), t);
+            let there = waves.orbit_of([along - here.displacement[0] - length, height], t);
+            way += self.along_waves([0, 1].map(|k| there.displacement[k] - here.displacement[k]));
+            velocity_change = self.along_waves([0, 1].map(|k| there.velocity[k] - here.velocity[k]));
+        }
+        (way, velocity_change)
+    }
+
     /// Whether a solid with these `bounds` (m) has an end in the buffer, `length` (m) long, of water of this `dp` (m).
     fn has_end_in_buffer(&self, bounds: &Bounds<D>, length: f64, dp: f64) -> bool {
         let ends = [&bounds.min, &bounds.max].map(|x| self.beyond(x));
         ends.iter().any(|beyond| *beyond > 1e-6 * dp && *beyond < length * (1.0 - 1e-9))
+    }
+
+    /// The prescribed velocity (m/s) into the water, if it is the same everywhere at all times.
+    pub(crate) fn steady_current(&self) -> Option<f64> {
+        let steady = self.factor.is_none() && self.velocity.as_ref().is_some_and(UnsteadyField::is_constant);
+        self.outward_velocity(&Vector::zeros(), 0.0).filter(|_| steady).map(|speed| -speed)
     }
 
     /// The prescribed velocity (m/s) out of the water at `x` (m) and time `t` (s).
@@ -181,6 +236,8 @@ pub(super) struct Buffer<const D: usize> {
     pub(super) faces: Vec<u8>,
     /// Name of the next particle.
     pub(super) next_id: u32,
+    /// Time of the next rebuild of the lists, s.
+    pub(super) time: f64,
     /// What has passed through each face.
     pub(super) exchange: Vec<FaceExchange<D>>,
 }
@@ -198,7 +255,8 @@ pub(super) fn extend_domain_by_buffers<const D: usize>(system: &mut System<D>) {
     let length = buffer_length(&system.model) + system.model.support_radius();
     let FluidDomain { domain, open_boundaries, .. } = &mut system.fluid_domain;
     for face in open_boundaries.iter() {
-        let end = face.at + face.outward() * length;
+        // In waves the far end moves to and fro.
+        let end = face.at + face.outward() * (length + 2.0 * face.excursion());
         (domain.min[face.axis], domain.max[face.axis]) =
             (domain.min[face.axis].min(end), domain.max[face.axis].max(end));
     }
@@ -216,7 +274,7 @@ pub(super) fn start_buffers<const D: usize>(system: &mut System<D>) {
     let numbers = buffer.iter().filter_map(|&i| beyond(&r[i as usize])).map(|face| face as u8).collect();
     let exchange = vec![FaceExchange::zero(); faces.len()];
     let order: Vec<u32> = water.into_iter().chain(buffer).collect();
-    system.fluid.buffer = Buffer { faces: numbers, next_id: order.len() as u32, exchange };
+    system.fluid.buffer = Buffer { faces: numbers, next_id: order.len() as u32, exchange, time: 0.0 };
     system.fluid.permute(&order);
 }
 
@@ -229,6 +287,7 @@ pub(super) fn exchange_at_faces<const D: usize>(system: &mut System<D>, order: &
     let (water, length, mass) = (system.particle_count(), buffer_length(&system.model), system.particle_mass());
     let mass = mass * system.water_multiplicity();
     let mut exchange = std::mem::take(&mut system.fluid.buffer.exchange);
+    let time = system.fluid.buffer.time;
     let (faces, before) = (&system.fluid_domain.open_boundaries, &system.fluid.buffer.faces);
     let Particles { r, v, rho, .. } = &system.fluid.particles;
     let (mut inside, mut buffer, mut numbers, mut created) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
@@ -237,10 +296,10 @@ pub(super) fn exchange_at_faces<const D: usize>(system: &mut System<D>, order: &
         let was = old.checked_sub(water).map(|k| before[k]);
         let place = match was {
             Some(face) => {
-                let beyond = faces[face as usize].beyond(&r[old]);
-                if beyond <= 0.0 {
+                let face_of = &faces[face as usize];
+                if face_of.beyond(&r[old]) <= 0.0 {
                     Place::Water
-                } else if beyond > length {
+                } else if face_of.is_beyond_buffer(&r[old], length, time) {
                     Place::Gone
                 } else {
                     Place::Buffer(face)
@@ -285,13 +344,25 @@ pub(super) fn exchange_at_faces<const D: usize>(system: &mut System<D>, order: &
     created.len()
 }
 
-/// The way (m) to new buffer particle `k`, of `created`, from the particle that has crossed its face.
-pub(super) fn way_to_created<const D: usize>(system: &System<D>, k: usize, created: usize) -> Vector<D> {
-    let Buffer { faces, .. } = &system.fluid.buffer;
-    let face = &system.fluid_domain.open_boundaries[faces[faces.len() - created + k] as usize];
-    let mut way = Vector::zeros();
-    way[face.axis] = face.outward() * buffer_length(&system.model);
-    way
+/// The ways (m) to the last `created` particles of `order`, from those that have crossed their faces, and the differences
+/// of their velocities (m/s).
+pub(super) fn ways_to_created<const D: usize>(
+    system: &System<D>,
+    order: &[u32],
+    created: usize,
+) -> Vec<(Vector<D>, Vector<D>)> {
+    let (Buffer { faces, time, .. }, length) = (&system.fluid.buffer, buffer_length(&system.model));
+    let sources = order[order.len() - created..].iter().zip(&faces[faces.len() - created..]);
+    let way = |(source, face): (&u32, &u8)| {
+        let face = &system.fluid_domain.open_boundaries[*face as usize];
+        face.way_out(&system.fluid.particles.r[*source as usize], length, *time)
+    };
+    sources.map(way).collect()
+}
+
+/// Sets the time `t` (s) of the next rebuild of the lists, at which waves place new particles.
+pub(crate) fn set_buffer_time<const D: usize>(system: &mut System<D>, t: f64) {
+    system.fluid.buffer.time = t;
 }
 
 /// Names the last `created` particles before the images.
@@ -343,8 +414,18 @@ fn buffer_state<const D: usize>(system: &System<D>, i: usize, t: f64, dt: f64) -
         compression += (particles.rho[b] / rho0 - 1.0 - at_rest(x)) * share;
     });
     let beside = volume * system.particle_mass() >= BESIDE;
-    let (velocity, compression) = if beside { (velocity / volume, compression / volume) } else { (*before, 0.0) };
-    let density = |x: f64| rho0 * (1.0 + at_rest(r) + x);
+    // The pressure of the waves as a compression, and their velocity.
+    let waves = |x: &Vector<D>, t: f64| match face.orbit(x, t) {
+        None => (0.0, Vector::zeros()),
+        Some((orbit, velocity)) => {
+            let head = (level - x[D - 1] + orbit.head) * -system.properties.gravity[D - 1];
+            (system.equation_of_state.hydrostatic_compression(head) - at_rest(x), velocity)
+        }
+    };
+    let (velocity, compression) =
+        if beside { (velocity / volume, compression / volume - waves(&place, t).0) } else { (*before, 0.0) };
+    let (rise, orbital) = waves(r, t);
+    let density = |x: f64| rho0 * (1.0 + at_rest(r) + rise + x);
     let Some(prescribed) = face.outward_velocity(r, t) else {
         let held = face.level.is_some();
         return (velocity, density(if held { 0.0 } else { compression }));
@@ -356,13 +437,13 @@ fn buffer_state<const D: usize>(system: &System<D>, i: usize, t: f64, dt: f64) -
         Some(speed) => {
             // What it yields to waves that leave, at first and now.
             let then = face.outward_velocity(r, t - dt).unwrap_or(0.0);
-            let yielded = before.dot(&along) - then;
+            let yielded = (before - waves(&(r - before * dt), t - dt).1).dot(&along) - then;
             let target = system.properties.c0.powi(2) * compression / speed;
             let part = if dt > 0.0 { (dt * speed / (RESPONSE * system.model.h)).min(1.0) } else { 1.0 };
             prescribed + yielded + (target - yielded) * part
         }
     };
-    (along * outward, density(compression))
+    (along * outward + orbital, density(compression))
 }
 
 impl<const D: usize> FaceExchange<D> {
@@ -450,12 +531,20 @@ pub(crate) fn check<const D: usize>(setup: &Setup<D>, i: usize) -> Result<()> {
     }
     let fastest = setup.water.iter().zip(&beyond).filter(|(_, beyond)| **beyond > 0.0);
     let fastest = fastest.filter_map(|(r, _)| face.outward_velocity(r, 0.0)).map(f64::abs).fold(0.0, nan_max);
+    let fastest = fastest + face.waves.as_ref().map_or(0.0, IncidentWaves::orbital_speed);
     let most = FASTEST * setup.model.c0;
     if fastest.is_nan() || fastest > most {
         let what =
             format!("water passes open boundary {name:?} at {fastest:.4} m/s; the speed of sound allows {most:.4}");
         let help = format!("write  model.c0 = {:.3}  or more", fastest / SOUND);
         return Err(Error::scene(what).with_code(ErrorCode::OutOfRange).help(help));
+    }
+    if let Some(waves) = &face.waves
+        && (face.steady_current() != Some(waves.current()) || face.level.is_none())
+    {
+        let what = format!("the waves of open boundary {name:?} are on a current of {} m/s", waves.current());
+        let help = "give the face that velocity into the water, the same everywhere at all times, and a level";
+        return Err(Error::scene(what).with_code(ErrorCode::ConflictingKeys).help(help));
     }
     match face.absorbed_speed {
         Some(speed) if !(speed > 0.0 && speed.is_finite()) => {

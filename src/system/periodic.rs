@@ -59,7 +59,7 @@ impl<const D: usize> Images<D> {
     }
 
     /// Whether any side is periodic or a symmetry plane.
-    fn any(&self) -> bool {
+    pub(super) fn any(&self) -> bool {
         self.periodic.iter().any(Option::is_some) || self.planes.any()
     }
 
@@ -219,18 +219,20 @@ impl<const D: usize> System<D> {
         }
         let created = open_boundary::exchange_at_faces(self, &mut order);
         let real = order.len();
-        let ways: Vec<Vector<D>> = (0..created).map(|k| open_boundary::way_to_created(self, k, created)).collect();
+        let ways = open_boundary::ways_to_created(self, &order, created);
         let Fluid { particles, images, .. } = &mut self.fluid;
         let mut copies = Vec::new();
         if images.any() {
             let mut sorted: Vec<Vector<D>> = order.iter().map(|&i| particles.r[i as usize]).collect();
-            sorted[real - created..].iter_mut().zip(&ways).for_each(|(r, way)| *r += way);
+            sorted[real - created..].iter_mut().zip(&ways).for_each(|(r, (way, _))| *r += way);
             copies = images.make(&sorted);
             order.extend(copies.iter().map(|image| order[image.original as usize]).collect::<Vec<_>>());
         }
         self.fluid.permute(&order);
-        for (r, way) in self.fluid.particles.r[real - created..real].iter_mut().zip(&ways) {
-            *r += way;
+        let Particles { r, v, .. } = &mut self.fluid.particles;
+        for (i, (way, velocity_change)) in (real - created..real).zip(&ways) {
+            r[i] += way;
+            v[i] += velocity_change;
         }
         let images = &mut self.fluid.images;
         images.originals = copies.iter().map(|image| image.original).collect();

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::System;
+use super::{System, own_water};
 use crate::{
     error::ErrorCode,
     math::{Bounds, Vector},
@@ -177,16 +177,22 @@ impl<const D: usize> System<D> {
     /// Looks at all water now.
     pub(crate) fn check_water(&mut self) {
         let (guard, fluid) = (self.valid_range(), &self.fluid.particles);
-        let all = fluid
-            .r
-            .par_iter()
-            .zip(&fluid.v)
-            .zip(&fluid.rho)
-            .zip(self.neighbours.positions_at_build())
-            .with_min_len(PARTICLES_PER_TASK);
+        let is_apart = own_water::is_apart(&self.neighbours);
+        let (these, own) =
+            if is_apart { own_water::own(&self.neighbours, fluid.len()) } else { (0..fluid.len(), None) };
+        let all = fluid.r[these.clone()].par_iter().zip(&fluid.v[these.clone()]).zip(&fluid.rho[these.clone()]);
         self.status.step_check = all
-            .map(|(((r, v), rho), then)| guard.check(then, r, v, *rho))
+            .zip(&self.neighbours.positions_at_build()[these.clone()])
+            .enumerate()
+            .with_min_len(PARTICLES_PER_TASK)
+            .map(|(i, (((r, v), rho), then))| {
+                let is_other = own.is_some_and(|own| !own[these.start + i]);
+                if is_other { StepCheck::INITIAL } else { guard.check(then, r, v, *rho) }
+            })
             .reduce(|| StepCheck::INITIAL, StepCheck::combine);
+        if is_apart {
+            own_water::combine_checks(self);
+        }
     }
 
     /// The first water particle that has left the valid range, with what is wrong and its usual cause.

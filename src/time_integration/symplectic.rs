@@ -14,7 +14,7 @@ use crate::{
     coupling::{Accounting, Interval, drift_half_step},
     interaction::RequestedSums,
     particles::PARTICLES_PER_TASK,
-    system::{StepCheck, System},
+    system::{StepCheck, System, own_water, own_water::WaterAtStart},
 };
 
 /// The scheme @dominguez2022; it keeps no state between steps.
@@ -31,14 +31,20 @@ impl Symplectic {
         let (dt, half) = (over.dt, 0.5 * over.dt);
         let rho0 = system.properties().rho0;
         let boundary_start = system.boundary.particles.rho.clone();
+        let mut start = WaterAtStart::of(system);
         let (fluid, rates) = system.fluid_and_rates();
-        let (r_start, v_start, rho_start) = (fluid.r.clone(), fluid.v.clone(), fluid.rho.clone());
-        let now = fluid.r.par_iter_mut().zip(&mut fluid.v).zip(&mut fluid.rho);
+        let (these, own) = rates.own_water();
+        let now =
+            fluid.r[these.clone()].par_iter_mut().zip(&mut fluid.v[these.clone()]).zip(&mut fluid.rho[these.clone()]);
         system.status.step_check = now
-            .zip(rates.positions_at_build())
+            .zip(&rates.positions_at_build()[these.clone()])
             .enumerate()
             .with_min_len(PARTICLES_PER_TASK)
             .map(|(i, (((r, v), rho), then))| {
+                let i = these.start + i;
+                if own.is_some_and(|own| !own[i]) {
+                    return StepCheck::INITIAL;
+                }
                 let s = rates.of(i);
                 *r += *v * half;
                 *v += s.acceleration * half;
@@ -46,10 +52,11 @@ impl Symplectic {
                 StepCheck::displacement(then, r)
             })
             .reduce(|| StepCheck::INITIAL, StepCheck::combine);
+        own_water::combine_checks(system);
         step_boundary_density(system, half, |dx, _, rho| rho + rho0 * dx * half);
         drift_half_step(system, over);
 
-        system.rebuild_within_step();
+        system.rebuild_within_step(&mut start);
         system.update_rates(RequestedSums::All);
 
         accounting.iter_mut().for_each(|accounting| accounting.add_force_pass(system, dt));
@@ -60,19 +67,26 @@ impl Symplectic {
         };
         let guard = system.valid_range();
         let (fluid, rates) = system.fluid_and_rates();
-        let now = fluid.r.par_iter_mut().zip(&mut fluid.v).zip(&mut fluid.rho);
+        let (these, own) = rates.own_water();
+        let now =
+            fluid.r[these.clone()].par_iter_mut().zip(&mut fluid.v[these.clone()]).zip(&mut fluid.rho[these.clone()]);
         system.status.step_check = now
-            .zip(rates.positions_at_build())
+            .zip(&rates.positions_at_build()[these.clone()])
             .enumerate()
             .with_min_len(PARTICLES_PER_TASK)
             .map(|(i, (((r, v), rho), then))| {
-                let s = rates.of(i);
-                *v = v_start[i] + s.acceleration * dt;
-                *r = r_start[i] + (v_start[i] + *v) * half;
-                *rho = whole(rho_start[i], *rho, s.compression_rate);
+                let i = these.start + i;
+                if own.is_some_and(|own| !own[i]) {
+                    return StepCheck::INITIAL;
+                }
+                let (s, (r_start, v_start, rho_start)) = (rates.of(i), start.particle(i));
+                *v = v_start + s.acceleration * dt;
+                *r = r_start + (v_start + *v) * half;
+                *rho = whole(rho_start, *rho, s.compression_rate);
                 guard.check(then, r, v, *rho)
             })
             .reduce(|| StepCheck::INITIAL, StepCheck::combine);
+        own_water::combine_checks(system);
         if let Some(shifts) = shifts {
             apply_shifts(system, &shifts, &mut accounting);
         }

@@ -8,10 +8,11 @@
 //!   X(t) = r(t) Σ Aₙ sin(ωₙ t + φₙ),   η(x, t) = Σ aₙ cos(ωₙ t − kₙ x + φₙ),   Aₙ = aₙ/c(kₙ)
 //!
 //! c is the paddle's transfer function (`paddle`); the ramp r rises smoothly from 0 to 1. The module `second_order`
-//! treats waves of order 2, and the module `solitary` treats solitary waves.
+//! treats waves of order 2, the module `solitary` solitary waves, and the module `incident` waves that enter through a face.
 
 mod absorption;
 mod extent;
+mod incident;
 mod paddle;
 mod record;
 mod second_order;
@@ -21,6 +22,8 @@ mod train;
 
 pub(crate) use absorption::{Absorber, AbsorptionSettings, AbsorptionState};
 pub(crate) use extent::LINEAR_SPEED_RATIO_MAX;
+pub use incident::IncidentWaves;
+pub(crate) use incident::{Orbit, wave_number_on_current};
 pub(crate) use paddle::Paddle;
 pub use solitary::SolitaryTheory;
 pub(crate) use solitary::SolitaryWave;

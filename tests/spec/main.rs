@@ -6,6 +6,8 @@ mod bodies;
 mod common;
 mod constraints;
 mod run;
+#[path = "../support/run_files.rs"]
+mod run_files;
 mod scene;
 mod water;
 mod waves;

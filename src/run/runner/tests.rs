@@ -79,8 +79,8 @@ fn what_was_written_of_a_course_that_ended_in_an_alarm_is_taken_back() -> Result
     let (file, out, copy) = (home.join("scene.toml"), home.join("run"), home.join("copy"));
     fs::create_dir_all(&home).and_then(|()| fs::write(&file, SCENE)).map_err(|e| Error::file(&file, e))?;
     let scene = Scene::read(&file, &[])?;
-    let mut course =
-        Runner::<2>::new(&scene, RunOrigin::Fresh { file: &file, out: Some(&out), overrides: &[], text: None })?;
+    let origin = RunOrigin::Fresh { file: &file, out: Some(&out), overrides: &[], text: None };
+    let mut course = Runner::<2>::new(&scene, origin, &Ranks::default())?;
     course.manifest.write(&out)?;
 
     // Twice the speed of sound for all water: no flow does that.

@@ -1,9 +1,14 @@
 //! `[[inflow]]` and `[[outflow]]`: vertical faces through which water enters and leaves.
 
+use std::f64::consts::TAU;
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::water::{InitialFlow, WaterBody};
+use super::{
+    water::{InitialFlow, WaterBody},
+    wave::{self, RegularWaveConfig},
+};
 use crate::{
     error::{ErrorCode, Result},
     geometry::{Shape, WaterRegion},
@@ -13,6 +18,7 @@ use crate::{
         untagged::{CoordinateUnit, FieldFormulaConfig, TimeValueConfig},
     },
     simulation::OpenBoundary,
+    wavemaker::{IncidentWaves, wave_number_on_current},
 };
 
 /// One `[[inflow]]` or `[[outflow]]`.
@@ -34,6 +40,21 @@ pub struct OpenBoundaryConfig {
     pub level: Option<f64>,
     /// Whether the velocity yields to waves that leave, so that they are not reflected.
     pub absorb: Option<bool>,
+    /// Period of the waves that leave, s; long waves without one.
+    pub absorb_period: Option<f64>,
+    /// Waves that enter, on the current of the face.
+    pub wave: Option<FaceWaveConfig>,
+}
+
+/// A wave that enters through a face, along its normal.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[non_exhaustive]
+pub struct FaceWaveConfig {
+    /// Its height and period, to first order.
+    pub regular: RegularWaveConfig,
+    /// Duration of the rise to the full height, s.
+    pub ramp: Option<f64>,
 }
 
 /// The sense of a flow through a face.
@@ -107,11 +128,21 @@ impl OpenBoundaryConfig {
                 let what = "an inflow has a velocity";
                 return Err(ctx.error_with_help(key, what, "write  velocity = 0.5        # m/s, into the water"));
             }
-            if self.factor.is_some() || self.absorb == Some(true) {
-                let what = "without a velocity there is nothing to multiply or to return to";
+            if self.factor.is_some() || self.absorb == Some(true) || self.absorb_period.is_some() || self.wave.is_some()
+            {
+                let what = "without a velocity there is nothing to multiply or to return to, and no current for waves";
                 let help = "write  velocity = 0.5        # m/s, that of the inflow";
                 return Err(ctx.error_with_help(key, what, help).with_code(ErrorCode::ConflictingKeys));
             }
+        }
+        ctx.require_positive(&format!("{key}.absorb_period"), self.absorb_period)?;
+        if self.absorb_period.is_some() && self.absorb == Some(false) {
+            let what = "a face that absorbs no waves has no use for their period";
+            let help = "leave absorb_period out, or write  absorb = true";
+            return Err(ctx.error_with_help(key, what, help).with_code(ErrorCode::ConflictingKeys));
+        }
+        if let Some(wave) = &self.wave {
+            wave.verify(ctx, &format!("{key}.wave"))?;
         }
         if self.absorb == Some(true) && ctx.gravity.is_some() && !ctx.has_gravity() {
             let what = "without gravity there are no waves to absorb";
@@ -132,13 +163,24 @@ impl OpenBoundaryConfig {
         }
         // A scene that gives no gravity has that of the earth.
         let weight = ctx.gravity.is_none() || ctx.has_gravity();
-        let absorbs = flow == FaceFlow::Out && self.velocity.is_some() && weight;
+        let waves = self.wave.is_some() || self.absorb_period.is_some();
+        let absorbs = (flow == FaceFlow::Out || waves) && self.velocity.is_some() && weight;
         let why = match (flow, absorbs) {
             (_, true) => "waves leave",
             (FaceFlow::In, _) => "the discharge is exact",
             (FaceFlow::Out, _) => "no velocity or no gravity is given",
         };
         defaults.fill(format!("{key}.absorb"), &mut self.absorb, absorbs, why);
+        if let Some(FaceWaveConfig { regular, ramp }) = &mut self.wave {
+            let wave = format!("{key}.wave");
+            defaults.fill(format!("{wave}.regular.order"), &mut regular.order, 1, "waves enter by linear theory");
+            defaults.fill(format!("{wave}.regular.phase_deg"), &mut regular.phase_deg, 0.0, "a crest at the start");
+            defaults.fill(format!("{wave}.ramp"), ramp, 2.0 * regular.period, "two periods");
+            if self.absorb == Some(true) {
+                let why = "of the wave that enters";
+                defaults.fill(format!("{key}.absorb_period"), &mut self.absorb_period, regular.period, why);
+            }
+        }
     }
 
     /// The face beside `water`, and the buffer of length `length` (m) that is to be filled beyond it.
@@ -185,14 +227,43 @@ impl OpenBoundaryConfig {
         };
         let factor = self.factor.as_ref();
         let factor = factor.map(|f| f.0.build(ctx, &format!("{key}.factor"), CoordinateUnit::Si)).transpose()?;
-        // Long waves.
-        let speed = (ctx.gravity_norm() * (top - bounds.min[D - 1])).sqrt();
+        let face = OpenBoundary { is_lower, factor, ..face };
+        let (g, depth) = (ctx.gravity_norm(), top - bounds.min[D - 1]);
+        let middle = 0.5 * (bounds.min + bounds.max);
+        let speed = match self.absorb_period {
+            // Long waves.
+            None => (g * depth).sqrt(),
+            Some(period) => {
+                // Of the waves that leave, in the water, on the current that they meet.
+                let (omega, along) = (TAU / period, face.outward_velocity(&middle, 0.0).unwrap_or(0.0));
+                let k = wave_number_on_current(omega, depth, along, g).ok_or_else(|| {
+                    let what = format!("the current stops waves of {period} s that would leave");
+                    ctx.error_with_help(
+                        &format!("{key}.absorb_period"),
+                        &what,
+                        "write  absorb = false, or a longer period",
+                    )
+                })?;
+                omega / k - along
+            }
+        };
         let absorbed_speed = self.absorb.unwrap_or(false).then_some(speed);
+        let waves = self.wave.as_ref().map(|FaceWaveConfig { regular, ramp }| {
+            let RegularWaveConfig { height, period, phase_deg, .. } = *regular;
+            let current = face.steady_current().ok_or_else(|| {
+                let what = "waves enter on a current that is the same at every height and time";
+                ctx.error_with_help(key, what, "write  velocity = 0.3        # m/s, and leave factor out")
+            })?;
+            let phase = phase_deg.unwrap_or(0.0).to_radians();
+            IncidentWaves::regular(height, period, phase, depth, current, g, ramp.unwrap_or(0.0))
+                .map_err(|e| ctx.with_location(e, &format!("{key}.wave")))
+        });
+        let waves = waves.transpose()?;
         // Without velocity and level the pressure is that of the water.
         let level = if face.velocity.is_some() { Some(level) } else { self.level };
-        let face = OpenBoundary { is_lower, factor, level, absorbed_speed, ..face };
+        let face = OpenBoundary { level, absorbed_speed, waves, ..face };
         let shape = Shape::Box { size: bounds.size() };
-        let pose = Pose::at(0.5 * (bounds.min + bounds.max));
+        let pose = Pose::at(middle);
         let buffer = WaterBody {
             region: WaterRegion { shape, pose },
             bottom: bounds.min[D - 1],
@@ -201,6 +272,23 @@ impl OpenBoundaryConfig {
             inside: None,
         };
         Ok((face, buffer))
+    }
+}
+
+impl FaceWaveConfig {
+    /// Refuses a wave that is no positive one of first order, and one without a constant gravity.
+    fn verify(&self, ctx: &Context, key: &str) -> Result<()> {
+        wave::require_gravity(ctx)?;
+        let RegularWaveConfig { height, period, order, .. } = self.regular;
+        let numbers = [("regular.height", Some(height)), ("regular.period", Some(period)), ("ramp", self.ramp)];
+        numbers.into_iter().try_for_each(|(word, x)| ctx.require_positive(&format!("{key}.{word}"), x))?;
+        match order.filter(|order| *order != 1) {
+            Some(order) => {
+                let what = format!("waves enter through a face by theory of order 1, not {order}");
+                Err(ctx.error_with_help(&format!("{key}.regular.order"), what, "leave order out"))
+            }
+            None => Ok(()),
+        }
     }
 }
 

@@ -56,9 +56,9 @@ pub struct RegularWaveConfig {
     pub height: f64,
     /// s.
     pub period: f64,
-    /// Order of the paddle's theory, 1 or 2.
+    /// Order of the theory: 1 or 2 of a paddle, 1 of a face.
     pub order: Option<usize>,
-    /// Phase of the surface at the paddle, degrees.
+    /// Phase of the surface at the paddle or face, degrees.
     pub phase_deg: Option<f64>,
 }
 
@@ -304,17 +304,7 @@ impl WaveConfig {
             };
             return Err(ctx.error_at(key, what));
         }
-        let gravity = ctx.gravity.as_ref().is_none_or(|g| {
-            let (up, rest) = g.initial.split_last().map_or((0.0, &[][..]), |(up, rest)| (*up, rest));
-            up < 0.0 && rest.iter().all(|x| *x == 0.0) && !g.varies
-        });
-        if !gravity {
-            return Err(ctx.error_with_help(
-                "gravity",
-                "waves need a constant gravity straight down",
-                "write  gravity = [0.0, -9.81]",
-            ));
-        }
+        require_gravity(ctx)?;
         ctx.require_positive(&format!("{key}.ramp"), self.ramp)?;
         ctx.require_positive(&format!("{key}.depth"), self.depth)?;
         let Some(kind) = kinds.first() else { return Ok(()) };
@@ -350,6 +340,19 @@ impl WaveConfig {
         numbers.extend(self.solitary.iter().map(|config| ("height", Some(config.height))));
         numbers.into_iter().try_for_each(|(word, x)| ctx.require_positive(&format!("{key}.{word}"), x))
     }
+}
+
+/// Refuses waves unless gravity is constant and straight down.
+pub(super) fn require_gravity(ctx: &Context) -> Result<()> {
+    let down = ctx.gravity.as_ref().is_none_or(|g| {
+        let (up, rest) = g.initial.split_last().map_or((0.0, &[][..]), |(up, rest)| (*up, rest));
+        up < 0.0 && rest.iter().all(|x| *x == 0.0) && !g.varies
+    });
+    if down {
+        return Ok(());
+    }
+    let what = "waves need a constant gravity straight down";
+    Err(ctx.error_with_help("gravity", what, "write  gravity = [0.0, -9.81]"))
 }
 
 impl MeasuredElevationConfig {

@@ -54,7 +54,10 @@ impl Viscosity {
         next: N,
     ) -> N::Output {
         match self {
-            Self::None => next.with_terms((), ()),
+            // Without viscosity α is 0, which adds an exact 0 and needs no pair loop of its own.
+            Self::None => {
+                Self::Artificial(Artificial { alpha: 0.0 }).terms(properties, units, wall_share, viscous_sum, next)
+            }
             Self::Artificial(law) => {
                 let wall = Artificial { alpha: law.alpha * wall_share };
                 next.with_terms(law.term(properties), wall.term(properties))

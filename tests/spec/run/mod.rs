@@ -6,6 +6,7 @@ mod gauges;
 mod mounted_probes;
 mod probes;
 mod progress;
+mod ranks;
 mod rao;
 mod restart;
 mod statistics;

@@ -1,7 +1,7 @@
 //! Restart: a run that is interrupted twice and resumed on other numbers of threads writes the files of an uninterrupted run, byte
 //! for byte. The scenes in `restart/` cover all components with state.
 
-use std::{collections::BTreeMap, f64::consts::PI, fs, path::Path};
+use std::{f64::consts::PI, fs, path::Path};
 
 use pontoon::{
     Result,
@@ -13,24 +13,7 @@ use pontoon::{
     solid::Dim,
 };
 
-use crate::common::TestFolder;
-
-/// Every file below `folder` by its relative name, without the files that contain wall time.
-fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
-    fn collect(folder: &Path, name: &str, into: &mut BTreeMap<String, Vec<u8>>) {
-        for path in fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
-            let name = format!("{name}/{}", path.file_name().unwrap().to_string_lossy());
-            match path.is_dir() {
-                true => collect(&path, &name, into),
-                false => drop(into.insert(name, fs::read(&path).unwrap())),
-            }
-        }
-    }
-    let mut all = BTreeMap::new();
-    collect(folder, "", &mut all);
-    all.retain(|name, _| name != "/manifest.json" && !name.starts_with("/checkpoint"));
-    all
-}
+use crate::{common::TestFolder, run_files::assert_same_files};
 
 /// Asserts that the scene `name` writes the same files without interruption and with two interruptions (s). Returns the folder of both
 /// runs and the simulation at the second interruption, on which `enable` has switched on its budgets.
@@ -50,11 +33,7 @@ where
     run::run(&scene, &options("interrupted"), &mut |now: &Progress| now.time < first)?;
     run::resume(&interrupted, &[], Some(2), &mut |now: &Progress| now.time < second)?;
     run::resume(&interrupted, &[], Some(3), &mut |_: &Progress| true)?;
-    let (expected, resumed) = (files(&whole), files(&interrupted));
-    assert!(expected.keys().eq(resumed.keys()), "{:?}\n{:?}", expected.keys(), resumed.keys());
-    for (file, bytes) in &expected {
-        assert!(*bytes == resumed[file], "{name}: {file} differs");
-    }
+    assert_same_files(&whole, &interrupted, name);
     let mut sim = Simulation::new(Scene::read(&scene, &[])?.build::<D>()?.setup)?;
     enable(&mut sim);
     let saved = Checkpoint::read(&interrupted.join("checkpoint.bin"))?;
@@ -157,12 +136,8 @@ fn a_run_stopped_by_a_step_check_can_be_resumed_with_another_limit() -> Result<(
         assert!(refused.contains(expected_message), "{refused}");
     }
     resume("guard.escape", "remove")?;
-    let (expected, resumed) = (files(&home.join("whole")), files(&interrupted));
-    assert!(expected.keys().eq(resumed.keys()), "{:?}\n{:?}", expected.keys(), resumed.keys());
     // The checkpoint is older than the first alarm, so both runs are equal.
-    for (file, bytes) in expected.iter().filter(|(file, _)| *file != "/report.html") {
-        assert!(*bytes == resumed[file], "{file} differs");
-    }
+    assert_same_files(&home.join("whole"), &interrupted, "with another limit");
     Ok(())
 }
 

@@ -1,7 +1,10 @@
 //! Preflight: its values agree with theory and with the run. Each finding appears with its fault and disappears after the
 //! correction that it proposes.
 
-use std::{f64::consts::PI, path::Path};
+use std::{
+    f64::consts::{PI, TAU},
+    path::Path,
+};
 
 use pontoon::{
     model::Dimension,
@@ -409,6 +412,44 @@ fn a_current_too_slow_for_its_surface_is_noted() {
     let size = "[0.4, 0.2]";
     assert_eq!([noted(0.6, 0.5, size), noted(0.8, 0.5, size), noted(0.6, 0.2, size)], [true, false, false]);
     assert!(!noted(0.6, 0.5, "[6.0, 0.2]"));
+    // The same for a current that is held, 0.5 m deep, and for water past a towed body.
+    let driven = |driving: &str| {
+        let text = format!(
+            "dimension = 2\ndp = 0.05\nuntil = 1.0\nperiodic = {{ x = [0.0, 2.0] }}\n{driving}\n\
+             water = [{{ fill = {{ box = {{ min = [0.0, 0.0], max = [2.0, 0.5] }} }} }}]\n\
+             [[solid]]\nname = \"pier\"\nfixed = true\nshape = {{ box = {{ size = [0.4, 0.2] }} }}\nat = {{ x = 1.0, y = 0.5 }}\n\
+             [[solid]]\nname = \"bed\"\nfixed = true\nshape = {{ box = {{ size = [4.0, 0.3] }} }}\nat = {{ x = 1.0, y = -0.15 }}\n"
+        );
+        let scene = Scene::parse(&text, Path::new(""), &[]).unwrap();
+        topics(&preflight_report::<2>(&scene)).contains(&"slow_current")
+    };
+    let held = |discharge: f64| driven(&format!("current = {{ along = \"x\", discharge = {discharge} }}"));
+    let towed = |speed: f64| driven(&format!("towed = {{ along = \"x\", velocity = {speed} }}"));
+    assert_eq!([held(0.3), held(0.4), towed(0.6), towed(0.8)], [true, false, true, false]);
+}
+
+/// Waves that enter through a face: their length and speeds are those of linear waves on the current, with which and against which
+/// ω = k U + √(g k tanh kd).
+#[test]
+fn waves_through_a_face_are_told_with_their_length_on_the_current() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/spec/water/open_boundaries/entering_waves.toml");
+    for current in ["0.3", "-0.3"] {
+        let water = format!("[{current}, 0.0]");
+        let sets =
+            [("inflow.0.velocity", current), ("outflow.0.velocity", current), ("water.0.velocity", water.as_str())];
+        let sets = sets.map(|(key, value)| (key.to_string(), value.to_string()));
+        let found = preflight_report::<2>(&Scene::read(&path, &sets).unwrap());
+        let [wave] = &found.face_waves[..] else { panic!("{:?}", found.face_waves) };
+        let u: f64 = current.parse().unwrap();
+        let (k, omega) = (TAU / wave.length_m, TAU / wave.period_s);
+        assert_close(k * u + (9.81 * k * (k * wave.depth_m).tanh()).sqrt(), omega, 1e-9);
+        assert_close(wave.celerity_mps, omega / k, 1e-9);
+        assert_close(wave.kd, k * wave.depth_m, 1e-12);
+        assert_close(wave.length_dp, wave.length_m / 0.025, 1e-12);
+        assert!(wave.current_mps == u && wave.orbital_mps < 0.3 && wave.group_mps < wave.celerity_mps);
+        // Two dp high.
+        assert!(topics(&found).contains(&"low_waves"), "{:?}", found.findings);
+    }
 }
 
 #[test]

@@ -1,0 +1,214 @@
+//! The division of the slabs among ranks: which rank computes which slabs, and so which particles.
+
+use std::ops::Range;
+
+use super::clusters::{PAD, Slab};
+use crate::{
+    math::simd::LANES,
+    math::{Bounds, Vector},
+    ranks::{self, Ranks},
+};
+
+/// The division; of a single rank, which has everything, it is empty.
+#[derive(Clone, Debug, Default)]
+pub struct Division {
+    pub(crate) ranks: Ranks,
+    /// The slabs of each rank.
+    pub(crate) slabs: Vec<Range<usize>>,
+    /// Whether each rank advances its own water only. If not, every rank needs the sums of all.
+    pub(crate) by_owner: bool,
+    /// Whether ranks lack the present water of others, because each has advanced its own.
+    pub(crate) is_apart: bool,
+    /// Water particles of this rank, in ascending order.
+    own: Vec<u32>,
+    /// Whether the water particle is this rank's.
+    is_own: Vec<bool>,
+    /// Boundary particles near water of each rank, by their place among all of these.
+    boundary: Vec<Vec<u32>>,
+    /// Number of list entries of each slab.
+    entries: Vec<u32>,
+}
+
+impl Division {
+    /// The slabs that this rank computes.
+    pub(crate) fn own_slabs(&self) -> Range<usize> {
+        self.slabs.get(self.ranks.rank()).cloned().unwrap_or_default()
+    }
+
+    /// The slabs that the sums of this rank read, of `count`: its own and the next.
+    pub(super) fn read_slabs(&self, count: usize) -> Range<usize> {
+        let own = self.own_slabs();
+        if own.is_empty() { own } else { own.start..(own.end + 1).min(count) }
+    }
+
+    /// The water particles that this rank advances, in ascending order, and whether it is this rank's for every particle; `None` if
+    /// it advances all.
+    pub(crate) fn own_water(&self) -> Option<(&[u32], &[bool])> {
+        self.by_owner.then_some((&self.own[..], &self.is_own[..]))
+    }
+
+    /// The range of the water particles that this rank advances, of `count`; others may be among them.
+    pub(crate) fn own_range(&self, count: usize) -> Range<usize> {
+        match (self.by_owner, self.own.first(), self.own.last()) {
+            (false, ..) => 0..count,
+            (true, Some(&first), Some(&last)) => first as usize..last as usize + 1,
+            _ => 0..0,
+        }
+    }
+
+    /// Makes `own` the water of this rank, in ascending order, of `count` particles.
+    pub(crate) fn set_own_water(&mut self, own: Vec<u32>, count: usize) {
+        self.is_own = vec![false; count];
+        own.iter().for_each(|&i| self.is_own[i as usize] = true);
+        self.own = own;
+    }
+
+    /// The rank that computes `slab`.
+    pub(crate) fn owner_of(&self, slab: usize) -> usize {
+        self.slabs.partition_point(|slabs| slabs.end <= slab)
+    }
+
+    /// The ranks that have the slabs before and after those of this one.
+    pub(crate) fn adjacent(&self) -> [Option<usize>; 2] {
+        let own = self.own_slabs();
+        if own.is_empty() {
+            return [None; 2];
+        }
+        let after = self.owner_of(own.end);
+        [own.start.checked_sub(1).map(|slab| self.owner_of(slab)), (after < self.ranks.count()).then_some(after)]
+    }
+
+    /// Shares out the slabs, which have so many `particles` of water: by the entries of the last lists, or by particles where the
+    /// slabs are others.
+    pub(super) fn share_out(&mut self, particles: &[u32]) {
+        let weights = if self.entries.len() == particles.len() { &self.entries } else { particles };
+        let weights: Vec<u64> = weights.iter().map(|&n| u64::from(n)).collect();
+        self.slabs = ranks::equal_parts(&weights, self.ranks.count());
+    }
+
+    /// The smallest box around those of all ranks.
+    pub(super) fn union<const D: usize>(&self, own: &Bounds<D>) -> Bounds<D> {
+        let mut ends: Vec<f64> = own.min.iter().chain(own.max.iter()).copied().collect();
+        ends.resize(2 * D * self.ranks.count(), 0.0);
+        ends.rotate_right(2 * D * self.ranks.rank());
+        let parts: Vec<Range<usize>> = (0..self.ranks.count()).map(|rank| 2 * D * rank..2 * D * (rank + 1)).collect();
+        self.ranks.share_doubles(&mut ends, &parts);
+        let bounds = |ends: &[f64]| Bounds {
+            min: Vector::from_column_slice(&ends[..D]),
+            max: Vector::from_column_slice(&ends[D..]),
+        };
+        ends.chunks_exact(2 * D).map(bounds).fold(Bounds::empty(), |all, one| all.union(&one))
+    }
+
+    /// Completes the numbers of columns, of which each rank has those of its slabs; slab s has the `columns(s)`.
+    pub(super) fn share_by_column(&self, numbers: &mut [f64], columns: impl Fn(usize) -> Range<usize>) {
+        let of = |slabs: &Range<usize>| match slabs.is_empty() {
+            true => 0..0,
+            false => columns(slabs.start).start..columns(slabs.end - 1).end,
+        };
+        self.ranks.share_doubles(numbers, &self.slabs.iter().map(of).collect::<Vec<_>>());
+    }
+
+    /// Completes the numbers of slabs, of which each rank has those of its own.
+    pub(super) fn share_by_slab(&self, numbers: &mut [u32]) {
+        self.ranks.share_numbers(numbers, &self.slabs);
+    }
+
+    /// Completes `touched` with what the lists of other ranks touch, and counts the entries of all lists.
+    pub(super) fn combine_lists(&mut self, slabs: &[Slab], touched: &mut [u8]) {
+        if self.ranks.count() == 1 {
+            return;
+        }
+        let clusters_of = |part: &Range<usize>| match slabs[part.clone()].first() {
+            Some(slab) => slab.first..slabs[part.end.min(slabs.len() - 1)].end,
+            None => 0..0,
+        };
+        let all = self.ranks.gather_bytes(&touched[clusters_of(&self.own_slabs())]);
+        for (part, theirs) in self.slabs.iter().zip(all) {
+            touched[clusters_of(part)].iter_mut().zip(theirs).for_each(|(all, one)| *all |= one);
+        }
+        self.entries = slabs.iter().map(|slab| slab.index.len() as u32).collect();
+        self.ranks.share_numbers(&mut self.entries, &self.slabs);
+    }
+
+    /// Finds the particles of each rank, of `water` ones: `source` has the particle in each slot, `boundary_slots` the slots of the
+    /// boundary particles near water.
+    pub(super) fn find_owners(&mut self, slabs: &[Slab], source: &[u32], boundary_slots: &[u32], water: usize) {
+        if self.ranks.count() == 1 {
+            return;
+        }
+        let slots = |part: &Range<usize>| match slabs[part.clone()].first() {
+            Some(slab) => slab.first * LANES..slabs[part.end - 1].end * LANES,
+            None => 0..0,
+        };
+        if !self.is_apart {
+            let own = slabs[self.own_slabs()].iter().flat_map(|slab| slab.first * LANES..slab.middle * LANES);
+            let mut own: Vec<u32> = own.map(|slot| source[slot]).filter(|&i| i != PAD).collect();
+            own.sort_unstable();
+            self.set_own_water(own, water);
+        }
+        let ends: Vec<Range<usize>> = self.slabs.iter().map(slots).collect();
+        self.boundary = vec![Vec::new(); ends.len()];
+        for (k, &slot) in boundary_slots.iter().enumerate() {
+            if let Some(rank) = ends.iter().position(|slots| slots.contains(&(slot as usize))) {
+                self.boundary[rank].push(k as u32);
+            }
+        }
+    }
+
+    /// Completes the numbers of boundary particles near water in `data`, `width` of each: `give` appends those of place k, `take`
+    /// sets them. Every rank has those of its own slabs.
+    pub(crate) fn share_boundary<C>(
+        &self,
+        data: &mut C,
+        width: usize,
+        give: impl Fn(&C, usize, &mut Vec<f64>),
+        take: impl Fn(&mut C, usize, &[f64]),
+    ) {
+        let (ranks, owned) = (&self.ranks, &self.boundary);
+        let (own, counts): (_, Vec<usize>) = (ranks.rank(), owned.iter().map(Vec::len).collect());
+        let [mut given, mut taken] = [Vec::with_capacity(width), Vec::with_capacity(width)];
+        let pack = |data: &C, k: usize, words: &mut Vec<u32>| {
+            given.clear();
+            give(data, owned[own][k] as usize, &mut given);
+            words.extend(given.iter().flat_map(|x| ranks::words_of(*x)));
+        };
+        let unpack = |data: &mut C, rank: usize, k: usize, words: &[u32]| {
+            taken.clear();
+            taken.extend(ranks::doubles(words));
+            take(data, owned[rank][k] as usize, &taken);
+        };
+        ranks.share_items(data, (&counts, 2 * width), pack, unpack);
+    }
+
+    /// Gives `width` numbers of each of the water particles `these` of this rank to the others, which gives them theirs: `give`
+    /// appends those of a particle, `take` gets those of another rank's.
+    pub(crate) fn share_water<C>(
+        &self,
+        these: &[u32],
+        data: &mut C,
+        width: usize,
+        give: impl Fn(&C, usize, &mut Vec<f64>),
+        mut take: impl FnMut(&mut C, usize, &[f64]),
+    ) {
+        let counts: Vec<usize> = self.counts(these.len());
+        let [mut given, mut taken] = [Vec::with_capacity(width), Vec::with_capacity(width)];
+        let pack = |data: &C, k: usize, words: &mut Vec<u32>| {
+            given.clear();
+            give(data, these[k] as usize, &mut given);
+            words.push(these[k]);
+            words.extend(given.iter().flat_map(|x| ranks::words_of(*x)));
+        };
+        let unpack = |data: &mut C, _: usize, _: usize, words: &[u32]| {
+            taken.clear();
+            taken.extend(ranks::doubles(&words[1..]));
+            take(data, words[0] as usize, &taken);
+        };
+        self.ranks.share_items(data, (&counts, 1 + 2 * width), pack, unpack);
+    }
+
+    /// The number that each rank gives.
+    pub(crate) fn counts(&self, own: usize) -> Vec<usize> {
+        self.ranks.gather_words([own as u32]).into_iter().map(|[n]| n as usize).collect()
+    }
+}

@@ -1,0 +1,72 @@
+//! Waves that enter through faces, checked against dp and the current.
+
+use std::f64::consts::TAU;
+
+use serde::Serialize;
+
+use super::{Finding, PreflightContext, generated_waves::check_resolution};
+use crate::{
+    system::OpenBoundary,
+    wavemaker::{IncidentWaves, LinearWave},
+};
+
+/// A regular wave that enters through a face on a current.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FaceWave {
+    /// Name of the face.
+    pub face: String,
+    /// Height, m.
+    pub height_m: f64,
+    /// The same height over dp.
+    pub height_dp: f64,
+    /// Period at a fixed place, s.
+    pub period_s: f64,
+    /// Length on the current, m.
+    pub length_m: f64,
+    /// The same length over dp.
+    pub length_dp: f64,
+    /// Depth at the face, m.
+    pub depth_m: f64,
+    /// Relative depth kd.
+    pub kd: f64,
+    /// Current along the waves, m/s; negative against them.
+    pub current_mps: f64,
+    /// Greatest velocity of the water by the waves alone, m/s; below the current.
+    pub orbital_mps: f64,
+    /// Speed of the crests at a fixed place, m/s.
+    pub celerity_mps: f64,
+    /// Speed of the wave's front and energy at a fixed place, m/s.
+    pub group_mps: f64,
+    /// Duration of the rise to the full height, s.
+    pub ramp_s: f64,
+}
+
+/// Returns the waves that enter through faces, and adds findings about those that dp does not resolve.
+pub(super) fn face_waves<const D: usize>(context: &PreflightContext<D>, findings: &mut Vec<Finding>) -> Vec<FaceWave> {
+    let dp = context.dp();
+    let faces = context.system.open_boundaries().iter().filter_map(|face| Some((face, face.waves.as_ref()?)));
+    let waves = faces.flat_map(|(face, waves)| waves.regular_trains().map(move |train| (face, waves, train)));
+    let wave = |(face, waves, (height_m, omega, in_water)): (_, &IncidentWaves, (f64, f64, LinearWave))| {
+        let (face, current_mps): (&OpenBoundary<D>, f64) = (face, waves.current());
+        FaceWave {
+            face: face.name.clone(),
+            height_m,
+            height_dp: height_m / dp,
+            period_s: TAU / omega,
+            length_m: in_water.wavelength(),
+            length_dp: in_water.wavelength() / dp,
+            depth_m: in_water.depth,
+            kd: in_water.kd(),
+            current_mps,
+            orbital_mps: waves.orbital_speed(),
+            celerity_mps: in_water.celerity() + current_mps,
+            group_mps: in_water.group_velocity() + current_mps,
+            ramp_s: waves.ramp(),
+        }
+    };
+    let waves: Vec<FaceWave> = waves.map(wave).collect();
+    for FaceWave { face, height_m, height_dp, length_m, length_dp, .. } in &waves {
+        check_resolution((face, "lets in"), (*height_m, *height_dp), (*length_m, *length_dp), findings);
+    }
+    waves
+}

@@ -1,0 +1,238 @@
+//! A run on several ranks. The first rank leads it: it writes the files and tells the others what to do next. The others have the
+//! same simulation and take the same steps.
+
+use std::{fs, path::Path};
+
+use super::{controls::Controls, probe_factory, run_folder};
+use crate::{
+    error::{Error, ErrorKind, Result},
+    model::Dimension,
+    output::{Checkpoint, checkpoint},
+    plan::{ControlChange, Plan},
+    ranks::{Ranks, from_words, words_of},
+    scene::{BuiltScene, Scene},
+    simulation::{Setup, Simulation},
+    solid::Dim,
+};
+
+/// What the first rank tells the others.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Order {
+    /// Take a step.
+    Step,
+    /// Complete the water on the first rank.
+    Gather,
+    /// Set a control to a value.
+    Set { control: usize, value: f64 },
+    /// The run is over.
+    End,
+}
+
+/// What a rank gives in the exchange of an order.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Message {
+    /// Of the first rank.
+    order: Option<Order>,
+    /// Whether this rank could not follow the last order.
+    failed: bool,
+    /// Simulated time, s.
+    time: f64,
+}
+
+impl Message {
+    fn words(&self) -> [u32; 7] {
+        let (kind, control, value) = match self.order {
+            None => (0, 0, 0.0),
+            Some(Order::Step) => (1, 0, 0.0),
+            Some(Order::Set { control, value }) => (2, control as u32, value),
+            Some(Order::End) => (3, 0, 0.0),
+            Some(Order::Gather) => (4, 0, 0.0),
+        };
+        let ([t0, t1], [v0, v1]) = (words_of(self.time), words_of(value));
+        [kind, control, v0, v1, t0, t1, u32::from(self.failed)]
+    }
+
+    fn from_words([kind, control, v0, v1, t0, t1, failed]: [u32; 7]) -> Self {
+        let order = match kind {
+            1 => Some(Order::Step),
+            2 => Some(Order::Set { control: control as usize, value: from_words(v0, v1) }),
+            3 => Some(Order::End),
+            4 => Some(Order::Gather),
+            _ => None,
+        };
+        Self { order, failed: failed != 0, time: from_words(t0, t1) }
+    }
+}
+
+/// Exchanges messages; returns the order.
+///
+/// # Errors
+/// `Fault` if a rank failed, or is at another time than the first: all ranks get this error.
+fn exchange(ranks: &Ranks, own: &Message) -> Result<Order> {
+    let all: Vec<Message> = ranks.gather_words(own.words()).into_iter().map(Message::from_words).collect();
+    let first = all[0];
+    let order = first.order.unwrap_or(Order::End);
+    if order == Order::End {
+        return Ok(order);
+    }
+    for (rank, other) in all.iter().enumerate() {
+        if other.failed {
+            let what = format!("rank {rank} cannot go on at t = {:.6} s: its own message says why", first.time);
+            return Err(Error::new(ErrorKind::Fault, what));
+        }
+        if other.time.to_bits() != first.time.to_bits() {
+            let times = format!("rank {rank} is at t = {} s and rank 0 at t = {} s", other.time, first.time);
+            return Err(Error::new(ErrorKind::Fault, format!("{times}: they computed different steps"))
+                .help("check the memory and the processors of the machine of that rank"));
+        }
+    }
+    Ok(order)
+}
+
+/// The first rank's hold on the others, whom it tells at the end that the run is over.
+pub(super) struct Leader(Ranks);
+
+impl Leader {
+    /// Leads `ranks`; all others call [`follow`].
+    pub(super) fn new(ranks: Ranks) -> Self {
+        Self(ranks)
+    }
+
+    /// Tells the others at time `time` (s) what to do.
+    ///
+    /// # Errors
+    /// `Fault` if another rank failed or computed something else.
+    pub(super) fn order(&self, order: Order, time: f64) -> Result<()> {
+        if self.0.count() > 1 {
+            exchange(&self.0, &Message { order: Some(order), failed: false, time })?;
+        }
+        Ok(())
+    }
+}
+
+impl Drop for Leader {
+    fn drop(&mut self) {
+        if std::thread::panicking() {
+            self.0.abort(101);
+        } else {
+            let _ = self.order(Order::End, 0.0);
+        }
+    }
+}
+
+/// What all ranks have prepared, if all could and `digest` gives the same text for each.
+///
+/// # Errors
+/// This rank's own error; `Usage` if another rank failed or has something else, with its number.
+pub(crate) fn agree<T>(ranks: &Ranks, prepared: Result<T>, digest: impl Fn(&T) -> String) -> Result<T> {
+    if ranks.count() == 1 {
+        return prepared;
+    }
+    let own = prepared.as_ref().map_or_else(|error| format!("!{error}"), |prepared| format!("={}", digest(prepared)));
+    let all = ranks.gather_bytes(own.as_bytes());
+    let prepared = prepared?;
+    for (rank, text) in all.iter().enumerate() {
+        let text = String::from_utf8_lossy(text);
+        if let Some(why) = text.strip_prefix('!') {
+            return Err(Error::new(ErrorKind::Usage, format!("rank {rank} cannot begin: {why}")));
+        }
+        if text.as_bytes() != all[0] {
+            let what = format!("rank {rank} has another program, scene or file than rank 0");
+            return Err(Error::new(ErrorKind::Usage, what)
+                .help("start the same program on a file system that all machines share"));
+        }
+    }
+    Ok(prepared)
+}
+
+/// A text that tells programs and scenes apart, with the files in `folder` that the scene names.
+pub(super) fn scene_digest(scene: &Scene, folder: &Path) -> String {
+    let words = scene.to_toml().unwrap_or_default();
+    let of_file = |hash: u64, name: String| match fs::read(folder.join(name)) {
+        Ok(bytes) => checkpoint::fnv1a_continue(hash, &bytes),
+        Err(_) => hash,
+    };
+    let files = run_folder::strings(&words).into_iter().filter(|name| !name.is_empty()).fold(0, of_file);
+    let (version, commit) = (env!("CARGO_PKG_VERSION"), option_env!("PONTOON_COMMIT").unwrap_or_default());
+    format!("{version} {commit} {:x} {files:x}", checkpoint::fnv1a(words.as_bytes()))
+}
+
+/// A text that tells the water of setups apart.
+pub(super) fn water_digest<const D: usize>(setup: &Setup<D>) -> String {
+    let numbers = setup.water.iter().chain(&setup.velocity).flat_map(|x| x.iter());
+    let hash = numbers.fold(0, |hash, x| checkpoint::fnv1a_continue(hash, &x.to_bits().to_le_bytes()));
+    format!("{} solids, {hash:x}", setup.solids.len())
+}
+
+/// Takes the steps of a run that the first of the `ranks` leads, from the start of `scene` or from `checkpoint`, until that ends it.
+///
+/// # Errors
+/// That of a step which failed on this rank alone.
+pub(super) fn follow<const D: usize>(scene: &Scene, checkpoint: Option<Checkpoint>, ranks: &Ranks) -> Result<()>
+where
+    Dim<D>: Dimension<D>,
+{
+    let built = agree(ranks, scene.build::<D>(), |built| water_digest(&built.setup));
+    // The first rank reports what all know.
+    let Ok(BuiltScene { setup, plan, .. }) = built else { return Ok(()) };
+    let mut failure = None;
+    let prepared = Follower::new(setup, ranks, plan, checkpoint);
+    let mut follower = prepared.map_err(|error| failure = Some(error)).ok();
+    loop {
+        let time = follower.as_ref().map_or(0.0, |follower| follower.sim.time());
+        match exchange(ranks, &Message { order: None, failed: failure.is_some(), time }) {
+            Ok(Order::End) => return Ok(()),
+            Ok(order) => failure = follower.as_mut().and_then(|follower| follower.follow(order).err()),
+            Err(_) => {
+                let _ = exchange(ranks, &Message { order: None, failed: true, time });
+                return failure.map_or(Ok(()), Err);
+            }
+        }
+    }
+}
+
+/// The simulation of a rank that follows.
+struct Follower<const D: usize> {
+    sim: Simulation<D>,
+    plan: Plan,
+    controls: Controls,
+    /// The changes of controls so far.
+    changes: Vec<ControlChange>,
+}
+
+impl<const D: usize> Follower<D>
+where
+    Dim<D>: Dimension<D>,
+{
+    fn new(setup: Setup<D>, ranks: &Ranks, plan: Plan, checkpoint: Option<Checkpoint>) -> Result<Self> {
+        let mut sim = Simulation::set_up(setup, ranks, false)?;
+        // They are not read here; but what they read is recorded in the steps.
+        probe_factory::probes_from_plan(&plan, &mut sim)?;
+        let mut changes = Vec::new();
+        if let Some(checkpoint) = checkpoint {
+            sim.restore(&checkpoint.state)?;
+            changes = checkpoint.changes;
+        }
+        sim.store_rollback_states_in(&std::env::temp_dir());
+        let controls = Controls::new(&plan.controls, &sim)?;
+        Ok(Self { sim, plan, controls, changes })
+    }
+
+    fn follow(&mut self, order: Order) -> Result<()> {
+        match order {
+            Order::Step => {
+                let known = self.sim.rollbacks().len();
+                self.sim.step_with_own_water(self.plan.until)?;
+                if self.sim.rollbacks().len() > known {
+                    self.controls.repeat(&mut self.sim, &self.changes);
+                }
+            }
+            Order::Set { control, value } => {
+                self.changes.extend(self.controls.set(&mut self.sim, control, value));
+            }
+            Order::Gather => self.sim.gather_water(false),
+            Order::End => {}
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,282 @@
+//! Water of which each rank has and advances its own particles only: what ranks exchange in a step and for new lists, and when all of
+//! it comes together. The arrays have the length of all water; those places that a rank does not write take no memory.
+
+use std::ops::Range;
+
+use rayon::prelude::*;
+
+use super::{ExitPath, Fluid, RemovedParticle, StepCheck, System};
+use crate::{
+    math::{Matrix, Vector},
+    model::TimeScheme,
+    neighbours::{Columns, Division, NeighbourLists},
+    particles::{PARTICLES_PER_TASK, Particles, zeros},
+    ranks::{self, Ranks},
+    solid::Role,
+};
+
+/// Whether no part of a step of `system` at time `t` (s) reads water of other ranks, but through pairs.
+pub(crate) fn may_be_divided<const D: usize>(system: &System<D>, t: f64) -> bool {
+    let (model, fluid) = (&system.model, &system.fluid);
+    let is_absorbing = |role: &Role<D>, solid: usize| match role {
+        Role::Driven(motion) => motion.gauge_position(&system.solids[solid].absorption, t).is_some(),
+        _ => false,
+    };
+    system.neighbours.division().is_some_and(|division| division.ranks.count() > 1)
+        && model.scheme == TimeScheme::Symplectic
+        && model.viscosity.stress().is_none()
+        && model.shift().is_none()
+        && !fluid.images.any()
+        && system.fluid_domain.open_boundaries.is_empty()
+        && system.driving.driving.current.is_none()
+        && system.driving.driving.towed.is_none()
+        && !system.solids.iter().enumerate().any(|(i, solid)| is_absorbing(&solid.spec.role, i))
+}
+
+/// The ranks that share the pairs of `system`; a single one if each has all pairs.
+pub(crate) fn ranks<const D: usize>(system: &System<D>) -> Ranks {
+    system.neighbours.division().map(|division| division.ranks.clone()).unwrap_or_default()
+}
+
+/// Chooses whether each rank advances its own water only. If not, every rank gets all of it, and lists that name all of it.
+pub(crate) fn divide<const D: usize>(system: &mut System<D>, by_owner: bool) {
+    let was_divided = division(&system.neighbours).is_some();
+    if was_divided && !by_owner {
+        gather(system, true);
+    }
+    if let Some(division) = system.neighbours.division_mut() {
+        division.by_owner = by_owner && division.ranks.count() > 1;
+    }
+    if was_divided && !by_owner {
+        system.pair_loop.free_buffers();
+        let poses = system.boundary.poses_at_rebuild.clone().unwrap_or_default();
+        let boundary = system.boundary.positions_at(&poses, &system.solids, &system.fluid.images);
+        let water = system.neighbours.positions_at_build().to_vec();
+        system.neighbours.build(&water, &boundary);
+    }
+}
+
+/// Leaves each rank its own water after the first lists are made, where it may advance that alone.
+pub(super) fn leave_own<const D: usize>(system: &mut System<D>) {
+    if !may_be_divided(system, 0.0) || !system.constraints.moorings.is_empty() {
+        return;
+    }
+    divide(system, true);
+    let (these, _) = own(&system.neighbours, system.fluid.particles.len());
+    system.fluid.particles = part(&system.fluid.particles, &these);
+    clear_corrections(system);
+    system.neighbours.leave_positions(&these);
+    set_apart(system, true);
+}
+
+/// Completes the water and its sums of the last force pass on the first rank, or on all if `everyone`.
+pub(crate) fn gather<const D: usize>(system: &mut System<D>, everyone: bool) {
+    let Some(division) = division(&system.neighbours).filter(|division| division.is_apart) else { return };
+    let is_first = division.ranks.rank() == 0;
+    system.pair_loop.share_fluid_sums(&system.neighbours, everyone);
+    let Fluid { particles, gradient_correction, .. } = &mut system.fluid;
+    system.neighbours.share_water(particles, gradient_correction.as_deref_mut(), everyone);
+    set_apart(system, !everyone);
+    system.status.has_all_water = everyone || is_first;
+}
+
+/// Whether ranks lack the present water of others: the same for all ranks.
+pub(crate) fn is_apart<const D: usize>(neighbours: &NeighbourLists<D>) -> bool {
+    neighbours.division().is_some_and(|division| division.is_apart)
+}
+
+/// Says whether ranks lack the present water of others.
+pub(super) fn set_apart<const D: usize>(system: &mut System<D>, is_apart: bool) {
+    if let Some(division) = system.neighbours.division_mut() {
+        division.is_apart = is_apart;
+    }
+    system.status.has_all_water = !is_apart;
+}
+
+/// Combines what the ranks saw of their own water in the last loop over it, which changed it.
+pub(crate) fn combine_checks<const D: usize>(system: &mut System<D>) {
+    let own = system.status.step_check;
+    let Some(division) = division(&system.neighbours) else { return };
+    let [low, high] = ranks::words_of(own.max_displacement2);
+    let all = division.ranks.gather_words([low, high, u32::from(own.valid)]);
+    let check =
+        |[low, high, valid]: [u32; 3]| StepCheck { max_displacement2: ranks::from_words(low, high), valid: valid != 0 };
+    system.status.step_check = all.into_iter().map(check).fold(StepCheck::INITIAL, StepCheck::combine);
+    set_apart(system, true);
+}
+
+/// The division of the water, if each rank advances its own.
+fn division<const D: usize>(neighbours: &NeighbourLists<D>) -> Option<&Division> {
+    neighbours.division().filter(|division| division.by_owner)
+}
+
+/// The range of particles that this rank advances, of `count`, and which ones there; `None` if all.
+pub(crate) fn own<const D: usize>(neighbours: &NeighbourLists<D>, count: usize) -> (Range<usize>, Option<&[bool]>) {
+    match division(neighbours) {
+        Some(division) => (division.own_range(count), division.own_water().map(|(_, is_own)| is_own)),
+        None => (0..count, None),
+    }
+}
+
+/// Shares the slabs out anew and gives each particle, with its state in `start`, to the rank that has its slab now. Returns the columns
+/// for new lists.
+pub(super) fn share_out<const D: usize>(system: &mut System<D>, start: Option<&mut WaterAtStart<D>>) -> Columns<D> {
+    let columns = system.neighbours.share_out(&system.fluid.particles.r);
+    let count = system.fluid.particles.len();
+    let Some(division) = division(&system.neighbours) else { return columns };
+    let (rank, now) = (division.ranks.rank(), &system.fluid.particles);
+    let owner = |r: &Vector<D>| division.owner_of(columns.slab_at(r));
+    let own = division.own_water().map_or(&[][..], |(own, _)| own);
+    let (mut own, leaving): (Vec<u32>, Vec<u32>) = own.iter().partition(|&&i| owner(&now.r[i as usize]) == rank);
+    let mut arrived = Vec::new();
+    let numbers = Particles::<D>::NUMBERS;
+    let width = if start.is_some() { 2 * numbers } else { numbers };
+    type Data<'a, const D: usize> = (&'a mut Particles<D>, Option<&'a mut Particles<D>>);
+    let give = |(now, start): &Data<'_, D>, i: usize, numbers: &mut Vec<f64>| {
+        now.give(i, numbers);
+        start.iter().for_each(|start| start.give(i, numbers));
+    };
+    let take = |(now, start): &mut Data<'_, D>, i: usize, given: &[f64]| {
+        if owner(&Vector::from_column_slice(&given[..D])) == rank {
+            now.take(i, given);
+            start.iter_mut().for_each(|start| start.take(i, &given[numbers..]));
+            arrived.push(i as u32);
+        }
+    };
+    let start = start.map(|WaterAtStart(start)| start);
+    division.share_water(&leaving, &mut (&mut system.fluid.particles, start), width, give, take);
+    own.extend(arrived);
+    own.sort_unstable();
+    if let Some(division) = system.neighbours.division_mut() {
+        division.set_own_water(own, count);
+    }
+    columns
+}
+
+/// Sorts the water along the columns, as [`System::sort_water`] does, where each rank has its own: takes out what has left the domain,
+/// and gives every rank what was taken out. Returns the columns for new lists, if no more than the order has changed.
+pub(super) fn sort<const D: usize>(system: &mut System<D>) -> (Option<Columns<D>>, Vec<RemovedParticle<D>>) {
+    let columns = share_out(system, None);
+    let mut order = system.neighbours.own_order(&columns, &system.fluid.particles.r);
+    let removed = system.remove_outside(&mut order);
+    let Some(division) = division(&system.neighbours) else { return (None, removed) };
+    let removed = gather_removed(division, &removed);
+    let counts = division.counts(order.len());
+    let (count, first) = (counts.iter().sum(), counts[..division.ranks.rank()].iter().sum::<usize>());
+    let (own, old) = (first..first + order.len(), &system.fluid.particles);
+    let mut new = Particles::unwritten(count);
+    fill(&mut new.r[own.clone()], &old.r, &order);
+    fill(&mut new.v[own.clone()], &old.v, &order);
+    fill(&mut new.rho[own.clone()], &old.rho, &order);
+    fill(&mut new.id[own.clone()], &old.id, &order);
+    system.fluid.particles = new;
+    clear_corrections(system);
+    if let Some(division) = system.neighbours.division_mut() {
+        division.set_own_water(own.map(|i| i as u32).collect(), count);
+    }
+    set_apart(system, true);
+    (removed.is_empty().then_some(columns), removed)
+}
+
+/// Makes arrays for gradient corrections, which new lists will fill.
+fn clear_corrections<const D: usize>(system: &mut System<D>) {
+    let (count, corrections) = (system.fluid.particles.len(), &mut system.fluid.gradient_correction);
+    corrections.iter_mut().for_each(|corrections| *corrections = zeros(count));
+}
+
+/// Takes the gradient `corrections` of the particles in the first slab of the rank after this one.
+pub(super) fn take_next_corrections<const D: usize>(neighbours: &NeighbourLists<D>, corrections: &mut [Matrix<D>]) {
+    let Some(division) = division(neighbours) else { return };
+    let ([before, after], slabs) = (division.adjacent(), division.own_slabs());
+    let mut out = Vec::new();
+    if before.is_some() {
+        let first = neighbours.water_of_slab(slabs.start);
+        out.extend(first.flat_map(|i| corrections[i].iter().flat_map(|&x| ranks::words_of(x)).collect::<Vec<_>>()));
+    }
+    let next: Vec<usize> = if after.is_some() { neighbours.water_of_slab(slabs.end).collect() } else { Vec::new() };
+    let mut into = vec![0; next.len() * 2 * D * D];
+    division.ranks.pass((before, &out), (after, &mut into));
+    for (i, words) in next.into_iter().zip(into.chunks_exact(2 * D * D)) {
+        corrections[i] = Matrix::from_iterator(ranks::doubles(words));
+    }
+}
+
+/// Sets `new` to the items of `old` in `order`.
+fn fill<T: Copy + Send + Sync>(new: &mut [T], old: &[T], order: &[u32]) {
+    let new = new.par_iter_mut().zip(order).with_min_len(PARTICLES_PER_TASK);
+    new.for_each(|(new, &i)| *new = old[i as usize]);
+}
+
+/// What all ranks have removed, in the order of the columns.
+fn gather_removed<const D: usize>(division: &Division, own: &[RemovedParticle<D>]) -> Vec<RemovedParticle<D>> {
+    let paths = [ExitPath::Up, ExitPath::Over, ExitPath::Through];
+    let bytes = |lost: &RemovedParticle<D>| {
+        let path = paths.iter().position(|path| *path == lost.exit).unwrap_or_default();
+        let numbers = [f64::from(lost.id), lost.rho, path as f64];
+        let numbers = numbers.into_iter().chain(lost.r.iter().chain(lost.v.iter()).copied());
+        numbers.flat_map(f64::to_le_bytes).collect::<Vec<u8>>()
+    };
+    let all = division.ranks.gather_bytes(&own.iter().flat_map(bytes).collect::<Vec<u8>>()).concat();
+    let number = |bytes: &[u8]| f64::from_le_bytes(std::array::from_fn(|k| bytes[k]));
+    let numbers: Vec<f64> = all.chunks_exact(8).map(number).collect();
+    let lost = |numbers: &[f64]| RemovedParticle {
+        id: numbers[0] as u32,
+        rho: numbers[1],
+        exit: paths[numbers[2] as usize],
+        r: Vector::from_column_slice(&numbers[3..3 + D]),
+        v: Vector::from_column_slice(&numbers[3 + D..]),
+    };
+    numbers.chunks_exact(3 + 2 * D).map(lost).collect()
+}
+
+/// Takes the positions of the particles in the first slab of the rank after this one; returns which these are.
+pub(super) fn take_next_slab<const D: usize>(system: &mut System<D>, columns: &Columns<D>) -> Vec<u32> {
+    let Some(division) = division(&system.neighbours) else { return Vec::new() };
+    let ([before, after], slabs) = (division.adjacent(), division.own_slabs());
+    let r = &mut system.fluid.particles.r;
+    let own = division.own_water().map_or(&[][..], |(own, _)| own);
+    let first = own.iter().filter(|&&i| before.is_some() && columns.slab_at(&r[i as usize]) == slabs.start);
+    let words =
+        |&i: &u32| std::iter::once(i).chain(r[i as usize].iter().flat_map(|&x| ranks::words_of(x)).collect::<Vec<_>>());
+    let (out, width) = (first.flat_map(words).collect::<Vec<u32>>(), 1 + 2 * D);
+    let counts = division.counts(out.len());
+    let mut into = vec![0; after.map_or(0, |rank| counts[rank])];
+    division.ranks.pass((before, &out), (after, &mut into));
+    let mut next = Vec::with_capacity(into.len() / width);
+    for words in into.chunks_exact(width) {
+        next.push(words[0]);
+        r[words[0] as usize] = Vector::from_iterator(ranks::doubles(&words[1..]));
+    }
+    next
+}
+
+/// Arrays as long as those of `all`, of which only the places `these` are written.
+fn part<const D: usize>(all: &Particles<D>, these: &Range<usize>) -> Particles<D> {
+    let mut part = Particles::unwritten(all.len());
+    part.r[these.clone()].copy_from_slice(&all.r[these.clone()]);
+    part.v[these.clone()].copy_from_slice(&all.v[these.clone()]);
+    part.rho[these.clone()].copy_from_slice(&all.rho[these.clone()]);
+    part.id[these.clone()].copy_from_slice(&all.id[these.clone()]);
+    part
+}
+
+/// The state of this rank's water at the start of a step.
+pub(crate) struct WaterAtStart<const D: usize>(Particles<D>);
+
+impl<const D: usize> WaterAtStart<D> {
+    /// That of the present, without names if this rank has all.
+    pub(crate) fn of(system: &System<D>) -> Self {
+        let now @ Particles { r, v, rho, .. } = &system.fluid.particles;
+        match own(&system.neighbours, r.len()) {
+            (_, None) => Self(Particles { r: r.clone(), v: v.clone(), rho: rho.clone(), id: Vec::new() }),
+            (these, Some(_)) => Self(part(now, &these)),
+        }
+    }
+
+    /// Position (m), velocity (m/s) and density (kg/m³) of particle `i`.
+    #[inline(always)]
+    pub(crate) fn particle(&self, i: usize) -> (Vector<D>, Vector<D>, f64) {
+        let Particles { r, v, rho, .. } = &self.0;
+        (r[i], v[i], rho[i])
+    }
+}
