@@ -448,12 +448,12 @@ impl<const D: usize> Simulation<D> {
 
     /// The fault of water particle number `i`.
     fn fault(&self, (i, code, reason, cause): LimitViolation) -> Error {
-        let fluid = self.system.fluid();
+        let fluid = &self.system.fluid.particles;
         let of = |x: Option<&Vector<D>>| x.map(|x| x.iter().copied().collect()).unwrap_or_default();
         Error::fault(Fault {
             code,
             reason: reason.into(),
-            who: fluid.id.get(i).map_or("the run".into(), |id| format!("water particle {id}")),
+            who: self.system.particle_name(i),
             step: self.clock.steps,
             time: self.clock.time,
             position: of(fluid.r.get(i)),

@@ -410,7 +410,7 @@ impl<const D: usize> SceneParts<D> {
             driving,
         };
         for (i, (key, _, _)) in scene.open_faces().enumerate() {
-            check_open_boundary(&setup, i).map_err(|e| ctx.with_location(e, &key))?;
+            check_open_boundary(&setup, i, scene.until).map_err(|e| ctx.with_location(e, &key))?;
         }
         setup.apply_symmetry().map_err(|e| ctx.with_location(e, "symmetry"))?;
         Ok(BuiltScene {

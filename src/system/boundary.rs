@@ -9,6 +9,7 @@ use rayon::prelude::*;
 use super::{
     System,
     boundary_extension::ExtensionParticle,
+    film::{self, Films},
     periodic::Images,
     symmetry::{AxisSet, Division, MirroredParticle, reflected},
 };
@@ -45,6 +46,8 @@ pub(crate) struct Boundary<const D: usize> {
     pub(super) local_bounds: Vec<Bounds<D>>,
     /// The mirror images of the boundary particles of each solid, in their order in the arrays; empty without a symmetry plane.
     mirrored: Vec<Vec<MirroredParticle>>,
+    /// The films of water between solids.
+    pub(super) films: Films<D>,
     /// Poses of the solids when the neighbour lists were built; `None` if they must be built anew.
     pub(super) poses_at_rebuild: Option<Vec<Pose<D>>>,
     /// Whether a device has the particles: the host places none.
@@ -82,6 +85,7 @@ impl<const D: usize> Boundary<D> {
             ),
             local_bounds: Vec::new(),
             mirrored: Vec::new(),
+            films: Films::new(model),
             poses_at_rebuild: None,
             #[cfg(feature = "gpu")]
             on_device: false,
@@ -356,6 +360,7 @@ impl<const D: usize> System<D> {
         }
         if relaxes {
             self.gap_pressure.update_directions(&fits);
+            film::update_water(self, &fits);
             self.update_wall_pressure(&fits);
         }
         if sticks {
@@ -370,11 +375,9 @@ impl<const D: usize> System<D> {
         let depths = depths.as_deref().unwrap_or_default();
         let target = |(&particle, fit): (&u32, &WallExtrapolation<f64, D>)| {
             let i = particle as usize;
-            let owner = self.owner(i);
-            let place = self.place_on_solid(owner, i);
-            let owner = &self.solids[owner];
-            let pull = medium.gravity - owner.acceleration_at(&place);
-            let pressure = fit.pressure(&pull.into(), &medium.gravity.into(), depths[i]);
+            let number = self.owner(i);
+            let owner = &self.solids[number];
+            let pressure = self.extrapolated_pressure(fit, number, i);
             let density = medium.rho0 * (1.0 + self.equation_of_state.compression(pressure));
             let (approach, cover) = (fit.approach(&particles.v[i].into()), coverage.cover(fit.weight_sum, depths[i]));
             let (own, constants) = (particles.rho[i], [medium.rho0, medium.c0]);
@@ -384,6 +387,13 @@ impl<const D: usize> System<D> {
         let wet = self.neighbours.boundary_near_fluid();
         wet.par_iter().zip(fits).with_min_len(PARTICLES_PER_TASK).map(target).collect_into_vec(&mut targets);
         self.boundary.target_density = Some(targets);
+    }
+
+    /// The pressure (P/ρ₀, m²/s²) of the water of `fit` at boundary particle `i` of solid number `owner`.
+    pub(super) fn extrapolated_pressure(&self, fit: &WallExtrapolation<f64, D>, owner: usize, i: usize) -> f64 {
+        let (gravity, depths) = (self.properties.gravity, self.boundary.depths.as_deref().unwrap_or_default());
+        let pull = gravity - self.solids[owner].acceleration_at(&self.place_on_solid(owner, i));
+        fit.pressure(&pull.into(), &gravity.into(), depths[i])
     }
 
     /// Share (–) of a prompt change of density at the walls of `solid`.
@@ -429,10 +439,14 @@ impl<const D: usize> System<D> {
 
     /// Pose of solid number `solid`; that of its copy with its middle between the periodic sides, if it has several.
     pub(crate) fn home_pose(&self, solid: usize) -> Pose<D> {
-        let own = &self.solids[solid];
-        let mut pose = own.kinematics.pose;
-        if own.copied_axes != 0 {
-            let (middle, axes) = (self.boundary.middle(solid, &pose), own.copied_axes);
+        self.home_of(solid, &self.solids[solid].kinematics.pose)
+    }
+
+    /// The same with the solid at `pose`.
+    pub(super) fn home_of(&self, solid: usize, pose: &Pose<D>) -> Pose<D> {
+        let (mut pose, axes) = (*pose, self.solids[solid].copied_axes);
+        if axes != 0 {
+            let middle = self.boundary.middle(solid, &pose);
             let images = &self.fluid.images;
             pose.position += images.way_to_copy(&middle, axes, images.home_copy(&middle, axes));
         }
@@ -442,8 +456,13 @@ impl<const D: usize> System<D> {
     /// Indices of the boundary particles of solid number `solid`; of several copies those with their middle between the
     /// periodic sides.
     pub(crate) fn home_boundary(&self, solid: usize) -> Range<usize> {
+        self.home_boundary_at(solid, &self.solids[solid].kinematics.pose)
+    }
+
+    /// The same with the solid at `pose`.
+    pub(super) fn home_boundary_at(&self, solid: usize, pose: &Pose<D>) -> Range<usize> {
         let own = &self.solids[solid];
-        let middle = self.boundary.middle(solid, &own.kinematics.pose);
+        let middle = self.boundary.middle(solid, pose);
         own.boundary_of_copy(self.fluid.images.home_copy(&middle, own.copied_axes))
     }
 }

@@ -160,8 +160,8 @@ impl<const D: usize> System<D> {
         }
         self.neighbours.build(&water, &boundary);
         self.rates.boundary.resize(self.neighbours.boundary_near_fluid().len(), PairSums::zero());
-        self.find_gaps(&boundary);
         self.boundary.poses_at_rebuild = Some(poses);
+        self.find_gaps(&boundary);
         self.check_water();
         Ok(())
     }

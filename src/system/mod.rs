@@ -9,6 +9,7 @@ mod checkpoint;
 #[cfg(feature = "gpu")]
 pub(crate) mod device_state;
 mod driving;
+pub(crate) mod film;
 mod fluid;
 mod free_surface;
 mod gap_pressure;
@@ -430,10 +431,11 @@ impl<const D: usize> System<D> {
         gaps.add_to(sums, input.neighbours.boundary_near_fluid(), &boundary.r, pressure);
     }
 
-    /// Finds the narrow gaps at the positions `r` (m) of the boundary particles for which the lists were built.
+    /// Finds the narrow gaps and the films at the positions `r` (m) of the boundary particles for which the lists were built.
     fn find_gaps(&mut self, r: &[Vector<D>]) {
         let Self { gap_pressure, neighbours, solids, .. } = self;
         gap_pressure.find(solids, r, neighbours.boundary_near_fluid(), neighbours.margin());
+        film::find(self, r);
     }
 
     /// The sums of the water from the last force pass.
@@ -513,9 +515,10 @@ impl<const D: usize> System<D> {
         self.loads(&boundary)
     }
 
-    /// The load on each solid by the `sums` of the wet boundary particles, added up in chunks of fixed size, in order.
+    /// The load on each solid by the `sums` of the wet boundary particles, added up in chunks of fixed size, in order, and by films.
     fn loads(&self, sums: &[PairSums<D>]) -> Vec<Load<D>> {
         let (mass, wet, r) = (self.particle_mass(), self.neighbours.boundary_near_fluid(), &self.boundary.particles.r);
+        let films = film::loads(self);
         let place = |end: usize| wet.partition_point(|&i| (i as usize) < end);
         let of_copy = |solid: &Solid<D>, (range, way): (Range<usize>, Vector<D>)| {
             let centre = solid.kinematics.centre + way;
@@ -536,7 +539,8 @@ impl<const D: usize> System<D> {
         };
         let of = |numbered: (usize, &Solid<D>)| {
             let copies = self.boundary.copies(&self.fluid.images, numbered, &numbered.1.kinematics.pose);
-            let load = copies.map(|copy| of_copy(numbered.1, copy)).sum();
+            let load = copies.map(|copy| of_copy(numbered.1, copy)).sum::<Load<D>>();
+            let load = films.get(numbered.0).map_or(load, |film| load + *film);
             if numbered.1.division.cut == 0 { load } else { self.load_on_whole(numbered.1, load) }
         };
         self.solids.iter().enumerate().map(of).collect()

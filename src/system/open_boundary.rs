@@ -26,7 +26,7 @@ use crate::{
     math::{Bounds, Pose, Vector, expression::UnsteadyField},
     model::Model,
     particles::Particles,
-    solid::{Role, TimeFunction},
+    solid::{Role, SolidSpec, TimeFunction},
     wavemaker::{IncidentWaves, Orbit},
 };
 
@@ -44,6 +44,9 @@ const FASTEST: f64 = 0.2;
 
 /// Speed through a face over the c₀ that a message proposes: the usual ratio in weakly compressible water @monaghan1994.
 const SOUND: f64 = 0.1;
+
+/// Number of parts of a run at whose ends the speed through a face is compared with that of sound.
+const SPEED_SAMPLES: u32 = 100;
 
 /// A vertical face that bounds the water, and the flow through it.
 ///
@@ -183,10 +186,12 @@ impl<const D: usize> OpenBoundary<D> {
         (way, velocity_change)
     }
 
-    /// Whether a solid with these `bounds` (m) has an end in the buffer, `length` (m) long, of water of this `dp` (m).
-    fn has_end_in_buffer(&self, bounds: &Bounds<D>, length: f64, dp: f64) -> bool {
+    /// Whether a solid of this `role` with these `bounds` (m) has an end in the buffer, `length` (m) long, of water of this `dp` (m);
+    /// a free solid may not reach beyond it either.
+    fn has_end_in_buffer(&self, role: &Role<D>, bounds: &Bounds<D>, length: f64, dp: f64) -> bool {
         let ends = [&bounds.min, &bounds.max].map(|x| self.beyond(x));
-        ends.iter().any(|beyond| *beyond > 1e-6 * dp && *beyond < length * (1.0 - 1e-9))
+        let is_free = matches!(role, Role::Free(_));
+        ends.iter().any(|beyond| *beyond > 1e-6 * dp && (is_free || *beyond < length * (1.0 - 1e-9)))
     }
 
     /// The prescribed velocity (m/s) into the water, if it is the same everywhere at all times.
@@ -481,15 +486,15 @@ pub(crate) fn face_reached<'a, const D: usize>(
         return None;
     }
     let (bounds, length) = (spec.shape.bounds_at(pose), buffer_length(&system.model));
-    faces.iter().find(|face| face.has_end_in_buffer(&bounds, length, system.model.dp))
+    faces.iter().find(|face| face.has_end_in_buffer(&spec.role, &bounds, length, system.model.dp))
 }
 
-/// Refuses open boundary number `i` of a setup if it cannot be.
+/// Refuses open boundary number `i` of a setup if it cannot be in a run until the time `until` (s).
 ///
 /// # Errors
 /// `Scene` if the face is not vertical, lies across a periodic side or a symmetry plane, has no water on one of its sides, is too near
 /// to the end of a solid, or lets water pass faster than the valid range of the water allows.
-pub(crate) fn check<const D: usize>(setup: &Setup<D>, i: usize) -> Result<()> {
+pub(crate) fn check<const D: usize>(setup: &Setup<D>, i: usize, until: f64) -> Result<()> {
     let (face, length) = (&setup.open_boundaries[i], setup.buffer_length());
     let (name, axis, at) = (&face.name, face.axis, face.at);
     if axis + 1 >= D || !at.is_finite() || setup.open_boundaries.len() > usize::from(u8::MAX) {
@@ -507,7 +512,14 @@ pub(crate) fn check<const D: usize>(setup: &Setup<D>, i: usize) -> Result<()> {
     let farthest = beyond.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     if !(farthest > 0.0 && beyond.iter().any(|beyond| *beyond < 0.0)) {
         let what = format!("open boundary {name:?} at {along} = {at} has no water on both of its sides");
-        let help = "the water ends at the face, and neither it nor the buffer beyond it lies in a solid";
+        let help = match solid_at_face(setup, face) {
+            Some(solid) => {
+                let bounds = solid.shape.bounds_at(&solid.initial_kinematics().pose);
+                let [from, to] = [bounds.min[axis], bounds.max[axis]];
+                format!("solid {:?} is there, from {along} = {from:.6} to {to:.6}: move the face out of it", solid.name)
+            }
+            None => "the water ends at the face, and neither it nor the buffer beyond it lies in a solid".into(),
+        };
         return Err(Error::scene(what).help(help));
     }
     if farthest > length {
@@ -518,7 +530,7 @@ pub(crate) fn check<const D: usize>(setup: &Setup<D>, i: usize) -> Result<()> {
     }
     for solid in &setup.solids {
         let bounds = solid.shape.bounds_at(&solid.initial_kinematics().pose);
-        if !face.has_end_in_buffer(&bounds, length, setup.model.dp) {
+        if !face.has_end_in_buffer(&solid.role, &bounds, length, setup.model.dp) {
             continue;
         }
         let end = at + face.outward() * length;
@@ -529,15 +541,19 @@ pub(crate) fn check<const D: usize>(setup: &Setup<D>, i: usize) -> Result<()> {
         };
         return Err(Error::scene(what).help(help));
     }
-    let fastest = setup.water.iter().zip(&beyond).filter(|(_, beyond)| **beyond > 0.0);
-    let fastest = fastest.filter_map(|(r, _)| face.outward_velocity(r, 0.0)).map(f64::abs).fold(0.0, nan_max);
-    let fastest = fastest + face.waves.as_ref().map_or(0.0, IncidentWaves::orbital_speed);
+    let orbital = face.waves.as_ref().map_or(0.0, IncidentWaves::orbital_speed);
     let most = FASTEST * setup.model.c0;
-    if fastest.is_nan() || fastest > most {
-        let what =
-            format!("water passes open boundary {name:?} at {fastest:.4} m/s; the speed of sound allows {most:.4}");
-        let help = format!("write  model.c0 = {:.3}  or more", fastest / SOUND);
-        return Err(Error::scene(what).with_code(ErrorCode::OutOfRange).help(help));
+    for t in (0..=SPEED_SAMPLES).map(|k| until * f64::from(k) / f64::from(SPEED_SAMPLES)) {
+        let in_buffer = setup.water.iter().zip(&beyond).filter(|(_, beyond)| **beyond > 0.0);
+        let speeds = in_buffer.filter_map(|(r, _)| face.outward_velocity(r, t)).map(f64::abs);
+        let fastest = speeds.fold(0.0, nan_max) + orbital;
+        if fastest.is_nan() || fastest > most {
+            let what = format!(
+                "water passes open boundary {name:?} at {fastest:.4} m/s at t = {t:.4} s; the speed of sound allows {most:.4}"
+            );
+            let help = format!("write  model.c0 = {:.3}  or more", fastest / SOUND);
+            return Err(Error::scene(what).with_code(ErrorCode::OutOfRange).help(help));
+        }
     }
     if let Some(waves) = &face.waves
         && (face.steady_current() != Some(waves.current()) || face.level.is_none())
@@ -552,6 +568,20 @@ pub(crate) fn check<const D: usize>(setup: &Setup<D>, i: usize) -> Result<()> {
         }
         _ => Ok(()),
     }
+}
+
+/// The solid that takes the place of the water at `face`, half a dp to either side of it.
+fn solid_at_face<'a, const D: usize>(setup: &'a Setup<D>, face: &OpenBoundary<D>) -> Option<&'a SolidSpec<D>> {
+    let nearest = setup.water.iter().min_by(|a, b| face.beyond(a).abs().total_cmp(&face.beyond(b).abs()))?;
+    let beside = [-0.5, 0.5].map(|rows| {
+        let mut x = *nearest;
+        x[face.axis] = face.at + rows * setup.model.dp;
+        x
+    });
+    let holds = |solid: &&SolidSpec<D>, x: &Vector<D>| {
+        solid.shape.signed_distance(&solid.initial_kinematics().pose.local(x)) < 0.0
+    };
+    beside.iter().find_map(|x| setup.solids.iter().find(|solid| holds(solid, x)))
 }
 
 /// The greater of two numbers, or NaN if one is.

@@ -303,7 +303,7 @@ impl<const D: usize> Setup<D> {
         }
         self.sponge_layers.iter().try_for_each(SpongeLayer::check)?;
         self.driving.check(&self.periodic)?;
-        (0..self.open_boundaries.len()).try_for_each(|i| open_boundary::check(self, i))?;
+        (0..self.open_boundaries.len()).try_for_each(|i| open_boundary::check(self, i, 0.0))?;
         self.constraints.check(&self.solids)?;
         let has_planes = self.symmetry.iter().any(Option::is_some);
         periodic::check(&self.periodic, has_planes, m, &self.solids, &self.constraints)

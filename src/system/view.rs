@@ -78,6 +78,16 @@ impl<const D: usize> System<D> {
         &self.fluid_domain.open_boundaries
     }
 
+    /// What messages call particle number `i` of the water and the buffers.
+    pub(crate) fn particle_name(&self, i: usize) -> String {
+        let Some(id) = self.fluid.particles.id.get(i) else { return "the run".into() };
+        let place = i.checked_sub(self.particle_count()).and_then(|place| self.fluid.buffer.faces.get(place));
+        match place.and_then(|face| self.open_boundaries().get(usize::from(*face))) {
+            None => format!("water particle {id}"),
+            Some(face) => format!("particle {id} in the buffer of open boundary {:?}", face.name),
+        }
+    }
+
     /// What has passed through each open boundary since the start, in their order.
     pub fn face_exchange(&self) -> &[FaceExchange<D>] {
         &self.fluid.buffer.exchange

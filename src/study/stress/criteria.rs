@@ -2,7 +2,7 @@
 //!
 //! | figure | quantity | reason for a bound |
 //! |---|---|---|
-//! | `energy` | largest (E(t) − E(0) − W(t)) / scale | only the work W of driven solids, springs, motors and forces adds energy |
+//! | `energy` | largest (E(t) − E(0) − W(t)) / scale | only the work W of driven solids, springs, motors, forces and films adds energy |
 //! | `walls` | deepest water inside a solid, dp | water inside a solid is passing through its wall |
 //! | `bodies` | deepest face of a free body inside another solid, dp | solids do not overlap |
 //! | `outside` | water beside or below a tank | the water passed through the wall |
@@ -175,7 +175,7 @@ impl EnergyBalance {
         Self { start, scale_floor: floor, potential_drop: 0.0, work: 0.0, largest_work: 0.0, excess: 0.0 }
     }
 
-    /// Adds the work (J) of driven solids, springs, motors and forces over a step.
+    /// Adds the work (J) of driven solids, springs, motors, forces and films over a step.
     pub(crate) fn add_work(&mut self, joules: f64) {
         self.work += joules;
         self.largest_work = self.largest_work.max(self.work.abs());

@@ -10,8 +10,8 @@ use crate::{
     math::{Bivector, Vector, expression::Formula},
     probe::{EnergyProbe, MotionProbe, Probe, find_solid},
     simulation::Simulation,
-    solid::{Kinematics, Role, Solid, hydrostatics::equilibrium_height},
-    system::System,
+    solid::{Kinematics, Load, Role, Solid, hydrostatics::equilibrium_height},
+    system::{System, film},
 };
 
 /// The number of energy samples in a run. A temporary excess of energy lasts for many sound crossings, so these
@@ -71,7 +71,8 @@ impl<'a, const D: usize> Measurements<'a, D> {
     pub(super) fn step(&mut self, sim: &Simulation<D>, dt: f64) -> Result<()> {
         let driven: f64 =
             self.before.iter().zip(sim.system().solids()).map(|(then, now)| driven_work(then, now, dt)).sum();
-        self.energy_balance.add_work(driven + constraint_work(sim, &self.before, dt));
+        let by_solids = driven + constraint_work(sim, &self.before, dt);
+        self.energy_balance.add_work(by_solids + film_work(sim, &self.before, dt));
         self.store_kinematics(sim);
         let until = self.case.scene.until;
         if sim.time() < self.next && sim.time() < until {
@@ -157,6 +158,17 @@ fn constraint_work<const D: usize>(sim: &Simulation<D>, before: &[Kinematics<D>]
         Some(dt * (shares.springs + shares.motors + shares.forces).power(&Kinematics { velocity, spin, ..now }))
     };
     before.iter().enumerate().filter_map(one).sum()
+}
+
+/// Returns the work (J) in a step of the films of water between solids: what opens a gap raises the water around by the same energy,
+/// which is lost when the gap fills.
+fn film_work<const D: usize>(sim: &Simulation<D>, before: &[Kinematics<D>], dt: f64) -> f64 {
+    let one = |((load, then), solid): ((&Load<D>, &Kinematics<D>), &Solid<D>)| {
+        let now = solid.kinematics;
+        let (velocity, spin) = ((then.velocity + now.velocity) * 0.5, (then.spin + now.spin) * 0.5);
+        dt * load.power(&Kinematics { velocity, spin, ..now })
+    };
+    film::loads(sim.system()).iter().zip(before).zip(sim.system().solids()).map(one).sum()
 }
 
 /// Returns the mass of water and free bodies, kg.

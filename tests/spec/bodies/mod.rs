@@ -13,6 +13,7 @@ mod energy_budget;
 mod deep_water;
 mod equilibrium;
 mod external_bodies;
+mod film;
 mod friction;
 mod linear_theory;
 mod load_breakdown;

@@ -1,5 +1,7 @@
 //! Open boundaries, currents and towed frames: levels, books, bits, theory and refused input.
 
+use std::path::Path;
+
 use pontoon::{
     geometry::Shape,
     math::{
@@ -10,7 +12,7 @@ use pontoon::{
     probe::{ElevationProbe, FlowProbe, Probe},
     scene::Scene,
     simulation::{Current, OpenBoundary, Setup, Simulation, TowedFrame},
-    solid::{Role, SolidSpec},
+    solid::{FreeBody, Role, SolidSpec},
     sph::viscosity::Laminar,
     wavemaker::IncidentWaves,
 };
@@ -78,6 +80,67 @@ fn a_uniform_flow_keeps_its_level_and_speed_and_its_books_close_exactly() {
         ids.sort_unstable();
         assert!(ids.windows(2).all(|pair| pair[0] < pair[1]), "every name is there once");
     }
+}
+
+#[test]
+fn the_level_of_a_uniform_flow_does_not_drift_over_20_passages() {
+    let speed = 1.0;
+    let mut sim = Simulation::new(channel(Model::water(2, DP, DEPTH), speed)).expect("a sound setup");
+    let passage = LENGTH / speed;
+    let mut level = |from: f64, to: f64| {
+        // The water of the middle metre of the channel.
+        let now = |sim: &Simulation<2>| {
+            let count = sim.system().fluid().r.iter().filter(|r| (0.5..1.5).contains(&r[0])).count();
+            [count as f64 * DP * DP]
+        };
+        common::time_mean(&mut sim, from * passage, to * passage, now).expect("a sound run")[0]
+    };
+    let (first, last) = (level(1.0, 3.0), level(18.0, 20.0));
+    assert!((last / first - 1.0).abs() < 0.005, "{first} m in the second and third passage, {last} m in the last two");
+    // The first row settles by a part of dp.
+    assert!((last / DEPTH - 1.0).abs() < 0.01, "{last} m of {DEPTH} m");
+}
+
+#[test]
+fn poiseuille_flow_keeps_its_profile_and_its_pressure_between_faces() {
+    // Between plates: u = 6 U y (1 − y), dp/dx = −12 ρ ν U, with U = 0.5 m/s and a height of 1 m.
+    let (nu, mean) = (0.1, 0.5);
+    let mut model = Model::water(2, DP, 1.0).gravity([0.0, 0.0]).diffusion(Diffusion::None);
+    (model.c0, model.viscosity, model.slip) = (20.0, Viscosity::Laminar(Laminar { nu0: nu }), Slip::None);
+    let rho0 = model.rho0;
+    let slab = |name: &str, y: f64| {
+        let shape = Shape::Box { size: Vector::from([LENGTH + 6.0, 0.2]) };
+        common::solid(name, shape, Pose::at(Vector::from([0.5 * LENGTH, y])), Role::Fixed)
+    };
+    let length = Setup::<2>::new(model.clone()).buffer_length();
+    let profile = || UnsteadyField::parse("3*y*(1-y)").expect("a profile");
+    let exact = move |y: f64| 6.0 * mean * y * (1.0 - y);
+    let setup = Setup::new(model)
+        .solids([slab("bottom", -0.1), slab("top", 1.1)])
+        .water(common::lattice([-length, 0.0], [LENGTH + 2.0 * length, 1.0], DP), 0.0)
+        .velocity(move |r| Vector::from([exact(r[1]), 0.0]))
+        .open_boundary(OpenBoundary::inflow("inlet", 0, 0.0, profile()))
+        .open_boundary(OpenBoundary::outflow("outlet", 0, LENGTH, Some(profile())));
+    let mut sim = Simulation::new(setup).expect("a sound setup");
+    let now = |sim: &Simulation<2>| {
+        let fluid = sim.system().fluid();
+        let mut sums = [0.0; 4];
+        for (k, (r, v)) in fluid.r.iter().zip(fluid.v).enumerate() {
+            if (0.6..1.4).contains(&r[0]) {
+                let pressure = sim.system().pressure(fluid.rho[k]);
+                let x = r[0] - 1.0;
+                [(v[0] - exact(r[1])).abs(), 1.0, pressure * x, x * x]
+                    .into_iter()
+                    .zip(&mut sums)
+                    .for_each(|(x, sum)| *sum += x);
+            }
+        }
+        [sums[0] / sums[1], sums[2] / sums[3]]
+    };
+    let [off, slope] = common::time_mean(&mut sim, 4.0, 8.0, now).expect("a sound run");
+    assert!(off < 0.02 * 1.5 * mean, "the velocity is off by {off} m/s on average, of {} m/s", 1.5 * mean);
+    let theory = -12.0 * rho0 * nu * mean;
+    assert!((slope / theory - 1.0).abs() < 0.1, "{slope} Pa/m of {theory} Pa/m");
 }
 
 #[test]
@@ -162,6 +225,30 @@ fn open_boundaries_that_cannot_be_are_refused_with_the_number_that_would_do() {
 }
 
 #[test]
+fn a_face_that_becomes_too_fast_or_lies_in_a_solid_is_refused_with_the_number_that_would_do() {
+    let scene = |solids: &str, factor: &str| {
+        let text = format!(
+            "dimension = 2\ndp = 0.05\nuntil = 2.0\n\
+             water = [{{ fill = {{ box = {{ min = [0.0, 0.0], max = [2.0, 0.5] }} }} }}]\n\
+             solid = [{{ name = \"bed\", fixed = true, shape = {{ box = {{ size = [8.0, 0.3] }} }}, at = [1.0, -0.15] }}{solids}]\n\
+             inflow = [{{ x = 0.0, velocity = 0.4, level = 0.5{factor} }}]\n\
+             outflow = [{{ x = 2.0, velocity = 0.4, level = 0.5 }}]\n"
+        );
+        Scene::parse(&text, Path::new(""), &[]).and_then(|scene| scene.build::<2>())
+    };
+    scene("", "").expect("a sound scene");
+    // c₀ is 10 √(g depth) = 22.1 m/s, of which a fifth may pass: 0.4 (1 + 10 t) passes that before 2 s.
+    let refused = scene("", ", factor = { formula = \"1+10*t\" }").err().expect("too fast in the end").to_string();
+    assert!(
+        refused.contains("inflow") && refused.contains("the speed of sound allows") && refused.contains("model.c0 ="),
+        "{refused}"
+    );
+    let block = ", { name = \"block\", fixed = true, shape = { box = { size = [0.4, 1.0] } }, at = [2.1, 0.5] }";
+    let refused = scene(block, "").err().expect("the outlet lies in a block").to_string();
+    assert!(refused.contains("solid \"block\" is there, from x = 1.9") && refused.contains("to 2.3"), "{refused}");
+}
+
+#[test]
 fn a_body_that_drifts_into_a_buffer_stops_the_run() {
     let box_in_flow = |x: f64| {
         let shape = Shape::Box { size: Vector::from([0.3, 0.2]) };
@@ -169,6 +256,16 @@ fn a_body_that_drifts_into_a_buffer_stops_the_run() {
     };
     let refused = Simulation::new(box_in_flow(1.95)).err().expect("it reaches into the buffer").to_string();
     assert!(refused.contains("solid \"float\" ends in the buffer of open boundary \"outlet\""), "{refused}");
+    let across = box_in_flow(LENGTH).solid(common::solid(
+        "barge",
+        Shape::Box { size: Vector::from([2.0, 0.2]) },
+        Pose::at(Vector::from([LENGTH, 1.2])),
+        Role::Free(FreeBody::from_density(&Shape::Box { size: Vector::from([2.0, 0.2]) }, 500.0)),
+    ));
+    let mut setup = across;
+    setup.solids.retain(|solid| solid.name != "float");
+    let refused = Simulation::new(setup).err().expect("it reaches across the buffer").to_string();
+    assert!(refused.contains("solid \"barge\" ends in the buffer of open boundary \"outlet\""), "{refused}");
     // It falls into the water beside the outlet, which carries it away.
     let mut sim = Simulation::new(box_in_flow(1.8)).expect("a sound setup");
     let stopped = common::run_to(&mut sim, 5.0).expect_err("it passes the outlet");

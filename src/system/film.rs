@@ -1,0 +1,287 @@
+//! Pressure of the film of water between a free solid and a solid that it touches or nearly touches.
+//!
+//! No particle of water fits into a gap narrower than a row, so that a body on the bed would be pressed onto it by all the water
+//! above. Such a gap carries the pressure that the water has at its rim. In a film of constant thickness the pressure is a harmonic
+//! function; with P* = p − ρ₀ g·x, which is constant in water at rest,
+//!
+//!   P*_i = Σ_j P*_j / |x_i − x_j|ᴰ⁻¹ / Σ_j 1 / |x_i − x_j|ᴰ⁻¹,   p_i = max(0, P*_i + ρ₀ g·x_i),
+//!
+//! over the particles j at the rim, is this function exactly for a strip (D = 2) and for a disc (D = 3, Poisson's integral).
+//! Rims in air have p = 0. The film presses on the face of each boundary particle, dpᴰ⁻¹ in size, along the normal of the other
+//! solid, and on the other solid with the opposite force at the same place. It fades where water flows in: over gaps of half a dp to
+//! one, and where the water is.
+//!
+//! A gap g that opens at the speed V draws water in through its rim: with N particles in the film and M at its rim at the speed
+//! u = V N dp/(M g), which costs the pressure ½ ρ₀ u²; g is taken as half a dp at least.
+
+use rayon::prelude::*;
+
+use super::{Boundary, System};
+use crate::{
+    geometry::cells::PointCells,
+    math::{Pose, Vector},
+    model::{Model, Walls},
+    particles::PARTICLES_PER_TASK,
+    solid::{Kinematics, Load, Role, Solid},
+    sph::boundary::WallExtrapolation,
+};
+
+/// Gaps over which the film fades, dp: half a row of water flows into the first, a whole row into the last.
+const FADING: [f64; 2] = [0.5, 1.0];
+
+/// Depth below the face of the particles that have the face's size, dp: the first row.
+const FIRST_ROW: f64 = 0.75;
+
+/// Distance between neighbours in a film, dp: along the axes and the diagonals of a face.
+const NEIGHBOURS: f64 = 1.6;
+
+/// Share of the distances to its neighbours, added as vectors, above which a particle is at the rim, –: 0 inside, 0.5 at a straight
+/// rim, 1 at the end of a strip.
+const ONE_SIDED: f64 = 0.25;
+
+/// Distance from a rim, away from the film, at which water or air must have room, dp.
+const OUTSIDE: f64 = 1.25;
+
+/// A boundary particle of a free solid whose face looks at the other solid across a narrow gap.
+struct FilmParticle {
+    /// Its index.
+    boundary: u32,
+    /// Its place among the boundary particles near water, if it is one of them.
+    near_water: Option<u32>,
+    at_rim: bool,
+}
+
+/// One film: a connected part of the gap between two solids.
+struct Film {
+    solid: usize,
+    other: usize,
+    particles: Vec<FilmParticle>,
+}
+
+/// The water near a boundary particle.
+#[derive(Clone, Copy)]
+struct WaterNearby<const D: usize> {
+    /// Unit vector from the water to the particle; zero without water.
+    away: Vector<D>,
+    /// Weight of the water over that before a flat face under water, –.
+    cover: f64,
+    /// Pressure of the water, extrapolated to the particle, P/ρ₀ in m²/s²; 0 without water.
+    pressure: f64,
+}
+
+/// The films between all solids.
+pub(super) struct Films<const D: usize> {
+    films: Vec<Film>,
+    /// The water near each particle of each film at the last force pass.
+    water: Vec<Vec<WaterNearby<D>>>,
+    /// Whether walls have the pressure of the water before them.
+    possible: bool,
+}
+
+impl<const D: usize> Films<D> {
+    pub(super) fn new(model: &Model) -> Self {
+        Self { films: Vec::new(), water: Vec::new(), possible: model.walls == Walls::RelaxedAdami }
+    }
+}
+
+/// Finds the films at the positions `r` (m) of all boundary particles for which the neighbour lists were built.
+pub(super) fn find<const D: usize>(system: &mut System<D>, r: &[Vector<D>]) {
+    let mut films = Vec::new();
+    if system.boundary.films.possible {
+        for i in (0..system.solids.len()).filter(|&i| is_free(&system.solids[i])) {
+            // Between two free solids the first has the film.
+            let others = (0..system.solids.len()).filter(|&j| j != i && (j > i || !is_free(&system.solids[j])));
+            others.for_each(|j| films.extend(films_between(system, i, j, r)));
+        }
+    }
+    system.boundary.films.films = films;
+    system.boundary.films.water.clear();
+}
+
+/// Reads the water near the films from `fits`, one for each boundary particle near water.
+pub(super) fn update_water<const D: usize>(system: &mut System<D>, fits: &[WallExtrapolation<f64, D>]) {
+    let depths = system.boundary.depths.as_deref().unwrap_or_default();
+    let of = |solid: usize, particle: &FilmParticle| {
+        let Some(place) = particle.near_water else {
+            return WaterNearby { away: Vector::zeros(), cover: 0.0, pressure: 0.0 };
+        };
+        let (fit, i) = (&fits[place as usize], particle.boundary as usize);
+        WaterNearby {
+            away: fit.direction().into(),
+            cover: system.boundary.coverage.cover(fit.weight_sum, depths[i]).share,
+            pressure: system.extrapolated_pressure(fit, solid, i).max(0.0),
+        }
+    };
+    let of_film = |film: &Film| film.particles.iter().map(|particle| of(film.solid, particle)).collect();
+    system.boundary.films.water = system.boundary.films.films.iter().map(of_film).collect();
+}
+
+/// The films between free solid `i` and solid `j`.
+fn films_between<const D: usize>(system: &System<D>, i: usize, j: usize, r: &[Vector<D>]) -> Vec<Film> {
+    let (dp, Some(poses)) = (system.model.dp, &system.boundary.poses_at_rebuild) else { return Vec::new() };
+    let (solid, other) = (&system.solids[i], &system.solids[j]);
+    let reach = FADING[1] * dp + 2.0 * system.neighbours.margin();
+    let [pose, other_pose] = [i, j].map(|k| system.home_of(k, &poses[k]));
+    let [middle, other_middle] = [(i, &pose), (j, &other_pose)].map(|(k, pose)| system.boundary.middle(k, pose));
+    let [radius, other_radius] = [i, j].map(|k| 0.5 * system.boundary.local_bounds[k].size().norm());
+    if system.fluid.images.periodic.iter().all(Option::is_none)
+        && (middle - other_middle).norm() > radius + other_radius + dp + reach
+    {
+        return Vec::new();
+    }
+    let to_other = |x: &Vector<D>| other_pose.local(&system.fluid.images.wrapped(x));
+    let distance = |x: &Vector<D>| other.spec.shape.signed_distance(&to_other(x));
+    if distance(&middle) > radius + dp + reach {
+        return Vec::new();
+    }
+    let depths = system.boundary.depths.as_deref().unwrap_or_default();
+    let faces_other = |b: &usize| {
+        let x = &r[*b];
+        if depths[*b] > FIRST_ROW * dp || distance(x) > reach + depths[*b] {
+            return false;
+        }
+        let normal = other_pose.rotation * other.spec.shape.outward_normal(&to_other(x), 0.05 * dp);
+        solid.spec.shape.signed_distance(&pose.local(&(x - normal * (FIRST_ROW * dp)))) > 0.0
+    };
+    let range = system.home_boundary_at(i, &poses[i]);
+    let found: Vec<usize> = range.into_par_iter().with_min_len(PARTICLES_PER_TASK).filter(faces_other).collect();
+    let points: Vec<Vector<D>> = found.iter().map(|&b| r[b]).collect();
+    let cells = PointCells::new(&points, NEIGHBOURS * dp);
+    let neighbours = |k: usize| {
+        let mut near = Vec::new();
+        cells.visit_near(&points[k], NEIGHBOURS * dp, |m, x| {
+            if m != k && (x - points[k]).norm() < NEIGHBOURS * dp {
+                near.push(m);
+            }
+        });
+        near.sort_unstable();
+        near
+    };
+    let around: Vec<Vec<usize>> = (0..points.len()).map(neighbours).collect();
+    let at_rim = |k: usize| {
+        let arms = around[k].iter().map(|&m| points[k] - points[m]);
+        let (sum, length) = arms.fold((Vector::zeros(), 0.0), |(sum, length), arm| (sum + arm, length + arm.norm()));
+        let outwards: Option<Vector<D>> = sum.try_normalize(ONE_SIDED * length);
+        match outwards {
+            None => around[k].is_empty(),
+            Some(outwards) => has_room(system, &(points[k] + outwards * (OUTSIDE * dp)), poses),
+        }
+    };
+    let wet = system.neighbours.boundary_near_fluid();
+    let particle = |k: usize| FilmParticle {
+        boundary: found[k] as u32,
+        near_water: wet.binary_search(&(found[k] as u32)).ok().map(|place| place as u32),
+        at_rim: at_rim(k),
+    };
+    let connected = connected_parts(&around).into_iter();
+    let film = |part: Vec<usize>| Film { solid: i, other: j, particles: part.into_iter().map(particle).collect() };
+    connected.map(film).collect()
+}
+
+/// Whether `x` (m) is in no solid at its pose of `poses`, nor beyond a symmetry plane.
+fn has_room<const D: usize>(system: &System<D>, x: &Vector<D>, poses: &[Pose<D>]) -> bool {
+    let (x, margin) = (&system.fluid.images.wrapped(x), 0.25 * system.model.dp);
+    let is_in = |(k, solid): (usize, &Solid<D>)| {
+        let local = system.home_of(k, &poses[k]).local(x);
+        system.boundary.local_bounds[k].grown(system.model.dp).contains(&local)
+            && solid.spec.shape.signed_distance(&local) < margin
+    };
+    system.symmetry_planes().axes_beyond(x) == 0 && !system.solids.iter().enumerate().any(is_in)
+}
+
+/// The loads of the films on the computed part of each solid, about its centre; an empty list without a film.
+pub(crate) fn loads<const D: usize>(system: &System<D>) -> Vec<Load<D>> {
+    if system.boundary.films.films.is_empty() {
+        return Vec::new();
+    }
+    let mut loads = vec![Load::zero(); system.solids.len()];
+    for (film, water) in system.boundary.films.films.iter().zip(&system.boundary.films.water) {
+        let (solid, other) = (&system.solids[film.solid], &system.solids[film.other]);
+        for (at, force) in forces(system, film, water) {
+            loads[film.solid] += Load::from_force_at(&(at[0] - solid.kinematics.centre), force);
+            loads[film.other] += Load::from_force_at(&(at[1] - other.kinematics.centre), -force);
+        }
+    }
+    loads
+}
+
+/// The forces (N; N/m in 2-D) of `film` on its solid, with the place (m) of each on the solid and on the other one.
+fn forces<const D: usize>(
+    system: &System<D>,
+    film: &Film,
+    water: &[WaterNearby<D>],
+) -> Vec<([Vector<D>; 2], Vector<D>)> {
+    let (dp, rho0, gravity) = (system.model.dp, system.properties.rho0, system.properties.gravity);
+    let (solid, other) = (&system.solids[film.solid], &system.solids[film.other]);
+    let Boundary { particles, depths, .. } = &system.boundary;
+    let depths = depths.as_deref().unwrap_or_default();
+    let rim = film.particles.iter().zip(water).filter(|(particle, _)| particle.at_rim);
+    let rim: Vec<(Vector<D>, f64)> =
+        rim.map(|(particle, water)| (particles.r[particle.boundary as usize], water.pressure)).collect();
+    // The head at which air stays out of the film, from the part of the rim that is in water.
+    let wet = || rim.iter().filter(|(_, p)| *p > 0.0);
+    let head = wet().map(|(x, p)| p - gravity.dot(x)).sum::<f64>() / wet().count() as f64;
+    let counted: Vec<_> = rim.iter().filter(|(x, p)| *p > 0.0 || head + gravity.dot(x) > 0.0).collect();
+    if wet().next().is_none() {
+        return Vec::new();
+    }
+    let inside = |x: &Vector<D>| {
+        let weighted = counted.iter().map(|(y, p)| {
+            let weight = (x - y).norm().powi(1 - D as i32);
+            (weight, weight * (p - gravity.dot(y)))
+        });
+        let (weights, sum) = weighted.fold((0.0, 0.0), |(w, s), (weight, term)| (w + weight, s + term));
+        (sum / weights + gravity.dot(x)).max(0.0)
+    };
+    let spread = dp * film.particles.len() as f64 / rim.len() as f64;
+    let pose = system.home_pose(film.other);
+    let force = |(particle, water): (&FilmParticle, &WaterNearby<D>)| {
+        let i = particle.boundary as usize;
+        let x = particles.r[i];
+        let at_home = system.fluid.images.wrapped(&x);
+        let local = pose.local(&at_home);
+        let on_other = at_home + other.kinematics.pose.position - pose.position;
+        let gap = other.spec.shape.signed_distance(&local) - depths[i];
+        let normal = pose.rotation * other.spec.shape.outward_normal(&local, 0.05 * dp);
+        let flowing = (2.0 * water.cover).min(1.0) * (3.0 * water.away.dot(&normal)).clamp(0.0, 1.0);
+        let thin = ((FADING[1] - gap / dp) / (FADING[1] - FADING[0])).clamp(0.0, 1.0);
+        let share = thin * (1.0 - flowing) * system.computed_share(solid, &x);
+        let on_solid = system.place_on_solid(film.solid, i);
+        let inflow = (velocity_at(solid, &on_solid) - velocity_at(other, &on_other)).dot(&normal).max(0.0) * spread
+            / gap.max(FADING[0] * dp);
+        let still = if particle.at_rim { water.pressure } else { inside(&x) };
+        let pressure = (still - 0.5 * inflow * inflow).max(0.0);
+        let size = dp.powi(D as i32 - 1);
+        ([on_solid, on_other], normal * (rho0 * pressure * share * size))
+    };
+    film.particles.par_iter().zip(water).with_min_len(PARTICLES_PER_TASK).map(force).collect()
+}
+
+fn is_free<const D: usize>(solid: &Solid<D>) -> bool {
+    matches!(solid.spec.role, Role::Free(_))
+}
+
+/// Velocity (m/s) of the point `x` (m) of `solid`.
+fn velocity_at<const D: usize>(solid: &Solid<D>, x: &Vector<D>) -> Vector<D> {
+    let Kinematics { velocity, spin, centre, .. } = &solid.kinematics;
+    velocity + spin.velocity_at(&(x - centre))
+}
+
+/// The connected parts of a graph whose nodes have the neighbours `around`, each in ascending order.
+fn connected_parts(around: &[Vec<usize>]) -> Vec<Vec<usize>> {
+    let mut seen = vec![false; around.len()];
+    let mut parts = Vec::new();
+    for first in 0..around.len() {
+        if std::mem::replace(&mut seen[first], true) {
+            continue;
+        }
+        let (mut part, mut next) = (vec![first], 0);
+        while let Some(&k) = part.get(next) {
+            next += 1;
+            part.extend(around[k].iter().filter(|&&m| !std::mem::replace(&mut seen[m], true)));
+        }
+        part.sort_unstable();
+        parts.push(part);
+    }
+    parts
+}

@@ -1,0 +1,146 @@
+//! The film of water between a free body and what it touches: it carries the pressure that the water has at its rim.
+
+use pontoon::{Result, math::Vector, model::Dimension, simulation::Simulation, solid::Dim};
+
+use crate::common::{run_to, scene_simulation};
+
+const G: f64 = 9.81;
+
+/// A body that touches the bed or a wall is held there: the mean force (N; N/m in 2-D) of the water from 0.4 s on until `until` (s).
+fn mean_force<const D: usize>(text: &str, until: f64) -> Result<Vector<D>>
+where
+    Dim<D>: Dimension<D>,
+{
+    let mut sim: Simulation<D> = scene_simulation(text)?;
+    run_to(&mut sim, 0.4)?;
+    let (mut sum, mut time) = (Vector::zeros(), 0.0);
+    while sim.time() < until {
+        sim.step_to(until)?;
+        sum += sim.system().solids()[1].load.force * sim.dt();
+        time += sim.dt();
+    }
+    Ok(sum / time)
+}
+
+/// Water as far as `reach` (m) and `depth` (m) deep in a tank of 0.8 m, and a held body of `size` (m) at `at`.
+fn held(dp: f64, [reach, depth]: [f64; 2], size: [f64; 2], at: &str) -> String {
+    format!(
+        r#"dimension = 2
+dp = {dp}
+until = 1.0
+[[water]]
+fill = {{ box = {{ min = [0.0, 0.0], max = [{reach}, {depth}] }} }}
+[[solid]]
+name = "tank"
+fixed = true
+shape = {{ tank = {{ size = [0.8, 0.8] }} }}
+[[solid]]
+name = "body"
+shape = {{ box = {{ size = [{}, {}] }} }}
+at = {{ {at} }}
+free = {{ density = 600, locked = ["x", "y", "turn"] }}
+"#,
+        size[0], size[1]
+    )
+}
+
+#[test]
+fn a_body_on_the_bed_is_lifted_as_archimedes_says() -> Result<()> {
+    // The weight of the water in its place. Without a film the water above presses with −330 N/m. Bound: a twentieth of the pressure
+    // on the bed times the area, as for a gap of one row.
+    let (exact, bound) = (1000.0 * G * 0.0144, 0.05 * 1000.0 * G * 0.4 * 0.12);
+    for x in [0.4, 0.407] {
+        let text = held(0.02, [0.8, 0.4], [0.12, 0.12], &format!("x = {x}, bottom = 0.0"));
+        let lift = mean_force::<2>(&text, 1.0)?[1];
+        assert!((lift - exact).abs() < bound, "at {x} m: {lift} N/m, Archimedes {exact} N/m");
+    }
+    Ok(())
+}
+
+#[test]
+fn a_body_on_the_bed_is_lifted_as_archimedes_says_in_3d() -> Result<()> {
+    let text = r#"dimension = 3
+dp = 0.02
+until = 0.6
+[[water]]
+fill = { box = { min = [0.0, 0.0, 0.0], max = [0.32, 0.32, 0.24] } }
+[[solid]]
+name = "tank"
+fixed = true
+shape = { tank = { size = [0.32, 0.32, 0.5] } }
+[[solid]]
+name = "body"
+shape = { box = { size = [0.12, 0.12, 0.1] } }
+at = { x = 0.16, y = 0.16, bottom = 0.0 }
+free = { density = 1800, locked = ["x", "y", "z", "turn_x", "turn_y", "turn_z"] }
+"#;
+    let (exact, bound) = (1000.0 * G * 0.00144, 0.05 * 1000.0 * G * 0.24 * 0.0144);
+    let lift = mean_force::<3>(text, 0.6)?[2];
+    assert!((lift - exact).abs() < bound, "{lift} N, Archimedes {exact} N");
+    Ok(())
+}
+
+#[test]
+fn under_a_dam_the_pressure_falls_evenly_to_the_dry_side() -> Result<()> {
+    // Water of 0.2 m on one side of a block 0.2 m wide: half of its pressure on average. Bound: the rims are half a dp inside, 2.5 %.
+    let text = held(0.01, [0.4, 0.2], [0.2, 0.3], "x = 0.5, bottom = 0.0");
+    let lift = mean_force::<2>(&text, 1.0)?[1];
+    let exact = 0.5 * 1000.0 * G * 0.2 * 0.2;
+    assert!((lift / exact - 1.0).abs() < 0.025, "{lift} N/m of {exact} N/m");
+    Ok(())
+}
+
+#[test]
+fn a_body_beside_a_wall_is_not_pressed_against_it() -> Result<()> {
+    // The water between wall and body has the pressure of the water on the other side, 110 N/m here: nothing remains. Bound: one row
+    // of dp at the lowest pressure of the film, 13 % of one side.
+    let text = held(0.01, [0.8, 0.3], [0.2, 0.15], "x = 0.1, bottom = 0.15");
+    let push = mean_force::<2>(&text, 1.0)?[0];
+    let side = 0.5 * 1000.0 * G * 0.15 * 0.15;
+    assert!(push.abs() < 0.13 * side, "{push} N/m of {side} N/m");
+    Ok(())
+}
+
+#[test]
+fn a_rising_level_lifts_a_body_off_the_bed_when_its_buoyancy_exceeds_its_weight() -> Result<()> {
+    // Two pistons raise the level at 17 mm/s and more. The draft is 0.08 m; the body must leave the bed within one dp of that level, and
+    // not before it but for half a dp: the surface is known to a tenth of dp, and the water runs up and down by as much.
+    let dp = 0.01;
+    let text = format!(
+        r#"dimension = 2
+dp = {dp}
+until = 6.0
+[[water]]
+fill = {{ box = {{ min = [0.0, 0.0], max = [1.2, 0.06] }} }}
+[[solid]]
+name = "tank"
+fixed = true
+shape = {{ tank = {{ size = [1.2, 0.4] }} }}
+[[solid]]
+name = "body"
+shape = {{ box = {{ size = [0.2, 0.16] }} }}
+at = {{ x = 0.6, bottom = 0.0 }}
+free = {{ density = 500.0, locked = ["turn"] }}
+[[solid]]
+name = "left"
+shape = {{ box = {{ size = [0.1, 0.4] }} }}
+at = {{ x = -0.05, bottom = 0.0 }}
+driven = {{ along = [1.0, 0.0], distance = {{ formula = "0.05*t" }} }}
+[[solid]]
+name = "right"
+shape = {{ box = {{ size = [0.1, 0.4] }} }}
+at = {{ x = 1.25, bottom = 0.0 }}
+driven = {{ along = [1.0, 0.0], distance = {{ formula = "-0.05*t" }} }}
+"#
+    );
+    let mut sim = scene_simulation::<2>(&text)?;
+    // The mean level beside the body: its water over the width between the pistons.
+    let water = sim.system().particle_mass() * sim.system().fluid().len() as f64 / 1000.0;
+    let level = |t: f64| water / (1.2 - 0.2 - 0.1 * t);
+    while sim.system().solids()[1].kinematics.centre[1] < 0.08 + 0.25 * dp {
+        sim.step()?;
+        assert!(level(sim.time()) < 0.08 + dp, "it lies on the bed at a level of {} m", level(sim.time()));
+    }
+    assert!(level(sim.time()) > 0.08 - 0.5 * dp, "it has left the bed at a level of {} m", level(sim.time()));
+    Ok(())
+}
