@@ -40,7 +40,8 @@ pub struct MooredSurge {
 }
 
 /// Returns the mooring lines and the surge of the free bodies that they hold. Adds
-/// notes about lines that take many steps, and about winches that start with another tension than they hold.
+/// notes about lines that take many steps, about winches that start with another tension than they hold, and warnings about lines
+/// that break at once.
 pub(super) fn summaries<const D: usize>(
     context: &PreflightContext<'_, D>,
     sim: &Simulation<D>,
@@ -93,6 +94,19 @@ pub(super) fn summaries<const D: usize>(
                 "the run begins with the way there; a length with the tension of the winch makes it start at rest"
                     .into();
             findings.push(Finding::note("winch_starts", what, mend));
+        }
+    }
+    for (spec, own) in specs.iter().filter_map(|spec| Some((spec, lines.iter().find(|line| line.name == spec.name)?))) {
+        let (most, strength) = (own.fairlead_n.max(own.anchor_n), spec.lifetime.strength);
+        if most > strength {
+            let what = format!(
+                "mooring \"{}\" breaks at the start: it has {} {force} at rest and bears {} {force}",
+                own.name,
+                three_digits(most),
+                three_digits(strength)
+            );
+            let mend = format!("breaks = {} or more, or a length with less tension", three_digits(most));
+            findings.push(Finding::warning("breaks_at_start", what, mend));
         }
     }
     let surge = |(i, solid): (usize, &crate::solid::Solid<D>)| {

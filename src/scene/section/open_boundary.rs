@@ -34,6 +34,8 @@ pub struct OpenBoundaryConfig {
     pub y: Option<f64>,
     /// Velocity in the sense of the flow, m/s: a number, or a formula in the position and t.
     pub velocity: Option<FieldFormulaConfig>,
+    /// Velocity in the sense of the flow as a table over height and time, in place of `velocity`.
+    pub profile: Option<VelocityProfileConfig>,
     /// Factor on the velocity, –: a number, a formula in t or a table.
     pub factor: Option<TimeValueConfig>,
     /// Height of the surface at rest, m.
@@ -55,6 +57,79 @@ pub struct FaceWaveConfig {
     pub regular: RegularWaveConfig,
     /// Duration of the rise to the full height, s.
     pub ramp: Option<f64>,
+}
+
+/// Velocities at heights and times, between which the velocity is linear; beyond their ends it is that at the end.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[non_exhaustive]
+pub struct VelocityProfileConfig {
+    /// Heights (coordinates of the last axis), m, ascending.
+    pub heights: Vec<f64>,
+    /// Times, s, ascending; none if the velocity is steady.
+    #[serde(default)]
+    pub times: Vec<f64>,
+    /// Velocities (m/s): a row for each time, or one for a steady velocity, with a number for each height.
+    pub speeds: Vec<Vec<f64>>,
+}
+
+/// Most numbers of a table of velocities: each is evaluated for each particle of a buffer.
+const MOST_SPEEDS: usize = 1000;
+
+impl VelocityProfileConfig {
+    /// Refuses tables that do not fit together.
+    fn verify(&self, ctx: &Context, key: &str) -> Result<()> {
+        let refuse = |name: &str, what: String, help: &str| {
+            Err(ctx.error_with_help(&format!("{key}.{name}"), &what, help).with_code(ErrorCode::OutOfRange))
+        };
+        let ascends = |x: &[f64]| x.iter().all(|x| x.is_finite()) && x.windows(2).all(|pair| pair[0] < pair[1]);
+        if self.heights.is_empty() || !ascends(&self.heights) {
+            return refuse(
+                "heights",
+                "the heights of a profile are finite and ascend".into(),
+                "write  heights = [0.0, 0.4]",
+            );
+        }
+        if !ascends(&self.times) {
+            return refuse(
+                "times",
+                "the times of a profile are finite and ascend".into(),
+                "write  times = [0.0, 10.0]",
+            );
+        }
+        let (rows, columns) = (self.times.len().max(1), self.heights.len());
+        let fits = self.speeds.len() == rows && self.speeds.iter().all(|row| row.len() == columns);
+        if !fits || self.speeds.iter().flatten().any(|x| !x.is_finite()) {
+            let given: Vec<usize> = self.speeds.iter().map(Vec::len).collect();
+            let what =
+                format!("{rows} rows of {columns} finite velocities are needed, and rows of {given:?} are given");
+            return refuse("speeds", what, "a row for each time, with a velocity for each height");
+        }
+        if rows * columns > MOST_SPEEDS {
+            let what = format!("a profile has {MOST_SPEEDS} velocities at most, and this one {}", rows * columns);
+            return refuse("speeds", what, "give a formula, velocity, or fewer heights and times");
+        }
+        Ok(())
+    }
+
+    /// The formula of the velocity in the height, which is the variable `height`, and the time t.
+    fn formula(&self, height: &str) -> String {
+        let at_height = |k: usize| {
+            let speeds: Vec<String> = self.speeds.iter().map(|row| format!("({:?})", row[k])).collect();
+            piecewise_linear("t", &self.times, &speeds)
+        };
+        let over_time: Vec<String> = (0..self.heights.len()).map(at_height).collect();
+        piecewise_linear(height, &self.heights, &over_time)
+    }
+}
+
+/// The formula that is `values` where `variable` is one of `places`, and linear between: a sum of ramps.
+fn piecewise_linear(variable: &str, places: &[f64], values: &[String]) -> String {
+    let ramps = places.windows(2).zip(values.windows(2)).map(|(x, y)| {
+        let [from, to] = [x[0], x[1]];
+        format!("+(({})-({}))*min(max(({variable}-({from:?}))/{:?},0),1)", y[1], y[0], to - from)
+    });
+    std::iter::once(values[0].clone()).chain(ramps).collect()
 }
 
 /// The sense of a flow through a face.
@@ -92,6 +167,12 @@ impl OpenBoundaryConfig {
         Self { level: Some(level), ..self }
     }
 
+    /// The formula of the velocity in the sense of the flow, if the face has one.
+    fn velocity_formula(&self, dimension: usize) -> Option<String> {
+        let profile = self.profile.as_ref().map(|profile| profile.formula(if dimension == 2 { "y" } else { "z" }));
+        profile.or_else(|| self.velocity.as_ref().map(|velocity| velocity.0.clone()))
+    }
+
     /// Number of the axis and coordinate (m).
     pub(crate) fn place(&self) -> Option<(usize, f64)> {
         match (self.x, self.y) {
@@ -114,16 +195,25 @@ impl OpenBoundaryConfig {
             let what = "a face is normal to one horizontal axis, at one coordinate";
             return Err(ctx.error_with_help(key, what, "write  x = 0.0"));
         }
-        match &self.velocity {
-            Some(velocity) if ctx.dimension == 2 => UnsteadyField::<2>::parse(&velocity.0).map(|_| ()),
-            Some(velocity) => UnsteadyField::<3>::parse(&velocity.0).map(|_| ()),
+        if let Some(profile) = &self.profile {
+            if self.velocity.is_some() {
+                let what = "a face has a velocity or a profile, not both";
+                let help = "leave velocity or profile out; factor multiplies either";
+                return Err(ctx.error_with_help(key, what, help).with_code(ErrorCode::ConflictingKeys));
+            }
+            profile.verify(ctx, &format!("{key}.profile"))?;
+        }
+        let velocity = self.velocity_formula(ctx.dimension);
+        match &velocity {
+            Some(velocity) if ctx.dimension == 2 => UnsteadyField::<2>::parse(velocity).map(|_| ()),
+            Some(velocity) => UnsteadyField::<3>::parse(velocity).map(|_| ()),
             None => Ok(()),
         }
         .map_err(|e| ctx.with_location(e, &format!("{key}.velocity")))?;
         if let Some(factor) = &self.factor {
             factor.verify(ctx, &format!("{key}.factor"))?;
         }
-        if self.velocity.is_none() {
+        if velocity.is_none() {
             if flow == FaceFlow::In {
                 let what = "an inflow has a velocity";
                 return Err(ctx.error_with_help(key, what, "write  velocity = 0.5        # m/s, into the water"));
@@ -164,7 +254,7 @@ impl OpenBoundaryConfig {
         // A scene that gives no gravity has that of the earth.
         let weight = ctx.gravity.is_none() || ctx.has_gravity();
         let waves = self.wave.is_some() || self.absorb_period.is_some();
-        let absorbs = (flow == FaceFlow::Out || waves) && self.velocity.is_some() && weight;
+        let absorbs = (flow == FaceFlow::Out || waves) && self.velocity_formula(ctx.dimension).is_some() && weight;
         let why = match (flow, absorbs) {
             (_, true) => "waves leave",
             (FaceFlow::In, _) => "the discharge is exact",
@@ -218,7 +308,7 @@ impl OpenBoundaryConfig {
         let (from, to) = if is_lower { (at - length, at) } else { (at, at + length) };
         (bounds.min[axis], bounds.max[axis]) = (from, to);
         bounds.max[D - 1] = top;
-        let velocity = self.velocity.as_ref().map(|velocity| UnsteadyField::parse(&velocity.0)).transpose();
+        let velocity = self.velocity_formula(D).map(|velocity| UnsteadyField::parse(&velocity)).transpose();
         let velocity = velocity.map_err(|e| ctx.with_location(e, &format!("{key}.velocity")))?;
         let name = self.name.as_deref().unwrap_or(flow.section());
         let face = match (flow, velocity) {

@@ -547,6 +547,22 @@ fn a_winch_that_does_not_start_with_its_tension_is_noted() {
 }
 
 #[test]
+fn a_mooring_line_that_breaks_at_the_start_is_told() {
+    let moored = |breaks: f64| {
+        let line = "[[line_type]]\nname = \"chain\"\ndiameter = 0.004\nmass_per_length = 0.1\nstiffness = 500.0\n\
+                    [[mooring]]\nname = \"hawser\"\nbetween = [\"box\"]\nfrom = [1.0, 0.35]\nto = [1.1, 0.0]\nlength = 0.4\nline = \"chain\"";
+        let text = format!("{GOOD}\n{line}\nbreaks = {{ tension = {breaks:?} }}\n");
+        preflight_report::<2>(&Scene::parse(&text, Path::new(""), &[]).unwrap())
+    };
+    let strong = moored(100.0);
+    assert!(!topics(&strong).contains(&"breaks_at_start"), "{:?}", strong.findings);
+    let rest = strong.moorings[0].fairlead_n.max(strong.moorings[0].anchor_n);
+    let weak = moored(0.9 * rest);
+    let found = weak.findings.iter().find(|finding| finding.topic == "breaks_at_start").expect("it is told");
+    assert!(found.mend.starts_with("breaks = "), "{found:?}");
+}
+
+#[test]
 fn a_paddle_with_a_list_of_motions_has_the_report_of_a_single_motion() {
     let alone = report(&[]);
     let half = "{ along = [1.0, 0.0], distance = { formula = \"0.02*(1-cos(2*pi*t))\" } }";

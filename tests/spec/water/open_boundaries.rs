@@ -249,6 +249,39 @@ fn a_face_that_becomes_too_fast_or_lies_in_a_solid_is_refused_with_the_number_th
 }
 
 #[test]
+fn a_profile_over_height_and_time_is_linear_between_its_numbers() {
+    let scene = |profile: &str| {
+        let text = format!(
+            "dimension = 2\ndp = 0.05\nuntil = 1.0\n\
+             water = [{{ fill = {{ box = {{ min = [0.0, 0.0], max = [2.0, 0.5] }} }} }}]\n\
+             solid = [{{ name = \"bed\", fixed = true, shape = {{ box = {{ size = [8.0, 0.3] }} }}, at = [1.0, -0.15] }}]\n\
+             inflow = [{{ x = 0.0, {profile} }}]\noutflow = [{{ x = 2.0, level = 0.5 }}]\n"
+        );
+        Scene::parse(&text, Path::new(""), &[]).and_then(|scene| scene.build::<2>())
+    };
+    let built = scene("profile = { heights = [0.1, 0.3], times = [1.0, 3.0], speeds = [[0.2, 0.4], [0.6, 1.0]] }")
+        .expect("sound");
+    let field = built.setup.open_boundaries[0].velocity.as_ref().expect("a velocity");
+    let inward = |y: f64, t: f64| field.value_at(&Vector::from([0.0, y]), t);
+    for (y, t, exact) in
+        [(0.1, 1.0, 0.2), (0.3, 1.0, 0.4), (0.2, 1.0, 0.3), (0.2, 2.0, 0.55), (0.0, 0.0, 0.2), (0.5, 9.0, 1.0)]
+    {
+        assert!((inward(y, t) - exact).abs() < 1e-12, "{y} m, {t} s: {} of {exact}", inward(y, t));
+    }
+    for (profile, said) in [
+        ("profile = { heights = [0.3, 0.1], speeds = [[0.2, 0.4]] }", "the heights of a profile are finite and ascend"),
+        (
+            "profile = { heights = [0.1, 0.3], times = [0.0, 1.0], speeds = [[0.2, 0.4]] }",
+            "2 rows of 2 finite velocities",
+        ),
+        ("velocity = 0.3, profile = { heights = [0.1], speeds = [[0.2]] }", "a velocity or a profile, not both"),
+    ] {
+        let refused = scene(profile).err().expect("refused").to_string();
+        assert!(refused.contains(said), "{refused}");
+    }
+}
+
+#[test]
 fn a_body_that_drifts_into_a_buffer_stops_the_run() {
     let box_in_flow = |x: f64| {
         let shape = Shape::Box { size: Vector::from([0.3, 0.2]) };
