@@ -183,7 +183,7 @@ IRREGULAR = """
 title = "A crate between small waves"
 dimension = 2
 dp = 0.05
-until = 24.0
+until = 30.0
 frames = "off"
 
 [[water]]
@@ -293,7 +293,7 @@ def test_refusals_and_failures_of_a_study_are_exceptions(tank: pt.Scene, tmp_pat
 
 @needs_signals
 def test_a_stopped_study_goes_on(tank: pt.Scene, tmp_path: Path) -> None:
-    tank["dp"] = 0.02
+    tank["dp"], tank["until"] = 0.02, 1.0
     tank["check"] = [{"series": "crate.heave_m", "formula": "0"}]
     folder, ended = tmp_path / "study", threading.Event()
 
