@@ -234,6 +234,16 @@ pub fn run_text(text: &str, folder: &Path, options: &RunOptions, watch: &mut dyn
     with_threads(options.threads, || by_dimension(&scene, origin, &Ranks::default(), watch)).and_then(of_first_rank)
 }
 
+/// Writes the scene `text` to `folder/scene/scene.toml`, with those files beside it in `from` that `scene`, which was parsed
+/// from it, names. Returns the path of the scene.
+///
+/// # Errors
+/// `File` if a file cannot be read or written.
+pub fn copy_text_scene(text: &str, from: &Path, scene: &Scene, folder: &Path) -> Result<PathBuf> {
+    run_folder::copy_scene(&from.join("scene.toml"), Some(text), &scene.to_toml()?, folder)?;
+    Ok(folder.join(run_folder::SCENE))
+}
+
 /// Continues the interrupted run in `folder`; the results are bitwise identical to an uninterrupted run. The run
 /// continues from its last checkpoint. If that checkpoint is missing or damaged, it continues from the previous
 /// checkpoint, and the manifest records a warning. `guards` holds keys of the scene's `[guard]` and their new values: a

@@ -615,7 +615,7 @@ impl<const D: usize> Simulation<D> {
                 "solids had been removed from the simulation whose state this is",
             )
             .with_code(ErrorCode::OtherSetup)
-            .help("restore_with takes it up in a simulation made from the same setup"));
+            .help("restore_with_added_solids restores it in a simulation made from the same setup"));
         }
         match (self.bodies.engine_mut(), kept.engine) {
             (Some(engine), Some(bytes)) => engine.restore(&bytes)?,

@@ -7,7 +7,7 @@ use pontoon::{
     error::{Error, ErrorCode, ErrorKind, nearest_name},
     solid::MotorCommand,
 };
-use pyo3::{exceptions::PyValueError, prelude::*, types::PyDict};
+use pyo3::{prelude::*, types::PyDict};
 
 use crate::{
     error::{exception, usage},
@@ -31,23 +31,26 @@ pub fn axial(py: Python<'_>, x: &[f64; 3], dimension: usize) -> PyResult<Py<PyAn
 /// Returns three components of a vector of `dimension` numbers.
 ///
 /// # Errors
-/// `ValueError` for another number of components, or one that is not finite.
-pub fn three(x: &Bound<'_, PyAny>, dimension: usize, what: &str) -> PyResult<[f64; 3]> {
-    let numbers: Vec<f64> = x.extract()?;
-    if numbers.len() != dimension || numbers.iter().any(|x| !x.is_finite()) {
-        return Err(PyValueError::new_err(format!("{what} needs {dimension} finite numbers, not {numbers:?}")));
+/// `UsageError` for another number of components, or one that is not finite.
+pub fn three(py: Python<'_>, x: &Bound<'_, PyAny>, dimension: usize, what: &str) -> PyResult<[f64; 3]> {
+    let numbers = x.extract::<Vec<f64>>().ok();
+    match numbers.filter(|x| x.len() == dimension && x.iter().all(|x| x.is_finite())) {
+        Some(numbers) => Ok(std::array::from_fn(|i| numbers.get(i).copied().unwrap_or(0.0))),
+        None => {
+            let count = if dimension == 1 { "one finite number".into() } else { format!("{dimension} finite numbers") };
+            Err(usage(py, &format!("{what} cannot be {x}"), &format!("give {count}")))
+        }
     }
-    Ok(std::array::from_fn(|i| numbers.get(i).copied().unwrap_or(0.0)))
 }
 
 /// Returns the components of an axial vector: a number in 2-D, three in 3-D.
 ///
 /// # Errors
 /// As [`three`].
-pub fn three_axial(x: &Bound<'_, PyAny>, dimension: usize, what: &str) -> PyResult<[f64; 3]> {
+pub fn three_axial(py: Python<'_>, x: &Bound<'_, PyAny>, dimension: usize, what: &str) -> PyResult<[f64; 3]> {
     match x.extract::<f64>() {
         Ok(number) if dimension == 2 && number.is_finite() => Ok([number, 0.0, 0.0]),
-        _ => three(x, if dimension == 2 { 1 } else { 3 }, what),
+        _ => three(py, x, if dimension == 2 { 1 } else { 3 }, what),
     }
 }
 
@@ -62,13 +65,13 @@ pub struct Load {
 
 #[pymethods]
 impl Load {
-    /// Force, N (N/m in 2-D), without weight.
+    /// Force, N (N/m in 2-D), without weight: (D,).
     #[getter]
     fn force<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         vector(py, &self.force, self.dimension)
     }
 
-    /// Torque about the centre of the solid, N m (N m/m in 2-D): a number in 2-D.
+    /// Torque about the centre of the solid, N m (N m/m in 2-D): a number in 2-D, (3,) in 3-D.
     #[getter]
     fn torque(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         axial(py, &self.torque, self.dimension)
@@ -117,25 +120,25 @@ impl BodyState {
         self.mass
     }
 
-    /// World position of the origin of its frame, m.
+    /// World position of the origin of its frame, m: (D,).
     #[getter]
     fn position<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         vector(py, &self.data.position, self.dimension)
     }
 
-    /// World position of its centre, m: the centre of mass of a free solid.
+    /// World position of its centre, m: (D,); the centre of mass of a free solid.
     #[getter]
     fn centre<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         vector(py, &self.data.centre, self.dimension)
     }
 
-    /// Velocity of its centre, m/s.
+    /// Velocity of its centre, m/s: (D,).
     #[getter]
     fn velocity<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         vector(py, &self.data.velocity, self.dimension)
     }
 
-    /// Spin, rad/s: a number in 2-D.
+    /// Spin, rad/s: a number in 2-D, (3,) in 3-D.
     #[getter]
     fn spin(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         axial(py, &self.data.spin, self.dimension)
@@ -152,7 +155,7 @@ impl BodyState {
         Ok(matrix.into_any().unbind())
     }
 
-    /// Force and torque of the water.
+    /// Force and torque of the water: a `Load`.
     #[getter]
     fn load(&self) -> Load {
         Load { force: self.data.force, torque: self.data.torque, dimension: self.dimension }
@@ -164,7 +167,7 @@ impl BodyState {
     }
 }
 
-/// The part of a step between water and bodies.
+/// The part of a step when the water has moved and the bodies have not.
 #[pyclass(module = "pontoon._pontoon")]
 pub struct BodyStep {
     names: Arc<Names>,
@@ -238,13 +241,13 @@ impl BodyStep {
         self.names.solids.iter().map(|(name, _)| name.as_str()).collect()
     }
 
-    /// Returns the solid called `name`, at the start of the step, with the load of this step.
+    /// Returns a solid at the start of the step, with the load of this step.
     fn __getitem__(&self, py: Python<'_>, name: &str) -> PyResult<BodyState> {
         let solid = self.solid(py, name)?;
         Ok(BodyState::new(self.names.solids[solid].clone(), None, self.step.bodies[solid], self.names.dimension))
     }
 
-    /// Loads of the water on all solids, by name.
+    /// Loads of the water in this step, by the name of the solid.
     #[getter]
     fn loads<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let loads = PyDict::new(py);
@@ -255,8 +258,17 @@ impl BodyStep {
         Ok(loads)
     }
 
-    /// Pushes free solid `name` with `force` (N; N/m in 2-D) at the world point `at` (m; its centre if absent) and with
-    /// `torque` (N m; N m/m in 2-D) about its centre. The push acts until the next call.
+    /// Pushes a free solid until the next call.
+    ///
+    /// Args:
+    ///     name: the solid.
+    ///     force: N (N/m in 2-D): (D,).
+    ///     torque: about its centre, N m (N m/m in 2-D): a number in 2-D, (3,) in 3-D.
+    ///     at: world point at which the force acts, m: (D,); by default its centre.
+    ///
+    /// Raises:
+    ///     UnknownNameError: there is no such solid.
+    ///     UsageError: it is not free, or a vector has another length or is not finite.
     #[pyo3(signature = (name, force=None, *, torque=None, at=None))]
     fn push(
         &mut self,
@@ -271,10 +283,10 @@ impl BodyStep {
             return Err(usage(py, "another program moves the bodies of this simulation", help));
         }
         let (solid, dimension) = (self.free(py, name)?, self.names.dimension);
-        let force = force.map_or(Ok([0.0; 3]), |force| three(force, dimension, "force"))?;
-        let mut torque = torque.map_or(Ok([0.0; 3]), |torque| three_axial(torque, dimension, "torque"))?;
+        let force = force.map_or(Ok([0.0; 3]), |force| three(py, force, dimension, "force"))?;
+        let mut torque = torque.map_or(Ok([0.0; 3]), |torque| three_axial(py, torque, dimension, "torque"))?;
         if let Some(at) = at {
-            let (at, centre) = (three(at, dimension, "at")?, self.step.bodies[solid].centre);
+            let (at, centre) = (three(py, at, dimension, "at")?, self.step.bodies[solid].centre);
             let arm: [f64; 3] = std::array::from_fn(|i| at[i] - centre[i]);
             let turn = |i: usize, j: usize| arm[i] * force[j] - arm[j] * force[i];
             let moment = if dimension == 2 { [turn(0, 1), 0.0, 0.0] } else { [turn(1, 2), turn(2, 0), turn(0, 1)] };
@@ -284,14 +296,21 @@ impl BodyStep {
         Ok(())
     }
 
-    /// Drives joint `name`, a hinge or a slider, from the next step on: see `Simulation.drive`.
-    #[pyo3(signature = (name, *, force=0.0, position=0.0, velocity=0.0, stiffness=0.0, damping=0.0, max_force=f64::INFINITY))]
+    /// Drives a hinge or a slider from the next step on with F = force + stiffness (position − x) + damping (velocity − ẋ),
+    /// |F| at most `max_force`, in N, m or N m, rad (forces per metre in 2-D); `torque` is another name of `force`.
+    ///
+    /// Raises:
+    ///     UnknownNameError: there is no such joint.
+    ///     UsageError: both `force` and `torque` are given, or a number is not finite or negative where it must not be.
+    #[pyo3(signature = (name, *, force=None, torque=None, position=0.0, velocity=0.0, stiffness=0.0, damping=0.0,
+        max_force=f64::INFINITY))]
     #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn drive(
         &mut self,
         py: Python<'_>,
         name: &str,
-        force: f64,
+        force: Option<f64>,
+        torque: Option<f64>,
         position: f64,
         velocity: f64,
         stiffness: f64,
@@ -299,12 +318,16 @@ impl BodyStep {
         max_force: f64,
     ) -> PyResult<()> {
         let joint = find(py, "joint", name, &self.names.joints)?;
-        let command = motor(py, [force, position, velocity, stiffness, damping, max_force])?;
+        let command = motor(py, [force, torque], [position, velocity, stiffness, damping, max_force])?;
         self.commands.motors.push((joint, Some(command)));
         Ok(())
     }
 
-    /// Changes stiffness (N/m), damping (N s/m) or rest length (m) of spring `name` from the next step on.
+    /// Changes stiffness (N/m), damping (N s/m) or rest length (m) of a spring from the next step on.
+    ///
+    /// Raises:
+    ///     UnknownNameError: there is no such spring.
+    ///     UsageError: a number is negative or not finite.
     #[pyo3(signature = (name, *, stiffness=None, damping=None, rest_length=None))]
     fn set_spring(
         &mut self,
@@ -320,7 +343,8 @@ impl BodyStep {
         Ok(())
     }
 
-    /// Sets the motion of a body of another program at the end of the step.
+    /// Sets the motion of a body of another program at the end of the step: position of its frame (m), rotation matrix (D × D
+    /// numbers), centre (m), velocity of its centre (m/s), spin (rad/s). `HostedSimulation` calls it.
     fn set_motion(
         &mut self,
         py: Python<'_>,
@@ -332,15 +356,16 @@ impl BodyStep {
         spin: &Bound<'_, PyAny>,
     ) -> PyResult<()> {
         let (solid, dimension) = (self.free(py, name)?, self.names.dimension);
-        let numbers: Vec<f64> = rotation.extract()?;
+        let numbers: Vec<f64> = rotation.extract().unwrap_or_default();
         if numbers.len() != dimension * dimension {
-            return Err(PyValueError::new_err("rotation needs a matrix"));
+            let help = format!("give a matrix of {dimension} × {dimension} numbers");
+            return Err(usage(py, &format!("rotation cannot be {rotation}"), &help));
         }
         let mut motion = BodyData {
-            position: three(position, dimension, "position")?,
-            centre: three(centre, dimension, "centre")?,
-            velocity: three(velocity, dimension, "velocity")?,
-            spin: three_axial(spin, dimension, "spin")?,
+            position: three(py, position, dimension, "position")?,
+            centre: three(py, centre, dimension, "centre")?,
+            velocity: three(py, velocity, dimension, "velocity")?,
+            spin: three_axial(py, spin, dimension, "spin")?,
             ..BodyData::default()
         };
         motion.rotation.iter_mut().zip(numbers).for_each(|(to, from)| *to = from);
@@ -349,13 +374,21 @@ impl BodyStep {
     }
 }
 
-/// Returns the command of a motor: force, position, velocity, stiffness, damping, largest force.
+/// Returns the command of a motor: its force or torque, which is the same, and position, velocity, stiffness, damping and
+/// largest force.
 ///
 /// # Errors
-/// `UsageError` for numbers that are not finite, or negative stiffness, damping or largest force.
-pub fn motor(py: Python<'_>, numbers: [f64; 6]) -> PyResult<MotorCommand> {
-    let [force, position, velocity, stiffness, damping, max_force] = numbers;
-    let finite = numbers[..5].iter().all(|x| x.is_finite());
+/// `UsageError` for both force and torque, numbers that are not finite, or negative stiffness, damping or largest force.
+pub fn motor(py: Python<'_>, load: [Option<f64>; 2], rest: [f64; 5]) -> PyResult<MotorCommand> {
+    let force = match load {
+        [Some(_), Some(_)] => {
+            let help = "give force to a slider, torque to a hinge";
+            return Err(usage(py, "force and torque are two names of the same load of a motor", help));
+        }
+        [force, torque] => force.or(torque).unwrap_or(0.0),
+    };
+    let [position, velocity, stiffness, damping, max_force] = rest;
+    let finite = [force, position, velocity, stiffness, damping].iter().all(|x| x.is_finite());
     if !finite || stiffness < 0.0 || damping < 0.0 || max_force.is_nan() || max_force < 0.0 {
         let help = "finite numbers; stiffness, damping and max_force 0 or more";
         return Err(usage(py, "this is no command of a motor", help));

@@ -1,6 +1,6 @@
 //! Errors of the library as exceptions of Python.
 
-use pontoon::error::{Error, ErrorKind};
+use pontoon::error::{Error, ErrorCode, ErrorKind};
 use pyo3::{prelude::*, types::PyDict};
 
 /// Returns the exception for `error`: the class that belongs to its kind, with code, place, remedy and fault.
@@ -14,6 +14,7 @@ fn raised(py: Python<'_>, error: &Error) -> PyResult<PyErr> {
         ErrorKind::File => "FileError",
         ErrorKind::Fault => "Fault",
         ErrorKind::Restart => "RestartError",
+        ErrorKind::Usage if error.code() == ErrorCode::UnknownName => "UnknownNameError",
         _ => "UsageError",
     };
     let fields = PyDict::new(py);

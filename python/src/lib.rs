@@ -13,13 +13,15 @@ use std::ffi::OsString;
 
 use pyo3::prelude::*;
 
+use crate::error::OrRaise;
+
 /// The native part of the package `pontoon`.
 #[pymodule]
 mod _pontoon {
     #[pymodule_export]
     use super::{
         bodies::{BodyState, BodyStep, Load},
-        bundled_scenes, main,
+        bundled_scenes, check_cases, main,
         run::{frame, frame_times, resume, statistics, unit, write_report},
         scene::NativeScene,
         simulation::NativeSimulation,
@@ -39,6 +41,12 @@ fn version() -> &'static str {
 fn bundled_scenes() -> Vec<(String, String, String)> {
     let all = pontoon::cli::scene_lookup::scene_infos();
     all.into_iter().map(|scene| (scene.name, scene.title, scene.about)).collect()
+}
+
+/// Refuses names of validation cases that do not exist.
+#[pyfunction]
+fn check_cases(py: Python<'_>, names: Vec<String>) -> PyResult<()> {
+    pontoon::study::select_cases(&names, false).map(drop).or_raise(py)
 }
 
 /// Runs the command line of the program, of which the first argument is its name, and returns the exit code.

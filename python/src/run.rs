@@ -143,10 +143,10 @@ pub fn statistics(
     py: Python<'_>,
     folder: PathBuf,
     series: Option<String>,
-    from: Option<f64>,
-    until: Option<f64>,
+    start: Option<f64>,
+    end: Option<f64>,
 ) -> PyResult<String> {
-    let asked = StatisticsFilter { series, from, until };
+    let asked = StatisticsFilter { series, from: start, until: end };
     let all = py.detach(|| run_statistics(&folder, &asked)).or_raise(py)?;
     let json = serde_json::json!({ "rows": all.rows, "raos": all.raos, "remarks": all.remarks });
     serde_json::to_string(&json).map_err(|why| usage(py, &why.to_string(), ""))

@@ -9,7 +9,7 @@ use pontoon::{
     Result,
     cli::scene_lookup::{FoundScene, find_scene},
     plan::Plan,
-    run::{InspectOptions, RunObserver, RunOptions, RunOutcome, inspect_scene, run, run_text},
+    run::{InspectOptions, RunObserver, RunOptions, RunOutcome, copy_text_scene, inspect_scene, run, run_text},
     scene::{PanelledScene, Scene, bundled_scenes},
 };
 use pyo3::prelude::*;
@@ -149,6 +149,20 @@ impl NativeScene {
     fn values(&self, py: Python<'_>) -> PyResult<Vec<(String, String, String)>> {
         let values = self.origin.named(self.scene.resolve()).or_raise(py)?;
         Ok(values.into_iter().map(|value| (value.key, value.value, value.source.to_string())).collect())
+    }
+
+    /// Checks the scene with the tables that it names, without particles.
+    fn check(&self, py: Python<'_>) -> PyResult<()> {
+        self.plan().map(drop).or_raise(py)
+    }
+
+    /// Writes a scene from a text, without its changed keys, to `folder/scene`, with the files that it names; returns its path.
+    /// A scene that was found in a file stays there; returns its file or name.
+    fn file(&self, py: Python<'_>, folder: PathBuf) -> PyResult<PathBuf> {
+        match &self.origin {
+            Origin::Found(..) => Ok(self.origin().1.into()),
+            Origin::Text(text, from) => copy_text_scene(text, from, &self.scene, &folder).or_raise(py),
+        }
     }
 
     /// Returns the inspection as JSON.

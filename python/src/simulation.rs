@@ -381,8 +381,8 @@ impl NativeSimulation {
         at: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<()> {
         let (solid, dimension) = (self.free(py, name)?, self.names().dimension);
-        let force = three(force, dimension, "force")?;
-        let at = at.map(|at| three(at, dimension, "at")).transpose()?;
+        let force = three(py, force, dimension, "force")?;
+        let at = at.map(|at| three(py, at, dimension, "at")).transpose()?;
         self.change(py, |world| world.push(solid, force, at))
     }
 
@@ -395,8 +395,8 @@ impl NativeSimulation {
         spin: &Bound<'_, PyAny>,
     ) -> PyResult<()> {
         let (solid, dimension) = (self.free(py, name)?, self.names().dimension);
-        let velocity = three(velocity, dimension, "velocity")?;
-        let spin = three_axial(spin, dimension, "spin")?;
+        let velocity = three(py, velocity, dimension, "velocity")?;
+        let spin = three_axial(py, spin, dimension, "spin")?;
         self.change(py, |world| world.set_velocity(solid, velocity, spin))
     }
 
@@ -406,12 +406,18 @@ impl NativeSimulation {
         self.read(py, |world| world.joint(joint))
     }
 
-    /// Drives joint `name` from now on; without numbers its own motor drives it again.
-    #[pyo3(signature = (name, numbers=None))]
-    fn drive(&self, py: Python<'_>, name: &str, numbers: Option<[f64; 6]>) -> PyResult<()> {
+    /// Drives joint `name` from now on with force or torque (N or N m), and position, velocity, stiffness, damping and largest
+    /// force.
+    fn drive(&self, py: Python<'_>, name: &str, load: [Option<f64>; 2], rest: [f64; 5]) -> PyResult<()> {
         let joint = find(py, "joint", name, &self.names().joints)?;
-        let command = numbers.map(|numbers| motor(py, numbers)).transpose()?;
-        self.change(py, |world| world.set_motor(joint, command))
+        let command = motor(py, load, rest)?;
+        self.change(py, |world| world.set_motor(joint, Some(command)))
+    }
+
+    /// Gives joint `name` back to its own motor.
+    fn release(&self, py: Python<'_>, name: &str) -> PyResult<()> {
+        let joint = find(py, "joint", name, &self.names().joints)?;
+        self.change(py, |world| world.set_motor(joint, None))
     }
 
     /// Length (m) and tension (N; N/m in 2-D) of spring `name`.

@@ -1,6 +1,7 @@
 """Scenes of the tests: small tanks, which a step takes about a millisecond."""
 
 import signal
+import sys
 
 import pytest
 
@@ -8,6 +9,8 @@ import pontoon as pt
 
 # A job in the background of a shell begins with Ctrl-C ignored.
 signal.signal(signal.SIGINT, signal.default_int_handler)
+
+needs_signals = pytest.mark.skipif(sys.platform == "win32", reason="os.kill with SIGINT ends a process of Windows at once")
 
 TANK = """
 title = "A crate afloat"

@@ -53,6 +53,13 @@ def test_a_body_without_motion_is_named() -> None:
         sim.step(lambda h: {})
     with pytest.raises(pt.UsageError):
         sim.step(lambda h: {"crat": pt.Motion([0.0, 0.0], [0.0, 0.0])})
+    with pytest.raises(pt.UsageError, match="velocity"):
+        sim.step(lambda h: {"crate": pt.Motion(h["crate"].position, [0.0, 0.0, 0.0])})
+
+
+def test_hosted_is_an_option_of_build(tank: pt.Scene) -> None:
+    assert isinstance(tank.build(hosted=True), pt.HostedSimulation)
+    assert isinstance(tank.build(hosted=False), pt.Simulation)
 
 
 def test_constraints_belong_to_the_other_program(tank: pt.Scene) -> None:

@@ -2,6 +2,10 @@
 
 import copy
 import pickle
+import re
+import subprocess
+import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -24,9 +28,10 @@ def test_two_bundled_scenes_with_tables_live_side_by_side() -> None:
 
 
 def test_an_unknown_scene_names_the_nearest() -> None:
-    with pytest.raises(pt.UsageError) as told:
+    with pytest.raises(pt.UnknownNameError) as told:
         pt.Scene.read("stil-tank")
     assert told.value.code == "unknown-name" and "still-tank" in (told.value.help or "")
+    assert str(told.value).startswith("there is no scene"), "without the quotation marks of a KeyError"
 
 
 def test_an_error_has_code_place_and_remedy() -> None:
@@ -64,8 +69,10 @@ def test_a_wrong_change_is_refused_and_leaves_the_scene_as_it_was(tank: pt.Scene
         tank["dp"] = "fine"
     with pytest.raises(TypeError):
         tank["dp"] = object()
-    with pytest.raises(KeyError):
-        tank["no.such.key"]
+    with pytest.raises(KeyError) as unknown:
+        tank["solid.crate.free.densty"]
+    assert isinstance(unknown.value, pt.UnknownNameError) and unknown.value.code == "unknown-key"
+    assert "solid.crate.free.density" in (unknown.value.help or "")
     assert tank.changes == {} and tank.dp == 0.05
 
 
@@ -89,11 +96,33 @@ def test_a_scene_is_a_dictionary_too() -> None:
     assert scene.inspect()["size"]["fluid"] == 20 * 10
 
 
+def test_modules_that_need_other_packages_are_imported_on_use() -> None:
+    program = "import sys, pontoon as pt; print('pontoon.potential_flow' in sys.modules, pt.potential_flow.__name__)"
+    told = subprocess.run([sys.executable, "-c", program], check=True, capture_output=True, text=True)
+    assert told.stdout.split() == ["False", "pontoon.potential_flow"]
+    with pytest.raises(AttributeError, match="nosuch"):
+        getattr(pt, "nosuch")
+
+
+def test_every_public_name_is_on_the_reference_page() -> None:
+    page = (Path(__file__).parents[2] / "docs" / "reference" / "python.md").read_text(encoding="utf-8")
+    documented = set(re.findall(r"[A-Za-z_]\w*", " ".join(re.findall(r"`([^`]*)`", page))))
+    assert set(pt.__all__) <= documented, set(pt.__all__) - documented
+    # The attributes of the classes.
+    for name in pt.__all__:
+        thing = getattr(pt, name)
+        if isinstance(thing, type) and not issubclass(thing, BaseException):
+            own = {key for part in thing.__mro__ if part.__module__.startswith("pontoon") for key in vars(part)}
+            missing = {key for key in own if not key.startswith("_")} - documented
+            assert not missing, f"{name}: {missing}"
+
+
 def test_the_inspection_has_facts_and_findings(tank: pt.Scene) -> None:
     report = tank.inspect()
     assert report["size"]["fluid"] > 100 and report["bodies"][0]["name"] == "crate"
     # The crate has half the density of water: it floats on half its height.
     assert report["bodies"][0]["afloat"]["draft_m"] == pytest.approx(0.1, abs=1e-3)
+    assert report["timing"] is None and tank.inspect(timing=True)["timing"]["run_s"] > 0.0
     tank["solid.crate.free.density"] = 3000
     tank["solid.crate.at"] = {"x": 0.5, "bottom": 0.3}
     assert all(finding.what and finding.mend for finding in tank.inspect().findings)

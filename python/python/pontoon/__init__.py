@@ -6,7 +6,10 @@
 `run` runs a scene with its files; `Scene.build` gives a `Simulation` that is stepped, controlled and read.
 """
 
-from ._errors import Error, Fault, FileError, RestartError, SceneError, UsageError
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+from ._errors import Error, Fault, FileError, RestartError, SceneError, UnknownNameError, UsageError
 from ._pontoon import BodyState, BodyStep, Load, version
 from .probes import (
     contact,
@@ -36,6 +39,10 @@ from .simulation import (
 )
 from .study import Study, study, validate
 
+if TYPE_CHECKING:
+    from . import gym as gym
+    from . import potential_flow as potential_flow
+
 __version__ = version()
 
 __all__ = [
@@ -64,6 +71,7 @@ __all__ = [
     "SpringReading",
     "Study",
     "Statistic",
+    "UnknownNameError",
     "UsageError",
     "WaterView",
     "contact",
@@ -84,3 +92,10 @@ __all__ = [
     "validate",
     "velocity",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    # Modules that need other packages are imported when they are used.
+    if name in ("gym", "potential_flow"):
+        return import_module(f"{__name__}.{name}")
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from difflib import get_close_matches
 from typing import Any
 
 
@@ -38,6 +40,10 @@ class Error(Exception):
         self.key = key
         self.__dict__.update(details)
 
+    def __str__(self) -> str:
+        # A KeyError would show its text in quotation marks, an OSError something else.
+        return str(self.args[0]) if self.args else ""
+
     def __reduce__(self) -> tuple[Any, ...]:
         return (_restored, (type(self), str(self), dict(self.__dict__)))
 
@@ -53,7 +59,11 @@ class SceneError(Error, ValueError):
 
 
 class UsageError(Error, ValueError):
-    """A call asks for an object that does not exist, or cannot be carried out."""
+    """A call cannot be carried out."""
+
+
+class UnknownNameError(UsageError, KeyError):
+    """A call names a solid, joint, series, key or scene that does not exist; `help` has the nearest name."""
 
 
 def usage(what: str, help: str) -> UsageError:
@@ -61,11 +71,20 @@ def usage(what: str, help: str) -> UsageError:
     return UsageError(f"{what}\n  {help}", message=what, help=help)
 
 
+def unknown(what: str, name: str, known: Iterable[str], *, code: str = "unknown-name") -> UnknownNameError:
+    """Returns the exception for `name`, which is none of `known`, with the nearest of them."""
+    all_known = list(known)
+    near = get_close_matches(name, all_known, n=3, cutoff=0.4)
+    if near:
+        help = f"did you mean {' or '.join(map(repr, near))}?"
+    else:
+        help = f"known: {', '.join(all_known)}" if all_known else "there is none"
+    message = f"there is no {what} {name!r}"
+    return UnknownNameError(f"{message}\n  {help}", code=code, message=message, help=help)
+
+
 class FileError(Error, OSError):
     """A file or folder cannot be read or written."""
-
-    def __str__(self) -> str:
-        return str(self.args[0]) if self.args else ""
 
 
 class RestartError(Error):

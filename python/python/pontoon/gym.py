@@ -1,4 +1,7 @@
-"""An environment of gymnasium: a simulation with actions, observations and a reward. It needs the extra `gym`."""
+"""An environment of gymnasium: a simulation with actions, observations and a reward. It needs the extra `gym`.
+
+>>> env = pontoon.gym.FloatEnv(scene, act={"hinge": "torque"}, see=["heave", "eta"], reward=f, dt=0.05)   # doctest: +SKIP
+"""
 
 from __future__ import annotations
 
@@ -11,9 +14,10 @@ import gymnasium
 import numpy as np
 from numpy.typing import NDArray
 
-from ._errors import Fault, usage
+from ._errors import Fault, UnknownNameError, unknown, usage
 from ._pontoon import BodyStep
 from .probes import Probe
+from .run import full_name
 from .scene import Scene
 from .simulation import Simulation
 
@@ -26,7 +30,7 @@ class Push:
     """A force on a free solid, at its centre.
 
     Attributes:
-        axis: 0 for x, 1 for y, 2 for z.
+        axis: 0 for x, 1 for y, 2 for z; the last axis of a scene is vertical.
         limit: force of the action 1, N (N/m in 2-D).
     """
 
@@ -53,9 +57,9 @@ class Drive:
 
     Attributes:
         limit: value of the action 1: N or N m (per metre in 2-D), m or rad, m/s or rad/s.
-        mode: "force", "position" or "velocity".
-        stiffness, damping: of the motor; see `Simulation.drive`.
-        max_force: largest force.
+        mode: "force" or "torque", which mean the same, "position" or "velocity".
+        stiffness, damping: of the motor; see `Simulation.drive`. A position needs a stiffness, a velocity a damping.
+        max_force: largest force, N or N m (per metre in 2-D).
     """
 
     limit: float
@@ -67,6 +71,9 @@ class Drive:
 
 Action = Push | Torque | Drive
 
+#: Kinds of joints with a motor.
+_HINGES, _SLIDERS = ("hinge", "revolute"), ("slider", "prismatic")
+
 
 class FloatEnv(gymnasium.Env[Vector, Vector]):
     """A simulation as an environment of gymnasium.
@@ -76,13 +83,20 @@ class FloatEnv(gymnasium.Env[Vector, Vector]):
 
     Args:
         scene: the scene; each episode starts from its start.
-        act: what each action does, by the name of a solid (`Push`, `Torque`) or a joint (`Drive`).
-        see: what is observed: functions of the simulation, or probes with the column that is read.
+        act: what each action does, by the name of a free solid (`Push`, `Torque`) or of a joint (`Drive`). "torque" of a hinge
+            and "force" of a slider stand for a `Drive` with the limit that the scene gives to the motor:
+            `motor = { torque = 0.0, strongest = 20.0 }` has the limit 20 N m.
+        see: what is observed: columns of the probes of the scene ("buoy.heave_m", or a unique part such as "heave" or "eta"),
+            functions of the simulation, or probes with the column that is read.
         reward: a function of the simulation after each interval.
         dt: simulated time between two actions, s.
         ended: a function that tells whether the episode ends; by default it never does.
         start: called with the simulation and the random generator at each reset, to vary the start.
         threads: number of threads; many environments in parallel take one each.
+
+    Raises:
+        UnknownNameError: `act` or `see` names what the scene does not have; `help` has the nearest.
+        UsageError: an action does not fit its solid or joint, or `dt` is not positive.
     """
 
     metadata = {"render_modes": []}
@@ -91,8 +105,8 @@ class FloatEnv(gymnasium.Env[Vector, Vector]):
         self,
         scene: Scene,
         *,
-        act: Mapping[str, Action],
-        see: Sequence[Observation | tuple[Probe, str]],
+        act: Mapping[str, Action | str],
+        see: Sequence[str | Observation | tuple[Probe, str]],
         reward: Observation,
         dt: float,
         ended: Callable[[Simulation], bool] | None = None,
@@ -102,19 +116,46 @@ class FloatEnv(gymnasium.Env[Vector, Vector]):
         if not dt > 0.0:
             raise usage(f"dt = {dt} s is no interval between actions", "give more than 0")
         self.sim = scene.build(threads=threads)
-        known = {*self.sim.solids, *self.sim.joints}
-        for name in act:
-            if name not in known:
-                raise usage(f"nothing to act on is called {name!r}", f"known: {', '.join(sorted(known))}")
-        self._act, self._see, self._reward, self._dt = dict(act), list(see), reward, dt
+        self._act = {name: self._checked(scene, name, action) for name, action in act.items()}
+        self._see, self._reward, self._dt = [self._reader(seen) for seen in see], reward, dt
         self._ended, self._start, self._until = ended, start, scene.until
         self._first, self._dimension = self.sim.save(), self.sim.dimension
         self.action_space = gymnasium.spaces.Box(-1.0, 1.0, (len(act),), np.float32)
         self.observation_space = gymnasium.spaces.Box(-np.inf, np.inf, (len(see),), np.float32)
 
+    def _checked(self, scene: Scene, name: str, action: Action | str) -> Action:
+        """Returns the action of a solid or a joint, whose limit the scene has if it is a word."""
+        if name in self.sim.joints:
+            return _joint_action(scene, name, action)
+        if name not in self.sim.solids:
+            raise unknown("solid or joint", name, [*self.sim.solids, *self.sim.joints])
+        role = self.sim[name].role
+        if role != "free":
+            raise usage(f"solid {name!r} is {role}: forces have no effect on it", "act on a free solid or on a joint")
+        if not isinstance(action, (Push, Torque)):
+            raise usage(f"{name!r} is a solid, and {action!r} does not act on it", "give it a Push or a Torque")
+        axes = 3 if isinstance(action, Torque) else self.sim.dimension
+        if action.axis not in range(axes):
+            raise usage(f"{action!r} has no such axis", f"give an axis from 0 to {axes - 1}")
+        return action
+
+    def _reader(self, seen: str | Observation | tuple[Probe, str]) -> Observation:
+        """Returns the function that reads what is seen."""
+        if isinstance(seen, str):
+            sample = self.sim.sample().items()
+            known = {f"{name}.{column}": (name, column) for name, reading in sample for column in reading}
+            name, column = known[full_name(seen, known)]
+            return lambda sim: sim.sample()[name][column]
+        if callable(seen):
+            return seen
+        probe, wanted = seen
+        columns = self.sim.read(probe)
+        if wanted not in columns:
+            raise unknown("column", wanted, columns)
+        return lambda sim: sim.read(probe)[wanted]
+
     def _observe(self) -> Vector:
-        read = [see(self.sim) if callable(see) else self.sim.read(see[0])[see[1]] for see in self._see]
-        return np.array(read, dtype=np.float32)
+        return np.array([read(self.sim) for read in self._see], dtype=np.float32)
 
     def _apply(self, h: BodyStep, action: Vector) -> None:
         dimension = self._dimension
@@ -152,3 +193,24 @@ class FloatEnv(gymnasium.Env[Vector, Vector]):
     def close(self) -> None:
         """Frees the memory of the simulation."""
         self.sim.close()
+
+
+def _joint_action(scene: Scene, name: str, action: Action | str) -> Drive:
+    """Returns the motor command of a joint, whose limit the scene has if it is a word."""
+    kind = scene[f"joint.{name}.kind"]
+    if kind not in _HINGES + _SLIDERS:
+        raise usage(f"joint {name!r} is of the kind {kind!r}: it has no motor", "act on a hinge or a slider")
+    load = "torque" if kind in _HINGES else "force"
+    if isinstance(action, Drive):
+        if action.mode not in ("force", "torque", "position", "velocity"):
+            raise unknown("mode of a Drive", action.mode, ["force", "torque", "position", "velocity"])
+        return action
+    if action != load:
+        what = f"{action!r} does not act on joint {name!r}, a {kind}"
+        raise usage(what, f'give {load!r}, or a Drive for positions and velocities')
+    try:
+        limit = float(scene[f"joint.{name}.motor.strongest"])
+    except UnknownNameError:
+        what = f"the scene has no largest load of the motor of joint {name!r}"
+        raise usage(what, f'give its motor `strongest`, or Drive(limit=…) in place of {load!r}') from None
+    return Drive(limit, max_force=limit)

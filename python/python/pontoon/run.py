@@ -8,9 +8,8 @@ import json
 import os
 import sys
 import time as clock
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass
-from difflib import get_close_matches
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -18,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _pontoon
-from ._errors import FileError, usage
+from ._errors import FileError, RestartError, UnknownNameError, unknown, usage
 from .scene import Scene
 
 if TYPE_CHECKING:
@@ -72,7 +71,10 @@ class Series:
 
 
 class AllSeries(Mapping[str, Series]):
-    """The series of a run by name. A part of a name is enough if it belongs to one series: "heave" for "buoy.heave_m"."""
+    """The series of a run by name. A part of a name is enough if it belongs to one series: "heave" for "buoy.heave_m".
+
+    An unknown name raises UnknownNameError, which is a KeyError too.
+    """
 
     def __init__(self, folder: Path) -> None:
         self._tables: dict[str, tuple[Floats, dict[str, Floats]]] = {}
@@ -82,19 +84,8 @@ class AllSeries(Mapping[str, Series]):
             self._tables[path.stem] = (times, columns)
             self._names.update({f"{path.stem}.{column}": (path.stem, column) for column in columns})
 
-    def _resolve(self, name: str) -> str:
-        if name in self._names:
-            return name
-        found = [known for known in self._names if name in _short_names(known)]
-        if len(found) == 1:
-            return found[0]
-        if found:
-            raise KeyError(f"{name!r} may be each of {', '.join(found)}")
-        near = get_close_matches(name, self._names, n=3, cutoff=0.4)
-        raise KeyError(f"there is no series {name!r}; " + (f"near are {', '.join(near)}" if near else "there is none"))
-
     def __getitem__(self, name: str) -> Series:
-        full = self._resolve(name)
+        full = full_name(name, self._names)
         table, column = self._names[full]
         times, columns = self._tables[table]
         return Series(full, times, columns[column], _pontoon.unit(column))
@@ -139,12 +130,15 @@ class Statistics(list[Statistic]):
         self.remarks = remarks
 
     def value(self, series: str, quantity: str) -> float:
-        """Returns the value of a quantity of a series, as `stats.value("buoy.heave_m", "H_mean")`."""
+        """Returns the value of a quantity of a series, as `stats.value("buoy.heave_m", "H_mean")`.
+
+        Raises:
+            UnknownNameError: the series has no such quantity. It is a KeyError too.
+        """
         for row in self:
             if row.quantity == quantity and (row.series == series or series in _short_names(row.series)):
                 return row.value
-        known = sorted({row.quantity for row in self})
-        raise KeyError(f"there is no {quantity!r} of {series!r}; the quantities are {', '.join(known)}")
+        raise unknown("statistic", f"{series} {quantity}", [f"{row.series} {row.quantity}" for row in self])
 
     def to_pandas(self) -> pandas.DataFrame:
         """Returns a table with a row for each statistic."""
@@ -256,6 +250,10 @@ class Run:
 
     >>> run = pontoon.Run("runs/raft")                                      # doctest: +SKIP
     >>> run.series["heave"].values                                          # doctest: +SKIP
+
+    Raises:
+        FileError: there is no such folder, or it holds no run.
+        RestartError: its `manifest.json` is damaged.
     """
 
     def __init__(self, folder: str | os.PathLike[str]) -> None:
@@ -264,8 +262,14 @@ class Run:
         try:
             self._manifest: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
         except OSError as why:
+            code = "checkpoint-not-found" if self.folder.is_dir() else "file-not-found"
             what = f"{self.folder} holds no run: {why.strerror or why}"
-            raise FileError(what, code="checkpoint-not-found", message=what) from None
+            help = "name the folder that `pontoon run` or pontoon.run wrote: it holds a manifest.json"
+            raise FileError(f"{what}\n  {help}", code=code, message=what, help=help) from None
+        except ValueError as why:
+            what = f"{path} is damaged: {why}"
+            help = "run the scene again, or restore the file from a copy"
+            raise RestartError(f"{what}\n  {help}", code="bad-checkpoint", message=what, help=help) from None
         self._series: AllSeries | None = None
         self._frames: Frames | None = None
 
@@ -354,6 +358,9 @@ class Run:
         Args:
             series: a probe or a series; by default all.
             start, end: the times that are evaluated, s.
+
+        Raises:
+            UsageError: there is no such series.
         """
         content = self._statistics(series, start, end)
         return Statistics([Statistic(**row) for row in content["rows"]], content["remarks"])
@@ -433,6 +440,8 @@ def resume(
 
     Raises:
         RestartError: the run has finished, or there is no checkpoint.
+        UsageError: `guard` names another key.
+        Fault: the computation cannot go on.
     """
     changes = [(key, str(value)) for key, value in (guard or {}).items()]
     return _ended(_pontoon.resume(os.fspath(folder), changes, threads, _follower(progress)), report)
@@ -477,6 +486,23 @@ class _Line:
         text = f"\r{100.0 * share:3.0f} %  t = {now.time:.4g} of {now.until:.4g} s, {now.steps} steps, {left:.0f} s left "
         sys.stderr.write(text + ("\n" if done else ""))
         sys.stderr.flush()
+
+
+def full_name(name: str, known: Collection[str]) -> str:
+    """Returns the series "probe.column" among `known` that `name` or a unique part of a name means.
+
+    Raises:
+        UnknownNameError: there is none, or several.
+    """
+    if name in known:
+        return name
+    found = [full for full in known if name in _short_names(full)]
+    if len(found) == 1:
+        return found[0]
+    if found:
+        what, help = f"{name!r} may be each of {', '.join(found)}", "give the whole name"
+        raise UnknownNameError(f"{what}\n  {help}", code="unknown-name", message=what, help=help)
+    raise unknown("series", name, known)
 
 
 def _short_names(full: str) -> set[str]:

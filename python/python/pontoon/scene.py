@@ -7,9 +7,10 @@ import os
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal, overload
 
 from . import _toml
+from ._errors import unknown
 from ._pontoon import NativeScene
 
 if TYPE_CHECKING:
@@ -113,10 +114,21 @@ class Scene:
 
     @classmethod
     def from_dict(cls, content: Mapping[str, Any], *, folder: str | os.PathLike[str] = "") -> Scene:
-        """Reads a scene from the keys and values of a scene file.
+        """Builds a scene from the keys and values of a scene file; a section that may repeat is a list of dictionaries.
+
+        >>> scene = Scene.from_dict({
+        ...     "dimension": 2, "dp": 0.05, "until": 1.0,
+        ...     "water": [{"fill": {"box": {"min": [0, 0], "max": [1, 0.5]}}}],
+        ...     "solid": [{"name": "tank", "fixed": True, "shape": {"tank": {"size": [1.0, 1.0]}}}],
+        ... })
+
+        Args:
+            content: numbers, strings, lists, NumPy arrays and dictionaries.
+            folder: folder of the files that the scene names.
 
         Raises:
             SceneError: as `from_toml`.
+            TypeError: a value has no form in TOML.
         """
         return cls.from_toml(_toml.section(content), folder=folder)
 
@@ -141,12 +153,12 @@ class Scene:
         """Returns the value in force of a key, as `scene["solid.buoy.free.density"]`, be it a default.
 
         Raises:
-            KeyError: no value with this key is in force.
+            UnknownNameError: no value with this key is in force. It is a KeyError too.
         """
-        for known, value, _ in self._native.values():
-            if known == key:
-                return _parsed(value)
-        raise KeyError(key)
+        values = {known: value for known, value, _ in self._native.values()}
+        if key not in values:
+            raise unknown("value in force with the key", key, values, code="unknown-key")
+        return _parsed(values[key])
 
     def copy(self) -> Scene:
         """Returns a scene with the same origin and the same changed keys."""
@@ -190,24 +202,37 @@ class Scene:
         Path(path).write_text(self.to_toml(), encoding="utf-8")
 
     def inspect(self, *, timing: bool = False, threads: int | None = None) -> Inspection:
-        """Returns particles, memory, expected hours, drafts, waves, and findings, without a run.
+        """Returns particles, memory, drafts, waves and findings, without a run.
 
         Args:
-            timing: step for up to a second to estimate the wall time on this machine.
+            timing: step for up to a second, to measure the time on this machine: `["timing"]["step_s"]` (s per step) and
+                `["timing"]["run_s"]` (s; hours are this over 3600). Without it `["timing"]` is None. The estimate of a scene
+                of more than 4 million particles has no timing, but `["thread_seconds"]` at the usual speed.
             threads: number of threads of the timing.
+
+        Raises:
+            SceneError: a value or a file of the scene is wrong.
         """
         content: dict[str, Any] = json.loads(self._native.inspect(threads, timing))
         return Inspection(content)
 
-    def build(self, *, threads: int | None = None) -> Simulation:
+    @overload
+    def build(self, *, hosted: Literal[False] = False, threads: int | None = None) -> Simulation: ...
+    @overload
+    def build(self, *, hosted: Literal[True], threads: int | None = None) -> HostedSimulation: ...
+    def build(self, *, hosted: bool = False, threads: int | None = None) -> Simulation | HostedSimulation:
         """Builds a simulation to be stepped; it writes no files.
 
         Args:
+            hosted: whether another program moves the free solids: `build_hosted`.
             threads: number of threads, by default one for each processor. It changes the speed, never the result.
+
+        Raises:
+            SceneError: a value or a file of the scene is wrong.
         """
         from .simulation import Simulation
 
-        return Simulation(self, threads=threads)
+        return self.build_hosted(threads=threads) if hosted else Simulation(self, threads=threads)
 
     def build_hosted(self, *, threads: int | None = None) -> HostedSimulation:
         """Builds a simulation whose free solids another program moves: it takes loads and returns motions.

@@ -30,26 +30,32 @@ class Reading(dict[str, float]):
 
 
 class Contact(NamedTuple):
-    """A contact of two solids in the last step."""
+    """A contact of two solids in the last step.
 
-    #: Names of both solids.
+    Attributes:
+        between: names of both solids.
+        normal_force: sum of the normal forces, N (N/m in 2-D).
+        at: point of action, m: (D,).
+    """
+
     between: tuple[str, str]
-    #: Sum of the normal forces, N (N/m in 2-D).
     normal_force: float
-    #: Point of action, m.
     at: Floats
 
 
 class JointReading(NamedTuple):
-    """What a joint felt in the last step."""
+    """What a joint felt in the last step.
 
-    #: Coordinate from the start, m or rad.
+    Attributes:
+        position: coordinate from the start, m or rad.
+        rate: its rate, m/s or rad/s.
+        motor_force: force of the motor, N or N m (per metre in 2-D).
+        absorbed_energy: energy that the motor took from the solids since the start, J (J/m in 2-D).
+    """
+
     position: float
-    #: Its rate, m/s or rad/s.
     rate: float
-    #: Force of the motor, N or N m (per metre in 2-D).
     motor_force: float
-    #: Energy that the motor took from the solids since the start, J (J/m in 2-D).
     absorbed_energy: float
 
     @property
@@ -59,17 +65,20 @@ class JointReading(NamedTuple):
 
 
 class SpringReading(NamedTuple):
-    """A spring in the last step and its parameters."""
+    """A spring in the last step and its parameters; forces are per metre in 2-D.
 
-    #: Length, m.
+    Attributes:
+        length: m.
+        tension: N; negative where it pushes.
+        stiffness: N/m.
+        damping: N s/m.
+        rest_length: m.
+    """
+
     length: float
-    #: Tension, N (N/m in 2-D); negative where it pushes.
     tension: float
-    #: N/m.
     stiffness: float
-    #: N s/m.
     damping: float
-    #: m.
     rest_length: float
 
 
@@ -272,8 +281,15 @@ class _Stepped:
     def read(self, probe: Probe) -> Reading:
         """Reads a probe now, as `sim.read(pt.elevation(at=1.2))["eta_m"]`.
 
-        A probe is a dictionary with the keys of a `[[probe]]` section. Returns the values by column; a value is NaN where there is nothing to measure.
-        Displacements of a solid of the scene count from the start, those of a solid added later from this reading.
+        Returns the values by column; a value is NaN where there is nothing to measure. Displacements of a solid of the scene
+        count from the start, those of a solid added later from this reading.
+
+        Args:
+            probe: a dictionary with the keys of a `[[probe]]` section; `pt.elevation` and others make them.
+
+        Raises:
+            SceneError: the probe is wrong.
+            UsageError: it reads records that the scene does not ask for.
         """
         text = _toml.value(probe)
         scene = self._probes.get(text)
@@ -300,10 +316,11 @@ class _Stepped:
         return self._native.save()
 
     def restore(self, state: bytes) -> None:
-        """Returns to a saved state of this simulation, or of one built alike.
+        """Returns to a saved state of this simulation, or of one built alike with the same solids added and removed.
 
         Raises:
-            RestartError: the state is damaged or belongs to another scene.
+            RestartError: the state was saved before a solid was added or removed, and the simulation is as before; or the
+                state is damaged or belongs to another scene, and the simulation is to be built again.
         """
         self._native.restore(state)
 
@@ -421,7 +438,8 @@ class Simulation(_Stepped):
         self,
         name: str,
         *,
-        force: float = 0.0,
+        force: float | None = None,
+        torque: float | None = None,
         position: float = 0.0,
         velocity: float = 0.0,
         stiffness: float = 0.0,
@@ -430,13 +448,18 @@ class Simulation(_Stepped):
     ) -> None:
         """Drives a hinge or a slider from now on with F = force + stiffness (position − x) + damping (velocity − ẋ).
 
-        Units are N, m or N m, rad (forces per metre in 2-D); |F| is at most `max_force`.
+        Units are N, m of a slider and N m, rad of a hinge (forces per metre in 2-D); |F| is at most `max_force`. `torque` is
+        another name of `force`.
+
+        Raises:
+            UnknownNameError: there is no such joint.
+            UsageError: both `force` and `torque` are given, or a number is not finite or negative where it must not be.
         """
-        self._native.drive(name, [force, position, velocity, stiffness, damping, max_force])
+        self._native.drive(name, [force, torque], [position, velocity, stiffness, damping, max_force])
 
     def release(self, name: str) -> None:
         """Gives a joint back to the motor that it has in the scene, or to none."""
-        self._native.drive(name, None)
+        self._native.release(name)
 
     def spring(self, name: str) -> SpringReading:
         """Length, tension and parameters of a spring."""
@@ -456,17 +479,20 @@ class Simulation(_Stepped):
 
 
 class Motion(NamedTuple):
-    """Motion of a body that another program moves, at the end of a step."""
+    """Motion of a body that another program moves, at the end of a step.
 
-    #: World position of the origin of its frame, m.
+    Attributes:
+        position: world position of the origin of its frame, m: (D,).
+        velocity: of its centre of mass, m/s: (D,).
+        rotation: an angle (rad) in 2-D; a matrix (3, 3) or a quaternion (w, x, y, z) in 3-D; by default none.
+        spin: rad/s: a number in 2-D, (3,) in 3-D; by default 0.
+        centre: world position of its centre of mass, m: (D,); by default that of the solid in the scene.
+    """
+
     position: ArrayLike
-    #: Velocity of its centre of mass, m/s.
     velocity: ArrayLike
-    #: Rotation: an angle (rad) in 2-D; a matrix (3, 3) or a quaternion (w, x, y, z) in 3-D.
     rotation: ArrayLike | None = None
-    #: Spin, rad/s: a number in 2-D.
     spin: ArrayLike | None = None
-    #: World position of its centre of mass, m; by default that of the solid in the scene.
     centre: ArrayLike | None = None
 
 

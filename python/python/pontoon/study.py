@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import csv
+import itertools
 import os
+import signal
 import subprocess
 import sys
-import tempfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from . import _toml
-from ._errors import Error, usage
+from . import _pontoon, _toml
+from ._errors import Error, Fault, UsageError, usage
 from .run import Run
 from .scene import Scene
 
@@ -37,8 +38,7 @@ class Study:
     @property
     def runs(self) -> list[Run]:
         """The runs that have finished."""
-        folders = sorted({path.parent for path in (self.folder / "runs").glob("*/manifest.json")})
-        return [run for run in map(Run, folders) if run.status == "finished" and not run.folder.name.endswith(".old")]
+        return [run for run in _runs(self.folder) if run.status == "finished"]
 
     def to_pandas(self) -> pandas.DataFrame:
         """Returns the rows as a table."""
@@ -54,7 +54,7 @@ class Study:
 def study(
     scene: Scene | str | os.PathLike[str],
     *,
-    out: str | os.PathLike[str],
+    out: str | os.PathLike[str] | None = None,
     dp: Sequence[float] = (),
     vary: Mapping[str, Sequence[Any]] | None = None,
     repeat: int = 1,
@@ -63,11 +63,12 @@ def study(
 ) -> Study:
     """Runs a scene at several spacings, with several values of keys: errors against processor time, orders.
 
-    A run that has finished is not run again; after Ctrl-C the same call goes on.
+    A run that has finished is not run again. Ctrl-C stops the run in hand with a checkpoint; the same call goes on.
 
     Args:
-        scene: a scene, a folder, a file, or the name of a scene that comes with the package.
-        out: folder for runs and results.
+        scene: a scene, a folder, a file, or the name of a scene that comes with the package. A scene from a text or a
+            dictionary is written to `out/scene` with the files that it names.
+        out: folder for runs and results, by default `studies/<scene>`; a scene from a text has the name "scene".
         dp: particle spacings, m; by default that of the scene.
         vary: keys of the scene and their values, as `{"model.kernel": ["wendland", "cubic"]}`.
         repeat: number of runs of each, from starts that differ by a millionth of dp.
@@ -75,33 +76,35 @@ def study(
         quiet: whether to print errors only.
 
     Raises:
-        SceneError: the scene is wrong.
-        Error: the command ended with an error, whose text the exception has.
+        SceneError: a key or a value, also of `vary`, is wrong; tells file, line and remedy. Nothing is run then.
+        UsageError: the command refuses its arguments or the folder, as a list of values with nothing in it.
+        Fault: the computation of a run cannot go on. The other runs are in the folder.
+        Error: a run failed for another reason, which `code` has.
     """
     scene = scene if isinstance(scene, Scene) else Scene.read(scene)
-    arguments = ["--out", os.fspath(out), "--repeat", str(repeat)]
-    if dp:
-        arguments += ["--dp", ",".join(repr(float(x)) for x in dp)]
-    for key, values in (vary or {}).items():
-        arguments += ["--vary", f"{key}={','.join(_toml.value(x) for x in values)}"]
-    kind, content, folder, changes = scene._native.origin()
-    for key, text in changes:
-        arguments += ["--set", f"{key}={text}"]
-    if kind == "found":
-        failed = _command("study", [content, *arguments], threads, quiet)
-    else:
-        if folder:
-            raise usage("a study of a text does not find its files", "write the scene to a file with scene.write")
-        with tempfile.TemporaryDirectory() as place:
-            path = Path(place) / "scene.toml"
-            path.write_text(content, encoding="utf-8")
-            failed = _command("study", [str(path), *arguments], threads, quiet)
-    return Study(Path(out), "study.csv", failed)
+    native, varied = scene._native, [(key, [_toml.value(x) for x in values]) for key, values in (vary or {}).items()]
+    kind, word, _, changes = native.origin()
+    folder = Path("studies") / (_name(word) if kind == "found" else "scene") if out is None else Path(out)
+    # The checks of the command, with the place of an error.
+    choices = [[("dp", _toml.value(spacing)) for spacing in dp or [scene.dp]]]
+    choices += [[(key, text) for text in texts] for key, texts in varied]
+    grid = [native.with_overrides(changed) for changed in itertools.product(*choices)]
+    if not grid:
+        raise usage("a list of values has nothing in it", "give each key of vary one value or more")
+    for changed in grid:
+        changed.check()
+    file = [changed.file(folder) for changed in grid][0]
+    arguments = ["--out", str(folder), "--repeat", str(repeat)]
+    arguments += ["--dp", ",".join(_toml.value(x) for x in dp)] if dp else []
+    arguments += [word for key, texts in varied for word in ("--vary", f"{key}={','.join(texts)}")]
+    arguments += [word for key, text in changes for word in ("--set", f"{key}={text}")]
+    failed = _command("study", [os.fspath(file), *arguments], folder, threads, quiet)
+    return Study(folder, "study.csv", failed)
 
 
 def validate(
     *cases: str,
-    out: str | os.PathLike[str],
+    out: str | os.PathLike[str] = "validation",
     full: bool = False,
     repeat: int = 1,
     threads: int | None = None,
@@ -116,25 +119,67 @@ def validate(
         repeat, threads, quiet: as for `study`.
 
     Raises:
-        Error: the command ended with an error, whose text the exception has.
+        UnknownNameError: there is no such case; `help` has the nearest.
+        UsageError, Fault, Error: as for `study`.
     """
+    _pontoon.check_cases(cases)
     arguments = [*cases, "--out", os.fspath(out), "--repeat", str(repeat), *(["--full"] if full else [])]
-    failed = _command("validate", arguments, threads, quiet)
+    failed = _command("validate", arguments, Path(out), threads, quiet)
     return Study(Path(out), "validation.csv", failed)
 
 
-def _command(name: str, arguments: list[str], threads: int | None, quiet: bool) -> bool:
+def _name(scene: str) -> str:
+    """Returns the name of a scene as the command forms it from the path."""
+    path = Path(scene)
+    return (path.parent if path.name == "scene.toml" else path).stem or "scene"
+
+
+def _runs(folder: Path) -> list[Run]:
+    """Returns the runs of a study, without those that were set aside."""
+    manifests = sorted((folder / "runs").glob("*/manifest.json"))
+    return [Run(path.parent) for path in manifests if not path.parent.name.endswith(".old")]
+
+
+def _command(name: str, arguments: list[str], folder: Path, threads: int | None, quiet: bool) -> bool:
     """Runs a command of the program in a process of its own; returns whether a check exceeds its bound."""
     command = [sys.executable, "-m", "pontoon", name, *arguments]
     command += ["--threads", str(threads)] if threads is not None else []
     command += ["--quiet"] if quiet else []
-    done = subprocess.run(command, stdout=subprocess.PIPE if quiet else None, stderr=subprocess.PIPE, text=True)
-    if done.returncode == 130:
+    pipe = subprocess.PIPE if quiet else None
+    # Ctrl-C in a terminal reaches all processes of the session, and a second one would end the command without a checkpoint.
+    own = sys.platform != "win32"
+    with subprocess.Popen(
+        command, stdout=pipe, stderr=pipe, text=True, encoding="utf-8", start_new_session=own
+    ) as process:
+        try:
+            _, told = process.communicate()
+        except KeyboardInterrupt:
+            if own:
+                process.send_signal(signal.SIGINT)
+            process.communicate()
+            raise
+    code = process.returncode
+    if code == 130:
         raise KeyboardInterrupt
-    if done.returncode not in (0, 3):
-        text = done.stderr.removeprefix("error: ").strip()
-        raise Error(text or f"`pontoon {name}` ended with exit code {done.returncode}")
-    return done.returncode == 3
+    if code not in (0, 3):
+        text = (told or f"`pontoon {name}` ended with exit code {code}").removeprefix("error: ").strip()
+        raise _failure(folder, text) if code == 1 else _refusal(text)
+    return code == 3
+
+
+def _refusal(text: str) -> UsageError:
+    """Returns the exception for the text of a command that refuses its arguments."""
+    message, _, help = text.partition("\n")
+    return UsageError(text, message=message, help=help.strip() or None)
+
+
+def _failure(folder: Path, text: str) -> Error:
+    """Returns the exception for the first failed run in a folder; `text` is what the command said."""
+    for run in _runs(folder):
+        if run.status == "failed":
+            fault, code = run.manifest.get("fault"), run.manifest.get("error_code")
+            return Fault(text, help=fault["cause"], **fault) if fault else Error(text, code=code or "invalid-usage")
+    return Error(text)
 
 
 def _number(text: str) -> Any:
