@@ -111,6 +111,14 @@ fn the_list_of_removed_particles_survives_a_restart() -> Result<()> {
 }
 
 #[test]
+fn water_that_enters_and_leaves_survives_a_restart() -> Result<()> {
+    let (home, sim) = survives_restart("stream", [0.2, 0.4], Simulation::<2>::enable_energy_budget)?;
+    assert!(sim.system().face_exchange().iter().all(|face| face.entered + face.left > 50), "water passes both faces");
+    assert!(text(&home, "series/inflow.csv").lines().count() > 50, "the face has its table");
+    Ok(())
+}
+
+#[test]
 fn a_run_stopped_by_a_step_check_can_be_resumed_with_another_limit() -> Result<()> {
     let home = TestFolder::new("restart-guard");
     let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/spec/run/restart/spill.toml");
