@@ -1,6 +1,6 @@
 """Prints what a step costs when Python asks for each, against the same steps in one call, and the memory of a view and a copy.
 
-With one thread, for the smallest scene and a larger one: the least wall time of some repeats from the same state. Memory is
+With one thread, for a small scene and a larger one: the least wall time of some repeats from the same state. Memory is
 that which Python's allocators, NumPy's included, hold for the arrays of position and velocity.
 
     python step_cost.py
@@ -44,6 +44,8 @@ def step_costs(sim: pt.Simulation) -> tuple[float, float]:
 
 def memory(use: Callable[[], object]) -> int:
     """Returns the memory that Python holds while the result of `use` lives, bytes."""
+    # The first use imports and fills caches.
+    use()
     tracemalloc.start()
     before = tracemalloc.get_traced_memory()[0]
     held = use()

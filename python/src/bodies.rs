@@ -345,6 +345,7 @@ impl BodyStep {
 
     /// Sets the motion of a body of another program at the end of the step: position of its frame (m), rotation matrix (D × D
     /// numbers), centre (m), velocity of its centre (m/s), spin (rad/s). `HostedSimulation` calls it.
+    #[expect(clippy::too_many_arguments, reason = "the parts of a motion")]
     fn set_motion(
         &mut self,
         py: Python<'_>,

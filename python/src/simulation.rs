@@ -24,7 +24,7 @@ use crate::{
     run::LOOK,
     scene::NativeScene,
     water::{Field, Lease},
-    world::{Commands, Control, Names, StepData, World},
+    world::{Commands, Control, Names, ProbeReading, StepData, World},
 };
 
 /// Contact of two solids by name: names, normal force, point of action.
@@ -162,7 +162,7 @@ fn call_back(call: &Py<PyAny>, names: &Arc<Names>, step: StepData, raised: &Mute
 }
 
 /// Columns and readings of probes by name.
-fn readings<'py>(py: Python<'py>, all: Vec<(String, Vec<String>, Vec<f64>)>) -> PyResult<Bound<'py, PyDict>> {
+fn readings<'py>(py: Python<'py>, all: Vec<ProbeReading>) -> PyResult<Bound<'py, PyDict>> {
     let readings = PyDict::new(py);
     for (name, columns, values) in all {
         let table = PyDict::new(py);

@@ -120,6 +120,9 @@ pub struct Names {
 /// A contact of two solids: their numbers, the normal force (N; N/m in 2-D), and the point of action (m).
 pub type Contact = ([usize; 2], f64, [f64; 3]);
 
+/// The reading of a probe: its name, its columns and their values.
+pub type ProbeReading = (String, Vec<String>, Vec<f64>);
+
 /// A running simulation of either dimension.
 pub trait World: Send {
     /// Returns time (s), length of the last step (s), number of steps, and longest next step (s).
@@ -140,9 +143,9 @@ pub trait World: Send {
     /// Returns the accelerations of the water at the last force pass, m/s²: count × D.
     fn accelerations(&self) -> Vec<f64>;
     /// Returns columns and readings of the probes of `plan` now.
-    fn read(&self, plan: &Plan) -> Result<Vec<(String, Vec<String>, Vec<f64>)>>;
+    fn read(&self, plan: &Plan) -> Result<Vec<ProbeReading>>;
     /// Returns columns and readings of the scene's own probes now.
-    fn read_own(&self) -> Vec<(String, Vec<String>, Vec<f64>)>;
+    fn read_own(&self) -> Vec<ProbeReading>;
     /// Returns the contacts of the last step.
     fn contacts(&self) -> Vec<Contact>;
     /// Returns the descriptions of beginnings and ends of joints, springs, ropes and solids, and of rollbacks.
@@ -414,7 +417,7 @@ where
         (0..system.fluid().len()).flat_map(|i| three(&system.fluid_acceleration(i)).into_iter().take(D)).collect()
     }
 
-    fn read(&self, plan: &Plan) -> Result<Vec<(String, Vec<String>, Vec<f64>)>> {
+    fn read(&self, plan: &Plan) -> Result<Vec<ProbeReading>> {
         let read = |probe: &pontoon::scene::ProbePlan| {
             let missing = match probe.kind {
                 ProbeKind::Balance(_) => !self.accounted[0],
@@ -443,7 +446,7 @@ where
         plan.probes.iter().map(read).collect()
     }
 
-    fn read_own(&self) -> Vec<(String, Vec<String>, Vec<f64>)> {
+    fn read_own(&self) -> Vec<ProbeReading> {
         let read =
             |(name, probe): &(String, Box<dyn Probe<D>>)| (name.clone(), probe.columns(), probe.sample(&self.sim));
         self.probes.iter().map(read).collect()

@@ -61,6 +61,15 @@ def test_keys_are_changed_as_by_set_of_the_program(tank: pt.Scene) -> None:
     assert tank.values()["model.viscosity"][1] != tank.values()["model.kernel"][1], "sources differ"
 
 
+def test_entries_of_lists_are_read_by_name_and_number(tank: pt.Scene) -> None:
+    ends = {"from": [0.5, 0.6], "to": [0.5, 0.9], "stiffness": 10.0}
+    tank["spring"] = [{"name": "fore", "between": ["crate"], **ends}, {"name": "aft", "between": ["crate"], **ends}]
+    tank["spring.aft.stiffness"] = 20.0
+    assert tank["spring.fore.stiffness"] == 10.0 and tank["spring.aft.stiffness"] == tank["spring.1.stiffness"] == 20.0
+    with pytest.raises(pt.UnknownNameError):
+        tank["spring.mid.stiffness"]
+
+
 def test_a_wrong_change_is_refused_and_leaves_the_scene_as_it_was(tank: pt.Scene) -> None:
     with pytest.raises(pt.SceneError) as told:
         tank["solid.crat.free.density"] = 400

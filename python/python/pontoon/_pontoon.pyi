@@ -7,6 +7,25 @@ from typing import Any, final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+__all__ = [
+    "BodyState",
+    "BodyStep",
+    "Lease",
+    "Load",
+    "NativeScene",
+    "NativeSimulation",
+    "bundled_scenes",
+    "check_cases",
+    "frame",
+    "frame_times",
+    "main",
+    "resume",
+    "statistics",
+    "unit",
+    "version",
+    "write_report",
+]
+
 _Path = str | PathLike[str]
 _Changes = Sequence[tuple[str, str]]
 _Floats = NDArray[np.float64]
@@ -70,7 +89,7 @@ class BodyStep:
     @property
     def loads(self) -> dict[str, Load]:
         """Loads of the water in this step, by the name of the solid."""
-    def __getitem__(self, name: str) -> BodyState:
+    def __getitem__(self, name: str, /) -> BodyState:
         """Returns a solid at the start of the step, with the load of this step."""
     def push(
         self,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -152,10 +153,19 @@ class Scene:
     def __getitem__(self, key: str) -> Any:
         """Returns the value in force of a key, as `scene["solid.buoy.free.density"]`, be it a default.
 
+        Entries of lists are found by name or number: `scene["joint.hinge.kind"]`, `scene["joint.0.kind"]`.
+
         Raises:
             UnknownNameError: no value with this key is in force. It is a KeyError too.
         """
         values = {known: value for known, value, _ in self._native.values()}
+        section, _, rest = key.partition(".")
+        name, _, rest = rest.partition(".")
+        numbered = re.compile(rf"{re.escape(section)}\.(\d+)\.name")
+        for known, value in values.items():
+            found = numbered.fullmatch(known)
+            if found and key not in values and _parsed(value) == name:
+                key = f"{section}.{found[1]}.{rest}"
         if key not in values:
             raise unknown("value in force with the key", key, values, code="unknown-key")
         return _parsed(values[key])
