@@ -295,6 +295,8 @@ def test_contacts_have_names_force_and_place(tank: pt.Scene) -> None:
     # The bed carries its weight less that of the water in its place, within 5 % of the pressure at the bed times its breadth.
     carried, pressed = 9.81 * (3000.0 - 1000.0) * 0.3 * 0.2, 9.81 * 1000.0 * 0.5 * 0.3
     assert sum(contact.normal_force for contact in contacts) == pytest.approx(carried, abs=0.05 * pressed)
+    for contact in contacts:
+        assert contact.at.shape == (2,) and abs(contact.at[1]) < 0.01 and 0.3 < contact.at[0] < 0.7
 
 
 def test_events_tell_what_ended(tank: pt.Scene) -> None:
