@@ -616,7 +616,7 @@ const SIZES: &str = "(() => { const { live, charts, films: [film], deck } = pont
 #[test]
 fn the_live_page_grows_pauses_and_hears_of_the_end_in_a_browser() {
     let folder = folder("browser");
-    let mut run = LiveRun::start(&folder, "a", &[]);
+    let mut run = LiveRun::start(&folder, "a", &["--set", "until=1e6"]);
     let address = format!("http://127.0.0.1:{}/?token={}", run.port, run.token);
     let Some(mut browser) = Browser::open(&folder, &address) else { return };
     let size = |sizes: &Value, name: &str| sizes[name].as_f64().unwrap_or_else(|| panic!("{name}: {sizes}"));
