@@ -14,7 +14,7 @@ use crate::{
     ranks::Ranks,
     scene::Scene,
     simulation::Simulation,
-    solid::{Role, Solid},
+    solid::Solid,
 };
 
 /// Checks that no device is asked for on several `ranks`.
@@ -33,8 +33,7 @@ pub(super) fn check_ranks(scene: &Scene, ranks: &Ranks) -> Result<()> {
 
 /// What a device leaves out of the physics of `sim`, if `scene` names one.
 pub(super) fn omission<const D: usize>(scene: &Scene, sim: &Simulation<D>) -> Option<String> {
-    let is_free = |solid: &Solid<D>| matches!(solid.spec.role, Role::Free(_));
-    (scene.device_name().is_some() && sim.system().solids().iter().any(is_free)).then(|| {
+    (scene.device_name().is_some() && sim.system().solids().iter().any(Solid::is_free)).then(|| {
         "a device leaves out the pressure of the film of water between a body and what it touches, so that a body on the bed is not \
          lifted: let such a scene run on the processor, without --device (model.device)"
             .to_string()

@@ -192,6 +192,11 @@ pub struct Solid<const D: usize> {
 const ACCELERATION_FILTER: f64 = 0.2;
 
 impl<const D: usize> Solid<D> {
+    /// Whether forces move it.
+    pub(crate) fn is_free(&self) -> bool {
+        matches!(self.spec.role, Role::Free(_))
+    }
+
     /// Number of copies of its boundary particles.
     pub(crate) fn copies(&self) -> usize {
         1 << self.copied_axes.count_ones()

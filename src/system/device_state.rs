@@ -33,7 +33,7 @@ pub(crate) fn unsupported_on_device<const D: usize>(system: &System<D>) -> Optio
 
 /// Whether a solid is free.
 pub(crate) fn has_free_solids<const D: usize>(system: &System<D>) -> bool {
-    system.solids.iter().any(|solid| matches!(solid.spec.role, Role::Free(_)))
+    system.solids.iter().any(Solid::is_free)
 }
 
 /// Whether water beside solid number `solid` is not shifted.

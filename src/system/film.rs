@@ -22,7 +22,7 @@ use crate::{
     math::{Pose, Vector},
     model::{Model, Walls},
     particles::PARTICLES_PER_TASK,
-    solid::{Kinematics, Load, Role, Solid},
+    solid::{Kinematics, Load, Solid},
     sph::boundary::WallExtrapolation,
 };
 
@@ -88,9 +88,9 @@ impl<const D: usize> Films<D> {
 pub(super) fn find<const D: usize>(system: &mut System<D>, r: &[Vector<D>]) {
     let mut films = Vec::new();
     if system.boundary.films.possible {
-        for i in (0..system.solids.len()).filter(|&i| is_free(&system.solids[i])) {
+        for i in (0..system.solids.len()).filter(|&i| system.solids[i].is_free()) {
             // Between two free solids the first has the film.
-            let others = (0..system.solids.len()).filter(|&j| j != i && (j > i || !is_free(&system.solids[j])));
+            let others = (0..system.solids.len()).filter(|&j| j != i && (j > i || !system.solids[j].is_free()));
             others.for_each(|j| films.extend(films_between(system, i, j, r)));
         }
     }
@@ -255,10 +255,6 @@ fn forces<const D: usize>(
         ([on_solid, on_other], normal * (rho0 * pressure * share * size))
     };
     film.particles.par_iter().zip(water).with_min_len(PARTICLES_PER_TASK).map(force).collect()
-}
-
-fn is_free<const D: usize>(solid: &Solid<D>) -> bool {
-    matches!(solid.spec.role, Role::Free(_))
 }
 
 /// Velocity (m/s) of the point `x` (m) of `solid`.

@@ -18,7 +18,7 @@ use crate::{
     math::{Bounds, Vector},
     model::{Model, Walls},
     particles::PARTICLES_PER_TASK,
-    solid::{Role, Solid},
+    solid::Solid,
     sph::boundary::WallExtrapolation,
 };
 
@@ -58,15 +58,14 @@ impl<const D: usize> GapPressure<D> {
     /// neighbour lists were built. `wet` are those near water, and no solid moves by more than `margin` (m) until the next lists.
     pub(super) fn find(&mut self, solids: &[Solid<D>], r: &[Vector<D>], wet: &[u32], margin: f64) {
         self.particles.clear();
-        let is_free = |solid: &Solid<D>| matches!(solid.spec.role, Role::Free(_));
-        let Some(support) = self.support.filter(|_| solids.iter().any(is_free)) else { return };
+        let Some(support) = self.support.filter(|_| solids.iter().any(Solid::is_free)) else { return };
         let reach = support + 2.0 * margin;
         // The images of a solid across symmetry planes are other solids.
         let whole = solids.iter().map(|solid| (solid, solid.boundary_of_whole()));
         let images = solids.iter().map(|solid| (solid, solid.boundary_of_whole().end..solid.boundary.end));
         let groups: Vec<_> = whole.chain(images.filter(|(_, range)| !range.is_empty())).collect();
         let around: Vec<Bounds<D>> = groups.iter().map(|(_, range)| Bounds::around(&r[range.clone()])).collect();
-        let faces = |i: usize, j: usize| i != j && (is_free(groups[i].0) || is_free(groups[j].0));
+        let faces = |i: usize, j: usize| i != j && (groups[i].0.is_free() || groups[j].0.is_free());
         // Candidates, by place and group: near the box around a group with which their own can have a gap.
         let mut candidates: Vec<(usize, usize)> = Vec::new();
         for (i, (_, range)) in groups.iter().enumerate() {

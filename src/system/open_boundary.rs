@@ -543,9 +543,10 @@ pub(crate) fn check<const D: usize>(setup: &Setup<D>, i: usize, until: f64) -> R
     }
     let orbital = face.waves.as_ref().map_or(0.0, IncidentWaves::orbital_speed);
     let most = FASTEST * setup.model.c0;
-    for t in (0..=SPEED_SAMPLES).map(|k| until * f64::from(k) / f64::from(SPEED_SAMPLES)) {
-        let in_buffer = setup.water.iter().zip(&beyond).filter(|(_, beyond)| **beyond > 0.0);
-        let speeds = in_buffer.filter_map(|(r, _)| face.outward_velocity(r, t)).map(f64::abs);
+    let in_buffer: Vec<_> = setup.water.iter().zip(&beyond).filter(|(_, beyond)| **beyond > 0.0).collect();
+    let samples = if face.steady_current().is_some() { 0 } else { SPEED_SAMPLES };
+    for t in (0..=samples).map(|k| until * f64::from(k) / f64::from(SPEED_SAMPLES)) {
+        let speeds = in_buffer.iter().filter_map(|(r, _)| face.outward_velocity(r, t)).map(f64::abs);
         let fastest = speeds.fold(0.0, nan_max) + orbital;
         if fastest.is_nan() || fastest > most {
             let what = format!(

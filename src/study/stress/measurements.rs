@@ -7,7 +7,7 @@ use super::{
 use crate::{
     error::Result,
     geometry::Shape,
-    math::{Bivector, Vector, expression::Formula},
+    math::{Vector, expression::Formula},
     probe::{EnergyProbe, MotionProbe, Probe, find_solid},
     simulation::Simulation,
     solid::{Kinematics, Load, Role, Solid, hydrostatics::equilibrium_height},
@@ -140,22 +140,25 @@ fn energies<const D: usize>(probe: &EnergyProbe, sim: &Simulation<D>) -> Energie
     Energies { kinetic: row[0] + row[3], potential: row[1] + row[4], compression: row[2] }
 }
 
-/// Returns the work of a driven solid on the water in a step (J): minus the power of the water load at the mean motion,
-/// times the step. The load is that of the last force pass, at mid-step for two passes.
-fn driven_work<const D: usize>(then: &Kinematics<D>, now: &Solid<D>, dt: f64) -> f64 {
-    let Role::Driven(_) = &now.spec.role else { return 0.0 };
-    let velocity = (then.velocity + now.kinematics.velocity) * 0.5;
-    let spin: Bivector<D> = (then.spin + now.kinematics.spin) * 0.5;
-    -dt * (now.load.force.dot(&velocity) + now.load.torque.power(&spin))
+/// Returns the work (J) of `load` in a step, at the mean of the motions before and after it.
+fn work<const D: usize>(load: &Load<D>, then: &Kinematics<D>, now: &Kinematics<D>, dt: f64) -> f64 {
+    let (velocity, spin) = ((then.velocity + now.velocity) * 0.5, (then.spin + now.spin) * 0.5);
+    dt * load.power(&Kinematics { velocity, spin, ..*now })
 }
 
-/// Returns the work of springs, motors and forces on the free bodies in a step (J). Each load acts at the mean of the
-/// motions before and after the step. The work is zero without a load breakdown.
+/// Returns the work of a driven solid on the water in a step (J): minus that of the water's load, which is that of the last force
+/// pass, at mid-step for two passes.
+fn driven_work<const D: usize>(then: &Kinematics<D>, now: &Solid<D>, dt: f64) -> f64 {
+    let Role::Driven(_) = &now.spec.role else { return 0.0 };
+    -work(&now.load, then, &now.kinematics, dt)
+}
+
+/// Returns the work of springs, motors and forces on the free bodies in a step (J). The work is zero without a load breakdown.
 fn constraint_work<const D: usize>(sim: &Simulation<D>, before: &[Kinematics<D>], dt: f64) -> f64 {
     let one = |(i, then): (usize, &Kinematics<D>)| {
-        let (now, shares) = (sim.system().solids()[i].kinematics, sim.load_breakdown(i)?);
-        let (velocity, spin) = ((then.velocity + now.velocity) * 0.5, (then.spin + now.spin) * 0.5);
-        Some(dt * (shares.springs + shares.motors + shares.forces).power(&Kinematics { velocity, spin, ..now }))
+        let shares = sim.load_breakdown(i)?;
+        let load = shares.springs + shares.motors + shares.forces;
+        Some(work(&load, then, &sim.system().solids()[i].kinematics, dt))
     };
     before.iter().enumerate().filter_map(one).sum()
 }
@@ -163,12 +166,9 @@ fn constraint_work<const D: usize>(sim: &Simulation<D>, before: &[Kinematics<D>]
 /// Returns the work (J) in a step of the films of water between solids: what opens a gap raises the water around by the same energy,
 /// which is lost when the gap fills.
 fn film_work<const D: usize>(sim: &Simulation<D>, before: &[Kinematics<D>], dt: f64) -> f64 {
-    let one = |((load, then), solid): ((&Load<D>, &Kinematics<D>), &Solid<D>)| {
-        let now = solid.kinematics;
-        let (velocity, spin) = ((then.velocity + now.velocity) * 0.5, (then.spin + now.spin) * 0.5);
-        dt * load.power(&Kinematics { velocity, spin, ..now })
-    };
-    film::loads(sim.system()).iter().zip(before).zip(sim.system().solids()).map(one).sum()
+    let loads = film::loads(sim.system());
+    let moved = before.iter().zip(sim.system().solids());
+    loads.iter().zip(moved).map(|(load, (then, now))| work(load, then, &now.kinematics, dt)).sum()
 }
 
 /// Returns the mass of water and free bodies, kg.

@@ -2,7 +2,7 @@
 
 use pontoon::{Result, math::Vector, model::Dimension, simulation::Simulation, solid::Dim};
 
-use crate::common::{run_to, scene_simulation};
+use crate::common::{scene_simulation, time_mean};
 
 const G: f64 = 9.81;
 
@@ -12,14 +12,7 @@ where
     Dim<D>: Dimension<D>,
 {
     let mut sim: Simulation<D> = scene_simulation(text)?;
-    run_to(&mut sim, 0.4)?;
-    let (mut sum, mut time) = (Vector::zeros(), 0.0);
-    while sim.time() < until {
-        sim.step_to(until)?;
-        sum += sim.system().solids()[1].load.force * sim.dt();
-        time += sim.dt();
-    }
-    Ok(sum / time)
+    Ok(time_mean(&mut sim, 0.4, until, |sim| sim.system().solids()[1].load.force.into())?.into())
 }
 
 /// Water as far as `reach` (m) and `depth` (m) deep in a tank of 0.8 m, and a held body of `size` (m) at `at`.
