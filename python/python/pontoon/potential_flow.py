@@ -315,7 +315,7 @@ class Comparison:
     def plot(self, axes: Any) -> None:
         """Draws both over frequency into axes of matplotlib: the computed line, the measured points."""
         order = np.argsort(self.frequency)
-        axes.plot(self.frequency[order], self.computed[order], label="potential flow")
+        axes.plot(self.frequency[order], self.computed[order], marker="x", label="potential flow")
         axes.plot(self.frequency, self.measured, "o", label="measured")
         axes.set_xlabel("frequency (Hz)")
         axes.set_ylabel(self.quantity)
