@@ -34,12 +34,12 @@ pub(super) fn check_parts<const D: usize>(context: &PreflightContext<D>, finding
 fn thin_part<const D: usize>(
     context: &PreflightContext<D>,
     solid: &Solid<D>,
-    faces: &[SurfaceSample<D>],
+    samples: &[SurfaceSample<D>],
 ) -> Option<Finding> {
     let dp = context.dp();
     let limit = dp * (1.0 - 1e-6);
     let thin = |face: &SurfaceSample<D>| thin_place(&solid.spec.shape, &face.x, limit, 1e-3 * dp);
-    let found: Vec<_> = faces.iter().filter_map(thin).collect();
+    let found: Vec<_> = samples.iter().filter_map(thin).collect();
     let thinnest = found.iter().min_by(|a, b| a.thickness.total_cmp(&b.thickness))?;
     // Each place is seen from both of its faces.
     let area = 0.5 * found.len() as f64 * dp.powi(D as i32 - 1);

@@ -11,7 +11,7 @@ use super::{
     catenary::{Catenary, CatenarySpan},
     forces::{NodeSurroundings, bed_reaction, bending_forces, node_load},
     line::MooringLine,
-    segment::SegmentPull,
+    segment::{SegmentPull, segment_pulls},
 };
 use crate::math::{Matrix, Vector};
 
@@ -100,7 +100,7 @@ impl<const D: usize> MooringLine<D> {
     /// Forces (N) on the nodes at rest.
     fn forces(&self, around: &[NodeSurroundings<D>], gravity: &Vector<D>) -> Vec<Vector<D>> {
         let (still, n) = (Vector::zeros(), self.segments());
-        let pulls = self.segment_pulls(around, gravity);
+        let pulls = segment_pulls(self, around, gravity);
         let at = |i: usize| {
             let here = NodeSurroundings { water_velocity: still, ..around[i] };
             let load = (self.share(i), &self.bodies[i]);
@@ -133,7 +133,7 @@ impl<const D: usize> MooringLine<D> {
                 (0..D).for_each(|a| (0..D).for_each(|b| made.add((i - 1) * D + a, (j - 1) * D + b, block[(a, b)])));
             }
         };
-        let pulls = self.segment_pulls(around, gravity);
+        let pulls = segment_pulls(self, around, gravity);
         for (s, &SegmentPull { q, length, tension, slope, .. }) in pulls.iter().enumerate() {
             if tension > 0.0 {
                 let along = q * q.transpose();

@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     forces::{LineMaterial, NodeBody, NodeHold, NodeLoad, NodeSurroundings, bending_forces, friction, node_load},
-    segment::SegmentPull,
+    segment::{SegmentPull, segment_pull, segment_pulls},
 };
 use crate::math::{Matrix, Vector};
 
@@ -180,7 +180,7 @@ impl<const D: usize> MooringLine<D> {
         gravity: &Vector<D>,
     ) -> [Vector<D>; 2] {
         let mut impulses = [Vector::zeros(); 2];
-        let pulls = self.segment_pulls(around, gravity);
+        let pulls = segment_pulls(self, around, gravity);
         if let Some(from_water) = &mut self.water_impulses {
             from_water.fill(Vector::zeros());
         }
@@ -220,7 +220,7 @@ impl<const D: usize> MooringLine<D> {
             let rate = segment.q.dot(&(self.state.v[s + 1] - self.state.v[s]));
             segment.pull + segment.q * (self.active_damping(&segment, rate) * rate)
         };
-        self.state.pulls = self.segment_pulls(around, gravity).into_iter().enumerate().map(damped).collect();
+        self.state.pulls = segment_pulls(self, around, gravity).into_iter().enumerate().map(damped).collect();
     }
 
     pub(super) fn drift(&mut self, h: f64) {
@@ -263,7 +263,7 @@ impl<const D: usize> MooringLine<D> {
         let mut work = std::mem::take(&mut self.work);
         let Workspace { matrix, impulse, coupling, from_water, pulls, .. } = &mut work;
         pulls.clear();
-        pulls.extend((0..n).map(|s| self.segment_pull(s, around, gravity)));
+        pulls.extend((0..n).map(|s| segment_pull(self, s, around, gravity)));
         matrix.clear();
         impulse.clear();
         coupling.clear();
@@ -351,7 +351,7 @@ impl<const D: usize> MooringLine<D> {
         let mass = |i: usize| self.material.mass * self.share(i) + self.bodies[i].mass;
         let nodes = || self.state.x.iter().zip(&self.state.v).enumerate();
         let stretch = |s: usize| {
-            let SegmentPull { tension, sag, .. } = self.segment_pull(s, around, gravity);
+            let SegmentPull { tension, sag, .. } = segment_pull(self, s, around, gravity);
             // What sags has lost height.
             let lost = if sag > 0.0 { sag / (12.0 * tension) } else { 0.0 };
             self.state.segment * (0.5 * tension * tension / self.material.stiffness - lost)

@@ -48,63 +48,74 @@ pub(super) struct SegmentPull<const D: usize> {
     pub(super) sag: f64,
 }
 
-impl<const D: usize> MooringLine<D> {
-    /// The pull of segment `s` without damping. `around` is what is around each node, and `gravity` is in m/s².
-    pub(super) fn segment_pull(&self, s: usize, around: &[NodeSurroundings<D>], gravity: &Vector<D>) -> SegmentPull<D> {
-        let (material, l0) = (&self.material, self.state.segment);
-        let (q, length) = self.direction_and_length(s);
-        let whole = self.state.broken != Some(s as u32);
-        let wet = 0.5 * (around[s].wet + around[s + 1].wet);
-        let weight = if whole { gravity * (material.mass - wet * material.displaced()) } else { Vector::zeros() };
-        let along = weight.dot(&q);
-        let across = weight - q * along;
-        let (strain, full, hold) = (length / l0 - 1.0, across.norm_squared() * l0 * l0, beam_hold(material, l0));
-        let mut share = 1.0;
-        let mut law = if whole { catenary_law(material, strain, full, hold) } else { [0.0; 2] };
-        if let Some(rise) = self.rise_from_bed(s, around, &weight) {
-            for _ in 0..ROUNDS {
-                share = rise.hanging_share(law[0], &q, l0);
-                if share == 1.0 {
-                    break;
-                }
-                law = catenary_law(material, strain, full * share, hold);
+/// The pull of segment `s` of `line` without damping. `around` is what is around each node, and `gravity` is in m/s².
+pub(super) fn segment_pull<const D: usize>(
+    line: &MooringLine<D>,
+    s: usize,
+    around: &[NodeSurroundings<D>],
+    gravity: &Vector<D>,
+) -> SegmentPull<D> {
+    let (material, l0) = (&line.material, line.state.segment);
+    let (q, length) = line.direction_and_length(s);
+    let whole = line.state.broken != Some(s as u32);
+    let wet = 0.5 * (around[s].wet + around[s + 1].wet);
+    let weight = if whole { gravity * (material.mass - wet * material.displaced()) } else { Vector::zeros() };
+    let along = weight.dot(&q);
+    let across = weight - q * along;
+    let (strain, full, hold) = (length / l0 - 1.0, across.norm_squared() * l0 * l0, beam_hold(material, l0));
+    let mut share = 1.0;
+    let mut law = if whole { catenary_law(material, strain, full, hold) } else { [0.0; 2] };
+    if let Some(rise) = rise_from_bed(line, s, around, &weight) {
+        for _ in 0..ROUNDS {
+            share = rise.hanging_share(law[0], &q, l0);
+            if share == 1.0 {
+                break;
             }
-        }
-        let [tension, slope] = law;
-        let turned = if tension > 0.0 { share * l0.powi(3) * along / (12.0 * length * (tension + hold)) } else { 0.0 };
-        let pull = q * tension + across * turned;
-        SegmentPull {
-            q,
-            length,
-            tension,
-            slope,
-            pull,
-            #[cfg(test)]
-            sag: full * share,
+            law = catenary_law(material, strain, full * share, hold);
         }
     }
+    let [tension, slope] = law;
+    let turned = if tension > 0.0 { share * l0.powi(3) * along / (12.0 * length * (tension + hold)) } else { 0.0 };
+    let pull = q * tension + across * turned;
+    SegmentPull {
+        q,
+        length,
+        tension,
+        slope,
+        pull,
+        #[cfg(test)]
+        sag: full * share,
+    }
+}
 
-    /// All pulls, as [`MooringLine::segment_pull`] has them.
-    pub(super) fn segment_pulls(&self, around: &[NodeSurroundings<D>], gravity: &Vector<D>) -> Vec<SegmentPull<D>> {
-        (0..self.segments()).map(|s| self.segment_pull(s, around, gravity)).collect()
-    }
+/// All pulls of `line`, as [`segment_pull`] has them.
+pub(super) fn segment_pulls<const D: usize>(
+    line: &MooringLine<D>,
+    around: &[NodeSurroundings<D>],
+    gravity: &Vector<D>,
+) -> Vec<SegmentPull<D>> {
+    (0..line.segments()).map(|s| segment_pull(line, s, around, gravity)).collect()
+}
 
-    /// The heights of the ends of segment `s` of this `weight` (N/m) above a bed that bears it.
-    fn rise_from_bed(&self, s: usize, around: &[NodeSurroundings<D>], weight: &Vector<D>) -> Option<RiseFromBed<D>> {
-        if self.material.bed_stiffness * self.material.contact_width == 0.0 {
-            return None;
-        }
-        let height = |i: usize| {
-            let bed = around[i].bed?;
-            Some((-self.material.depth(&bed, &self.state.x[i]).min(0.0), bed.normal))
-        };
-        let heights = [height(s), height(s + 1)];
-        let (low, normal) = heights.into_iter().flatten().min_by(|a, b| a.0.total_cmp(&b.0))?;
-        let high =
-            heights.into_iter().map(|height| height.map_or(f64::INFINITY, |height| height.0)).fold(low, f64::max);
-        let pressed = -weight.dot(&normal);
-        (pressed > 0.0).then_some(RiseFromBed { heights: [low, high], normal, weight: pressed })
+/// The heights of the ends of segment `s` of `line` of this `weight` (N/m) above a bed that bears it.
+fn rise_from_bed<const D: usize>(
+    line: &MooringLine<D>,
+    s: usize,
+    around: &[NodeSurroundings<D>],
+    weight: &Vector<D>,
+) -> Option<RiseFromBed<D>> {
+    if line.material.bed_stiffness * line.material.contact_width == 0.0 {
+        return None;
     }
+    let height = |i: usize| {
+        let bed = around[i].bed?;
+        Some((-line.material.depth(&bed, &line.state.x[i]).min(0.0), bed.normal))
+    };
+    let heights = [height(s), height(s + 1)];
+    let (low, normal) = heights.into_iter().flatten().min_by(|a, b| a.0.total_cmp(&b.0))?;
+    let high = heights.into_iter().map(|height| height.map_or(f64::INFINITY, |height| height.0)).fold(low, f64::max);
+    let pressed = -weight.dot(&normal);
+    (pressed > 0.0).then_some(RiseFromBed { heights: [low, high], normal, weight: pressed })
 }
 
 /// How a segment rises from a bed.
