@@ -4,9 +4,9 @@
     python3 tests/moordyn_check.py [--require] [--decks N] [--out DIR]
 
 Each deck is one line in still water from an anchor on the bed to a fairlead that moves on an ellipse: a slack chain or a taut rope.
-MoorDyn computes the tension at the fairlead; the unit test `lines_follow_moordyn` reads the decks from DIR (variable MOORDYN_DECKS)
-and compares its own, within 2 % of the range. Without the package `moordyn` the script prints that it is skipped; with --require
-it fails.
+MoorDyn computes the tension at the fairlead, of a chain with twice the segments; the unit test `lines_follow_moordyn` reads the
+decks from DIR (variable MOORDYN_DECKS) and compares its own, within 2 % of the range. Without the package `moordyn` the script
+prints that it is skipped; with --require it fails.
 """
 
 import argparse
@@ -40,7 +40,7 @@ ID Attachment X Y Z M V CdA CA
 ---------------------- LINES ----------------------------------------
 ID LineType AttachA AttachB UnstrLen NumSegs LineOutputs
 (#) (name) (#) (#) (m) (-) (-)
-1 line 1 2 {length} {segments} -
+1 line 1 2 {length} {reference} -
 ---------------------- OPTIONS --------------------------------------
 {inner} dtM
 1e5 kbot
@@ -76,7 +76,7 @@ def random_deck(rng):
         "drag": rng.uniform(1.0, 2.0),
         "added": rng.uniform(0.7, 1.0),
         "drag_axial": rng.uniform(0.0, 0.4),
-        "segments": rng.randrange(20, 41),
+        "segments": rng.randrange(20, 41) * (2 if chain else 1),
         "surge": rng.uniform(0.5, 2.0),
         "heave": rng.uniform(0.5, 2.0),
         "period": rng.uniform(8.0, 14.0),
@@ -87,7 +87,9 @@ def random_deck(rng):
     # Slack chain has a hundredth more than its chord and part of it on the bed; a rope is strained by 3 to 6 %.
     stretch = rng.uniform(1.01, 1.03) if chain else 1.0 / rng.uniform(1.05, 1.09)
     deck["length"] = distance * stretch
-    node = deck["length"] / deck["segments"]
+    # MoorDyn's chain of 23 segments is 4.5 % of the range from one of 92, so that the reference has twice the segments.
+    deck["reference"] = deck["segments"] * (2 if chain else 1)
+    node = deck["length"] / deck["reference"]
     deck["inner"] = 0.05 * node * math.sqrt(deck["mass"] / deck["stiffness"])
     return deck
 

@@ -25,6 +25,8 @@ pub(crate) struct Moorings<const D: usize> {
     junctions: Junctions,
     /// Fixed solids with the boxes (m) in which they are near.
     fixed: Vec<(usize, Bounds<D>)>,
+    /// Distance (m) at which a fixed solid is near: a segment that leaves it has its other end so far away at most.
+    bed_reach: f64,
     /// Load on each solid in the last step; empty without lines.
     loads: Vec<Load<D>>,
     /// Impulses (N s) on the water in the last step and their places (m), of the lines that act on it.
@@ -42,18 +44,25 @@ impl<const D: usize> Moorings<D> {
     pub(crate) fn new(system: &System<D>, start: &[Kinematics<D>]) -> Result<Self> {
         let specs = &system.constraints().moorings;
         let (junctions, bodies) = junctions(&system.constraints().mooring_points, specs);
-        let mut made =
-            Self { lines: Vec::new(), junctions, fixed: Vec::new(), loads: Vec::new(), on_water: Vec::new() };
+        let mut made = Self {
+            lines: Vec::new(),
+            junctions,
+            fixed: Vec::new(),
+            bed_reach: system.model().support_radius(),
+            loads: Vec::new(),
+            on_water: Vec::new(),
+        };
         if specs.is_empty() {
             return Ok(made);
         }
-        let reach = system.model().support_radius();
+        let mut lines: Vec<_> = specs.iter().map(|spec| Mooring::new(spec, start, system.properties().rho0)).collect();
+        let reach = lines.iter().map(|mooring| mooring.line.state.segment).fold(made.bed_reach, f64::max);
+        made.bed_reach = reach;
         let near = |(i, solid): (usize, &crate::solid::Solid<D>)| {
             let bounds = solid.spec.shape.bounds_at(&solid.kinematics.pose);
             matches!(solid.spec.role, Role::Fixed).then(|| (i, bounds.grown(reach)))
         };
         made.fixed = system.solids().iter().enumerate().filter_map(near).collect();
-        let mut lines: Vec<_> = specs.iter().map(|spec| Mooring::new(spec, start, system.properties().rho0)).collect();
         let mut all: Vec<_> = lines.iter_mut().map(|mooring| &mut mooring.line).collect();
         made.junctions.attach(&mut all, &bodies);
         for (spec, left) in specs.iter().zip(made.find_rest(system, &mut all)) {
@@ -219,7 +228,7 @@ impl<const D: usize> Moorings<D> {
             there.then(|| (*i, solid.spec.shape.signed_distance(&solid.kinematics.pose.local(&at))))
         };
         let nearest = self.fixed.iter().filter_map(distance).min_by(|a, b| a.1.total_cmp(&b.1));
-        let bed = nearest.filter(|(_, distance)| *distance < reach).map(|(i, distance)| {
+        let bed = nearest.filter(|(_, distance)| *distance < self.bed_reach).map(|(i, distance)| {
             let (solid, step) = (&solids[i], 1e-3 * system.model().dp);
             let pose = &solid.kinematics.pose;
             let normal = pose.rotation * solid.spec.shape.outward_normal(&pose.local(&at), step);

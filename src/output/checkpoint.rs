@@ -32,7 +32,7 @@ pub(crate) const PREVIOUS: &str = "checkpoint.previous.bin";
 pub(crate) const PART: &str = "checkpoint.bin.part";
 
 const MAGIC: &[u8; 8] = b"PONTOON\n";
-const FORMAT: u32 = 10;
+const FORMAT: u32 = 11;
 
 /// Length of what precedes the packed data: magic word, format, two lengths and the hash.
 const HEADER: usize = 8 + 4 + 16 + 8;

@@ -12,6 +12,7 @@ use crate::{
         Vector,
         format::{coordinates, three_digits, two_digits_down},
     },
+    model::Walls,
     solid::Solid,
 };
 
@@ -23,25 +24,34 @@ const WITHIN: f64 = 3.0;
 pub(super) fn check_parts<const D: usize>(context: &PreflightContext<D>, findings: &mut Vec<Finding>) {
     let (dp, reach) = (context.dp(), context.system.model().support_radius());
     for (solid, faces) in context.solids().iter().zip(&context.surface_samples) {
-        findings.extend(thin_part(solid, faces, dp));
+        findings.extend(thin_part(context, solid, faces));
         findings.extend(unseen_part(solid, faces, dp));
         findings.extend(nearly_closed(solid, reach));
     }
 }
 
 /// The parts thinner than dp: a single layer of particles stands for them, as if they were dp thick.
-fn thin_part<const D: usize>(solid: &Solid<D>, faces: &[SurfaceSample<D>], dp: f64) -> Option<Finding> {
+fn thin_part<const D: usize>(
+    context: &PreflightContext<D>,
+    solid: &Solid<D>,
+    samples: &[SurfaceSample<D>],
+) -> Option<Finding> {
+    let dp = context.dp();
     let limit = dp * (1.0 - 1e-6);
     let thin = |face: &SurfaceSample<D>| thin_place(&solid.spec.shape, &face.x, limit, 1e-3 * dp);
-    let found: Vec<_> = faces.iter().filter_map(thin).collect();
+    let found: Vec<_> = samples.iter().filter_map(thin).collect();
     let thinnest = found.iter().min_by(|a, b| a.thickness.total_cmp(&b.thickness))?;
     // Each place is seen from both of its faces.
     let area = 0.5 * found.len() as f64 * dp.powi(D as i32 - 1);
     let excess: f64 = found.iter().map(|place| 0.5 * (dp - place.thickness)).sum::<f64>() * dp.powi(D as i32 - 1);
     let (space, extent) = units::<D>();
+    let corrected = match context.system.model().walls {
+        Walls::RelaxedAdami => ", whose buoyancy is taken off",
+        _ => "",
+    };
     let what = format!(
         "\"{}\" is thinner than dp over {} {extent}, {} dp at {}: one layer of boundary particles stands for it, and \
-             the water makes way for {} {space} more than its volume",
+             the water makes way for {} {space} more than its volume{corrected}",
         solid.spec.name,
         three_digits(area),
         three_digits(thinnest.thickness / dp),

@@ -12,6 +12,7 @@ use super::{
     film::{self, Films},
     periodic::Images,
     symmetry::{AxisSet, Division, MirroredParticle, reflected},
+    thin_layers::{self, ThinLayers},
 };
 use crate::{
     error::{Error, Result},
@@ -48,6 +49,8 @@ pub(crate) struct Boundary<const D: usize> {
     mirrored: Vec<Vec<MirroredParticle>>,
     /// The films of water between solids.
     pub(super) films: Films<D>,
+    /// The parts thinner than dp.
+    pub(super) thin: ThinLayers,
     /// Poses of the solids when the neighbour lists were built; `None` if they must be built anew.
     pub(super) poses_at_rebuild: Option<Vec<Pose<D>>>,
     /// Whether a device has the particles: the host places none.
@@ -86,6 +89,7 @@ impl<const D: usize> Boundary<D> {
             local_bounds: Vec::new(),
             mirrored: Vec::new(),
             films: Films::new(model),
+            thin: ThinLayers::new(model),
             poses_at_rebuild: None,
             #[cfg(feature = "gpu")]
             on_device: false,
@@ -137,6 +141,7 @@ impl<const D: usize> Boundary<D> {
         }
         if let Some(depths) = &mut self.depths {
             let own: Vec<f64> = faces.par_iter().map(|r| -spec.shape.signed_distance(r)).collect();
+            self.thin.append(&spec.shape, &faces, &own, model.dp);
             (0..copies).for_each(|_| depths.extend_from_slice(&own));
             depths.extend(mirrored.iter().map(|image| own[image.own as usize]));
         }
@@ -154,7 +159,7 @@ impl<const D: usize> Boundary<D> {
     /// Removes the boundary particles `gone`, which are those of solid number `solid`.
     pub(super) fn remove_range(&mut self, gone: &Range<usize>, solid: usize) {
         let Self { particles: Particles { r, v, rho, id }, local_positions, depths, normals, .. } = self;
-        let Self { target_density, extrapolated_velocity, local_bounds, mirrored, .. } = self;
+        let Self { target_density, extrapolated_velocity, local_bounds, mirrored, thin, .. } = self;
         for vectors in [r, v].into_iter().chain(normals).chain(extrapolated_velocity) {
             remove_range(vectors, gone);
         }
@@ -167,6 +172,7 @@ impl<const D: usize> Boundary<D> {
             targets[later..].iter_mut().for_each(|target| target.particle -= gone.len() as u32);
         }
         id.truncate(self.particles.r.len());
+        thin.remove(solid);
         local_bounds[solid] = Bounds { min: Vector::zeros(), max: Vector::zeros() };
     }
 
@@ -361,6 +367,7 @@ impl<const D: usize> System<D> {
         if relaxes {
             self.gap_pressure.update_directions(&fits);
             film::update_water(self, &fits);
+            thin_layers::update_water(self, &fits);
             self.update_wall_pressure(&fits);
         }
         if sticks {

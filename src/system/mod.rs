@@ -22,6 +22,7 @@ mod sponge_layer;
 mod step_check;
 mod symmetric_setup;
 pub(crate) mod symmetry;
+pub(crate) mod thin_layers;
 mod view;
 
 pub(crate) use boundary::Boundary;
@@ -515,10 +516,11 @@ impl<const D: usize> System<D> {
         self.loads(&boundary)
     }
 
-    /// The load on each solid by the `sums` of the wet boundary particles, added up in chunks of fixed size, in order, and by films.
+    /// The load on each solid by the `sums` of the wet boundary particles, added up in chunks of fixed size, in order, by films,
+    /// and by thin parts.
     fn loads(&self, sums: &[PairSums<D>]) -> Vec<Load<D>> {
         let (mass, wet, r) = (self.particle_mass(), self.neighbours.boundary_near_fluid(), &self.boundary.particles.r);
-        let films = film::loads(self);
+        let beside = [film::loads(self), thin_layers::loads(self)];
         let place = |end: usize| wet.partition_point(|&i| (i as usize) < end);
         let of_copy = |solid: &Solid<D>, (range, way): (Range<usize>, Vector<D>)| {
             let centre = solid.kinematics.centre + way;
@@ -540,7 +542,7 @@ impl<const D: usize> System<D> {
         let of = |numbered: (usize, &Solid<D>)| {
             let copies = self.boundary.copies(&self.fluid.images, numbered, &numbered.1.kinematics.pose);
             let load = copies.map(|copy| of_copy(numbered.1, copy)).sum::<Load<D>>();
-            let load = films.get(numbered.0).map_or(load, |film| load + *film);
+            let load = beside.iter().filter_map(|loads| loads.get(numbered.0)).fold(load, |sum, load| sum + *load);
             if numbered.1.division.cut == 0 { load } else { self.load_on_whole(numbered.1, load) }
         };
         self.solids.iter().enumerate().map(of).collect()

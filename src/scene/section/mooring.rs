@@ -340,7 +340,7 @@ impl MooringConfig {
 
     /// Fills in the defaults.
     pub(crate) fn fill(&mut self, defaults: &mut Defaults, key: &str) {
-        defaults.fill(format!("{key}.segments"), &mut self.segments, SEGMENTS, "tension within 1 %");
+        defaults.fill(format!("{key}.segments"), &mut self.segments, SEGMENTS, "tension at rest within 1e-4");
         if let Some(law) = &mut self.paid_out {
             law.fill(defaults, &format!("{key}.paid_out"));
         }

@@ -189,14 +189,14 @@ impl<const D: usize> Mooring<D> {
             return MooringReading::default();
         }
         let lies = |i: &usize| around[*i].bed.is_some_and(|bed| line.material.depth(&bed, &state.x[*i]) > 0.0);
-        let (q, _) = line.direction_and_length(line.segments() - 1);
+        let anchor = state.pulls[line.segments() - 1];
         MooringReading {
             nodes: state.x.clone(),
             tensions: (0..line.segments()).map(|s| line.tension(s)).collect(),
             end_forces: [0, 1].map(|k| self.end_force(k)),
             // The sum of no numbers would be −0.
             on_bed: (0..around.len()).filter(lies).map(|i| line.share(i)).fold(0.0, |sum, length| sum + length),
-            anchor_angle: (-q[D - 1]).clamp(-1.0, 1.0).asin(),
+            anchor_angle: anchor.try_normalize(f64::MIN_POSITIVE).map_or(0.0, |q| (-q[D - 1]).clamp(-1.0, 1.0).asin()),
             broken: state.broken.map(|segment| segment as usize),
         }
     }
@@ -208,7 +208,7 @@ impl<const D: usize> Mooring<D> {
         }
         let segment = k * (self.line.segments() - 1);
         let sign = if k == 0 { 1.0 } else { -1.0 };
-        self.line.direction_and_length(segment).0 * (sign * self.line.tension(segment))
+        self.line.state.pulls[segment] * sign
     }
 
     /// The state in a checkpoint.

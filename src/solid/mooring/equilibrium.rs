@@ -1,15 +1,17 @@
 //! The equilibrium of a lumped-mass line between held ends.
 //!
-//! The potential energy of tension, weight and bed is convex in the places of the nodes, because a slack segment carries nothing.
-//! Newton's method with a search along each step finds its minimum from the elastic catenary. Friction of the bed is not counted:
-//! the line lies as it was laid, without tension across it.
+//! The potential energy of tension, weight and bed is convex in the places of the nodes, because no segment pushes.
+//! Newton's method with a search along each step finds its minimum from the elastic catenary. What the bed bears where the line
+//! leaves it depends on the tension too, which changes little in a step. Friction of the bed is not counted: the line lies as it
+//! was laid, without tension across it.
 
 use nalgebra::DVector;
 
 use super::{
     catenary::{Catenary, CatenarySpan},
-    forces::{NodeSurroundings, bending_forces, elastic_law, node_load},
+    forces::{NodeSurroundings, bed_reaction, bending_forces, node_load},
     line::MooringLine,
+    segment::{SegmentPull, segment_pulls},
 };
 use crate::math::{Matrix, Vector};
 
@@ -41,6 +43,7 @@ impl<const D: usize> MooringLine<D> {
         self.state.grips = self.state.x.iter().zip(&near).map(lies).collect();
         let last = self.segments();
         self.state.end_forces = [0, last].map(|i| forces[i]);
+        self.store_pulls(&near, gravity);
         left
     }
 
@@ -97,17 +100,17 @@ impl<const D: usize> MooringLine<D> {
     /// Forces (N) on the nodes at rest.
     fn forces(&self, around: &[NodeSurroundings<D>], gravity: &Vector<D>) -> Vec<Vector<D>> {
         let (still, n) = (Vector::zeros(), self.segments());
+        let pulls = segment_pulls(self, around, gravity);
         let at = |i: usize| {
             let here = NodeSurroundings { water_velocity: still, ..around[i] };
             let load = (self.share(i), &self.bodies[i]);
-            node_load(&self.material, load, (&self.state.x[i], &still, &still), &here, gravity).force
+            let hold = self.hold(i, &here, &pulls);
+            node_load(&self.material, load, (&self.state.x[i], &still, &still), &here, (gravity, &hold)).force
         };
         let mut forces: Vec<Vector<D>> = (0..=n).map(at).collect();
         for s in 0..n {
-            let (q, length) = self.direction_and_length(s);
-            let pull = q * self.elastic_tension(s, length);
-            forces[s] += pull;
-            forces[s + 1] -= pull;
+            forces[s] += pulls[s].pull;
+            forces[s + 1] -= pulls[s].pull;
         }
         if self.material.bending > 0.0 {
             let energy = self.material.bending / self.state.segment;
@@ -121,7 +124,7 @@ impl<const D: usize> MooringLine<D> {
     }
 
     /// The stiffness (N/m) of the nodes between the ends, plus `least` on its diagonal.
-    fn stiffness(&self, around: &[NodeSurroundings<D>], least: f64) -> BandMatrix {
+    fn stiffness(&self, around: &[NodeSurroundings<D>], gravity: &Vector<D>, least: f64) -> BandMatrix {
         let (n, material) = (self.segments(), &self.material);
         let mut made = BandMatrix::new((n - 1) * D, 3 * D - 1);
         let identity = Matrix::<D>::identity();
@@ -130,10 +133,9 @@ impl<const D: usize> MooringLine<D> {
                 (0..D).for_each(|a| (0..D).for_each(|b| made.add((i - 1) * D + a, (j - 1) * D + b, block[(a, b)])));
             }
         };
-        for s in 0..n {
-            let (q, length) = self.direction_and_length(s);
-            let [tension, slope] = elastic_law(material, length / self.state.segment - 1.0);
-            if tension > 0.0 && self.state.broken != Some(s as u32) {
+        let pulls = segment_pulls(self, around, gravity);
+        for (s, &SegmentPull { q, length, tension, slope, .. }) in pulls.iter().enumerate() {
+            if tension > 0.0 {
                 let along = q * q.transpose();
                 let block = along * (slope / self.state.segment) + (identity - along) * (tension / length);
                 for (i, j, sign) in [(s, s, 1.0), (s + 1, s + 1, 1.0), (s + 1, s, -1.0)] {
@@ -143,10 +145,11 @@ impl<const D: usize> MooringLine<D> {
         }
         for (i, here) in around.iter().enumerate() {
             add(i, i, &(identity * least));
-            if let Some(bed) = here.bed.filter(|bed| material.depth(bed, &self.state.x[i]) > 0.0) {
-                let stiff = material.bed_stiffness * material.contact_width * self.share(i);
-                add(i, i, &(bed.normal * bed.normal.transpose() * stiff));
-            }
+            let Some(bed) = &here.bed else { continue };
+            let on_bed = (bed, material.depth(bed, &self.state.x[i]));
+            let [_, stiff] =
+                bed_reaction(material, self.share(i), on_bed, here.wet, (gravity, &self.hold(i, here, &pulls)));
+            add(i, i, &(bed.normal * bed.normal.transpose() * stiff));
         }
         if material.bending > 0.0 {
             let stiff = material.bending / self.state.segment.powi(3);
@@ -180,7 +183,7 @@ impl<const D: usize> MooringLine<D> {
             }
             let mut step = inner(&forces);
             let uphill = step.clone();
-            self.stiffness(around, least).solve(step.as_mut_slice());
+            self.stiffness(around, gravity, least).solve(step.as_mut_slice());
             let start = self.state.x.clone();
             let downhill = uphill.dot(&step);
             let longest = step.iter().fold(0.0, |a: f64, b| a.max(b.abs()));

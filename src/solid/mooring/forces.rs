@@ -3,18 +3,20 @@
 //! A line of n segments of length l₀ has n + 1 nodes. A node has the mass and the water of half of each segment beside it. With
 //! the unit vector q along a segment of length l, its strain ε = l/l₀ − 1 and the tangent t at a node (Hall and Goupee 2015):
 //!
-//! - tension EA ε, or that of a table, and BA ε̇ along q, where ε > 0; a slack segment carries nothing
+//! - tension EA ε, or that of a table, and BA ε̇ along q, with the sag of the segment between its nodes (`segment.rs`)
 //! - bending: the energy EI/l₀ (1 − q₁·q₂) at a node between two segments
 //! - weight less buoyancy of the wet share φ: (m − φ ρ A) l₀ g
 //! - drag ½ ρ d l₀ φ (C_d |u_n| u_n + π C_dAx |u_t| u_t) of the velocity u of the water relative to the node
 //! - added mass φ ρ A l₀ (C_a (1 − t tᵀ) + C_aAx t tᵀ)
 //! - a bed: stiffness k c l₀ times the depth of the node in it, and damping b c l₀, with the contact width c; along it the same
 //!   stiffness from where the node came to lie, up to the Coulomb friction, beyond which the node slides
+//! - where the line leaves the bed, [`touchdown`]
 //!
 //! The acceleration of the water is not in these forces: it is small beside the drag of a line much thinner than the waves are high.
 
 use std::{f64::consts::PI, sync::Arc};
 
+use super::segment::distance_from_touchdown;
 use crate::math::{Matrix, Vector};
 
 /// The part of a solid's surface that is nearest to a node, as a plane.
@@ -117,10 +119,24 @@ pub(super) struct NodeLoad<const D: usize> {
     pub(super) mass: Matrix<D>,
 }
 
+/// How a node is held.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum NodeHold<const D: usize> {
+    /// An end that nothing holds, or a node far from any bed.
+    Free,
+    /// Between two segments, with their mean tension (N) along the line.
+    Between(Vector<D>),
+    /// An end that something holds, with the pull (N) of its segment on it.
+    Held(Vector<D>),
+}
+
 /// Projection on the direction of the unit vector `t`; zero if `t` is.
 fn along<const D: usize>(t: &Vector<D>) -> Matrix<D> {
     t * t.transpose()
 }
+
+/// Height over which a held end comes to lie on a bed, of its half of a segment, –.
+const TOUCH: f64 = 0.02;
 
 /// A point mass on a node.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -146,14 +162,41 @@ impl NodeBody {
     }
 }
 
+/// What a bed bears of a node at the height `z` (m) above it, N, and its stiffness, N/m.
+///
+/// The point at which a line leaves a bed lies between two nodes. Where it lies the distance b before a node, on the segment of
+/// length l₀ below it, the bed bears a part of that segment. The line of the weight w a metre and the tension H along the bed
+/// rises from there by z = √(b² + (H/w)²) − H/w. Nodes on this curve are at rest if the bed bears of the first node above it
+///
+///   R = ½ w l₀ (1 − b/l₀)²,  b = √(z² + 2 z H/w) < l₀
+///
+/// (own derivation, for a small slope). A soft bed bends the line over the length λ = √(H/(k c)); where λ exceeds l₀ the nodes resolve it by themselves.
+/// So R is divided by 1 + (λ/l₀)², and √(b² + b₀²) − b₀ with b₀ = λ²/l₀ takes the place of b: the stiffness at z = 0 is then no
+/// larger than that of the bed.
+pub(super) fn touchdown(material: &LineMaterial, segment: f64, weight: f64, pull: f64, z: f64) -> [f64; 2] {
+    let stiff = material.bed_stiffness * material.contact_width * segment;
+    if weight <= 0.0 || stiff <= 0.0 {
+        return [0.0; 2];
+    }
+    let (z, soft) = (z.max(0.0), pull / stiff);
+    let b = distance_from_touchdown(z, pull / weight);
+    let way = b.hypot(soft) - soft;
+    if way >= segment {
+        return [0.0; 2];
+    }
+    let (left, share) = (1.0 - way / segment, 1.0 / (1.0 + soft / segment));
+    let slope = (z * weight + pull) / b.hypot(soft).max(f64::MIN_POSITIVE);
+    [0.5 * share * weight * segment * left * left, share * left * slope]
+}
+
 /// The load of weight, water and bed on a node at `x` (m) that moves at `v` (m/s), with the line's length `share` (m) and a point
-/// mass `body`; `t` is the tangent there and `gravity` in m/s².
+/// mass `body`; `t` is the tangent there and `gravity` in m/s². `hold` says how it is held.
 pub(super) fn node_load<const D: usize>(
     material: &LineMaterial,
     (share, body): (f64, &NodeBody),
     (x, v, t): (&Vector<D>, &Vector<D>, &Vector<D>),
     around: &NodeSurroundings<D>,
-    gravity: &Vector<D>,
+    (gravity, hold): (&Vector<D>, &NodeHold<D>),
 ) -> NodeLoad<D> {
     let m = material;
     let (tangential, identity) = (along(t), Matrix::<D>::identity());
@@ -180,17 +223,44 @@ pub(super) fn node_load<const D: usize>(
     };
     let Some(bed) = around.bed else { return load };
     let depth = m.depth(&bed, x);
-    if depth > 0.0 {
-        let area = m.contact_width * share;
-        let (rate, up) = (v.dot(&bed.normal), along(&bed.normal));
-        let reaction = m.bed_stiffness * area * depth;
-        let damping = m.bed_damping * area;
-        // The bed does not hold back what leaves it.
-        let pressed = reaction - damping * rate;
+    let [reaction, _] = bed_reaction(m, share, (&bed, depth), around.wet, (gravity, hold));
+    if reaction > 0.0 {
         load.force += bed.normal * reaction;
-        load.bed += up * if pressed > 0.0 { damping } else { 0.0 };
+    }
+    if depth > 0.0 && !matches!(hold, NodeHold::Held(_)) {
+        let damping = m.bed_damping * m.contact_width * share;
+        // The bed does not hold back what leaves it.
+        let pressed = reaction - damping * v.dot(&bed.normal);
+        load.bed += along(&bed.normal) * if pressed > 0.0 { damping } else { 0.0 };
     }
     load
+}
+
+/// The force (N) with which `bed` bears a node with the line's length `share` (m), `depth` (m) in it, of which the share `wet` is in
+/// the water, and its stiffness, N/m. Its stiffness does not act on an end that something holds: there it bears the lying half of
+/// the segment.
+pub(super) fn bed_reaction<const D: usize>(
+    material: &LineMaterial,
+    share: f64,
+    (bed, depth): (&BedPlane<D>, f64),
+    wet: f64,
+    (gravity, hold): (&Vector<D>, &NodeHold<D>),
+) -> [f64; 2] {
+    let stiff = material.bed_stiffness * material.contact_width * share;
+    let pressed = if depth > 0.0 { [stiff * depth, stiff] } else { [0.0; 2] };
+    let weight = (-gravity.dot(&bed.normal) * (material.mass - wet * material.displaced())).max(0.0);
+    match hold {
+        NodeHold::Free => pressed,
+        NodeHold::Between(pull) => {
+            let flat = (pull - bed.normal * bed.normal.dot(pull)).norm();
+            let borne = touchdown(material, share, weight, flat, -depth);
+            if borne[0] > pressed[0] { borne } else { pressed }
+        }
+        NodeHold::Held(pull) => {
+            let touches = (1.0 + depth / (TOUCH * share)).clamp(0.0, 1.0);
+            [touches * (weight * share - pull.dot(&bed.normal)).clamp(0.0, weight * share), 0.0]
+        }
+    }
 }
 
 /// The force (N) along a bed on a node at `x` (m) with the line's length `share` (m). `grip` is the point (m) from which the bed holds

@@ -12,8 +12,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::forces::{
-    LineMaterial, NodeBody, NodeLoad, NodeSurroundings, bending_forces, elastic_law, friction, node_load,
+use super::{
+    forces::{LineMaterial, NodeBody, NodeHold, NodeLoad, NodeSurroundings, bending_forces, friction, node_load},
+    segment::{SegmentPull, segment_pull, segment_pulls},
 };
 use crate::math::{Matrix, Vector};
 
@@ -31,6 +32,8 @@ pub(crate) struct LineState<const D: usize> {
     pub(crate) end_forces: [Vector<D>; 2],
     /// Point from which a bed holds each node that lies on it, m.
     pub(crate) grips: Vec<Option<Vector<D>>>,
+    /// Pull of each segment on its first node at the end of the last step, N.
+    pub(crate) pulls: Vec<Vector<D>>,
     /// Number of the segment that has broken.
     pub(crate) broken: Option<u32>,
     /// Length of a segment without tension, m.
@@ -56,6 +59,8 @@ pub(crate) struct MooringLine<const D: usize> {
 /// Arrays of an inner step, kept from one to the next.
 #[derive(Clone, Default)]
 pub(super) struct Workspace<const D: usize> {
+    /// Pull of each segment.
+    pub(super) pulls: Vec<SegmentPull<D>>,
     /// Matrix of each node, and its inverse after the elimination.
     pub(super) matrix: Vec<Matrix<D>>,
     /// Impulse on each node, N s.
@@ -85,6 +90,7 @@ impl<const D: usize> MooringLine<D> {
                 v: vec![Vector::zeros(); segments + 1],
                 end_forces: [Vector::zeros(); 2],
                 grips: vec![None; segments + 1],
+                pulls: vec![Vector::zeros(); segments],
                 broken: None,
                 segment: length / segments as f64,
                 acts: true,
@@ -120,24 +126,15 @@ impl<const D: usize> MooringLine<D> {
         (if length > 0.0 { side / length } else { side }, length)
     }
 
-    /// Tension of segment `s` by its strain, N.
-    pub(super) fn elastic_tension(&self, s: usize, length: f64) -> f64 {
-        let broken = self.state.broken == Some(s as u32);
-        if broken { 0.0 } else { elastic_law(&self.material, length / self.state.segment - 1.0)[0] }
-    }
-
-    /// Tension of segment `s` with its damping, N.
+    /// Tension of segment `s` at the end of the last step, N.
     pub(crate) fn tension(&self, s: usize) -> f64 {
-        let (q, length) = self.direction_and_length(s);
-        let elastic = self.elastic_tension(s, length);
-        let rate = q.dot(&(self.state.v[s + 1] - self.state.v[s]));
-        (elastic + self.active_damping(elastic, rate) * rate).max(0.0)
+        self.state.pulls[s].norm()
     }
 
-    /// Damping (N s/m) of a segment that carries `elastic` (N) and grows at `rate` (m/s): none where it would push.
-    fn active_damping(&self, elastic: f64, rate: f64) -> f64 {
+    /// Damping (N s/m) of a segment that grows at `rate` (m/s): none where it would push.
+    fn active_damping(&self, pull: &SegmentPull<D>, rate: f64) -> f64 {
         let damping = self.material.damping / self.state.segment;
-        if elastic > 0.0 && elastic + damping * rate > 0.0 { damping } else { 0.0 }
+        if pull.tension > 0.0 && pull.tension + damping * rate > 0.0 { damping } else { 0.0 }
     }
 
     /// Unit tangent at node `i`; zero where both neighbours lie in one place.
@@ -169,7 +166,7 @@ impl<const D: usize> MooringLine<D> {
             self.kick(h, around, gravity, &mut impulses);
             self.drift(0.5 * h);
         }
-        self.end_step(ends, dt, impulses);
+        self.end_step(ends, dt, impulses, (around, gravity));
         self.state.end_forces
     }
 
@@ -183,13 +180,14 @@ impl<const D: usize> MooringLine<D> {
         gravity: &Vector<D>,
     ) -> [Vector<D>; 2] {
         let mut impulses = [Vector::zeros(); 2];
+        let pulls = segment_pulls(self, around, gravity);
         if let Some(from_water) = &mut self.water_impulses {
             from_water.fill(Vector::zeros());
         }
         for k in (0..2).filter(|k| self.held[*k]) {
             let i = self.end_node(k);
             let velocity = (ends[k] - self.state.x[i]) / dt;
-            let (mass, change) = (self.load(i, around, gravity).mass, velocity - self.state.v[i]);
+            let (mass, change) = (self.load(i, around, gravity, &pulls).mass, velocity - self.state.v[i]);
             impulses[k] -= mass * change;
             self.state.v[i] = velocity;
             let added = mass - Matrix::identity() * self.dry_mass(i);
@@ -201,12 +199,28 @@ impl<const D: usize> MooringLine<D> {
     }
 
     /// Ends a step `dt` (s) long with the held ends at the points `ends` (m) and these `impulses` (N s) on what holds them.
-    pub(super) fn end_step(&mut self, ends: [Vector<D>; 2], dt: f64, impulses: [Vector<D>; 2]) {
+    pub(super) fn end_step(
+        &mut self,
+        ends: [Vector<D>; 2],
+        dt: f64,
+        impulses: [Vector<D>; 2],
+        (around, gravity): (&[NodeSurroundings<D>], &Vector<D>),
+    ) {
         for k in (0..2).filter(|k| self.held[*k]) {
             let node = self.end_node(k);
             self.state.x[node] = ends[k];
         }
         self.state.end_forces = impulses.map(|impulse| impulse / dt);
+        self.store_pulls(around, gravity);
+    }
+
+    /// Stores the pulls of the segments where the nodes are, with their damping.
+    pub(super) fn store_pulls(&mut self, around: &[NodeSurroundings<D>], gravity: &Vector<D>) {
+        let damped = |(s, segment): (usize, SegmentPull<D>)| {
+            let rate = segment.q.dot(&(self.state.v[s + 1] - self.state.v[s]));
+            segment.pull + segment.q * (self.active_damping(&segment, rate) * rate)
+        };
+        self.state.pulls = segment_pulls(self, around, gravity).into_iter().enumerate().map(damped).collect();
     }
 
     pub(super) fn drift(&mut self, h: f64) {
@@ -219,22 +233,43 @@ impl<const D: usize> MooringLine<D> {
         self.material.mass * self.share(i) + self.bodies[i].mass
     }
 
-    fn load(&self, i: usize, around: &[NodeSurroundings<D>], gravity: &Vector<D>) -> NodeLoad<D> {
-        let (x, v) = (&self.state.x[i], &self.state.v[i]);
-        node_load(&self.material, (self.share(i), &self.bodies[i]), (x, v, &self.tangent(i)), &around[i], gravity)
+    fn load(
+        &self,
+        i: usize,
+        around: &[NodeSurroundings<D>],
+        gravity: &Vector<D>,
+        pulls: &[SegmentPull<D>],
+    ) -> NodeLoad<D> {
+        let (x, v, hold) = (&self.state.x[i], &self.state.v[i], self.hold(i, &around[i], pulls));
+        let place = (x, v, &self.tangent(i));
+        node_load(&self.material, (self.share(i), &self.bodies[i]), place, &around[i], (gravity, &hold))
+    }
+
+    /// How node `i` is held near a bed, with the `pulls` of the segments.
+    pub(super) fn hold(&self, i: usize, around: &NodeSurroundings<D>, pulls: &[SegmentPull<D>]) -> NodeHold<D> {
+        let n = self.segments();
+        match i {
+            _ if around.bed.is_none() => NodeHold::Free,
+            0 if self.held[0] => NodeHold::Held(pulls[0].pull),
+            i if i == n && self.held[1] => NodeHold::Held(-pulls[n - 1].pull),
+            i if (1..n).contains(&i) => NodeHold::Between((pulls[i - 1].pull + pulls[i].pull) * 0.5),
+            _ => NodeHold::Free,
+        }
     }
 
     /// Fills the matrices and the impulses of a step `h` (s) long.
     pub(super) fn assemble(&mut self, h: f64, around: &[NodeSurroundings<D>], gravity: &Vector<D>) {
         let n = self.segments();
         let mut work = std::mem::take(&mut self.work);
-        let Workspace { matrix, impulse, coupling, from_water, .. } = &mut work;
+        let Workspace { matrix, impulse, coupling, from_water, pulls, .. } = &mut work;
+        pulls.clear();
+        pulls.extend((0..n).map(|s| segment_pull(self, s, around, gravity)));
         matrix.clear();
         impulse.clear();
         coupling.clear();
         from_water.clear();
         for i in 0..=n {
-            let load = self.load(i, around, gravity);
+            let load = self.load(i, around, gravity, pulls);
             matrix.push(load.mass + load.drag * (0.5 * h) + load.bed * h);
             if self.water_impulses.is_some() {
                 let added = load.mass - Matrix::identity() * self.dry_mass(i);
@@ -249,12 +284,11 @@ impl<const D: usize> MooringLine<D> {
             }
             impulse.push(force * h);
         }
-        for s in 0..n {
-            let (q, length) = self.direction_and_length(s);
-            let elastic = self.elastic_tension(s, length);
+        for (s, segment) in pulls.iter().enumerate() {
+            let q = segment.q;
             let rate = q.dot(&(self.state.v[s + 1] - self.state.v[s]));
-            let damping = self.active_damping(elastic, rate);
-            let pull = q * ((elastic + damping * rate) * h);
+            let damping = self.active_damping(segment, rate);
+            let pull = (segment.pull + q * (damping * rate)) * h;
             impulse[s] += pull;
             impulse[s + 1] -= pull;
             let half = 0.5 * h * damping;
@@ -313,12 +347,14 @@ impl<const D: usize> MooringLine<D> {
 
     /// Energies of the dry line, J: motion, stretch and bending, height under `gravity` (m/s²).
     #[cfg(test)]
-    pub(crate) fn energies(&self, gravity: &Vector<D>) -> [f64; 3] {
+    pub(crate) fn energies(&self, around: &[NodeSurroundings<D>], gravity: &Vector<D>) -> [f64; 3] {
         let mass = |i: usize| self.material.mass * self.share(i) + self.bodies[i].mass;
         let nodes = || self.state.x.iter().zip(&self.state.v).enumerate();
         let stretch = |s: usize| {
-            let strain = (self.direction_and_length(s).1 / self.state.segment - 1.0).max(0.0);
-            0.5 * self.material.stiffness * strain * strain * self.state.segment
+            let SegmentPull { tension, sag, .. } = segment_pull(self, s, around, gravity);
+            // What sags has lost height.
+            let lost = if sag > 0.0 { sag / (12.0 * tension) } else { 0.0 };
+            self.state.segment * (0.5 * tension * tension / self.material.stiffness - lost)
         };
         let bend = |i: usize| {
             let cosine = self.direction_and_length(i - 1).0.dot(&self.direction_and_length(i).0);

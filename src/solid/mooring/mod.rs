@@ -1,6 +1,6 @@
 //! Mooring lines with mass: elastic catenaries, and lumped-mass lines at rest and in motion.
 //!
-//! `forces` has the equations, `line` their integration in time, `network` the points in which lines meet, `equilibrium` and
+//! `forces` and `segment` have the equations, `line` their integration in time, `network` the points in which lines meet, `equilibrium` and
 //! `catenary` the line at rest, and `attached` the line on the solids of a running system. Nothing here knows the particles: the
 //! coupling says what is around each node.
 
@@ -11,6 +11,7 @@ mod forces;
 mod line;
 mod network;
 mod pretension;
+mod segment;
 mod specification;
 mod winch;
 

@@ -149,7 +149,7 @@ impl Junctions {
             self.lines.iter().for_each(|i| lines[*i].drift(0.5 * h));
         }
         for (&i, impulses) in self.lines.iter().zip(impulses) {
-            lines[i].end_step(steps[i].ends, dt, impulses);
+            lines[i].end_step(steps[i].ends, dt, impulses, (&steps[i].around, gravity));
         }
     }
 

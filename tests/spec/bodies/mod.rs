@@ -21,6 +21,7 @@ mod many_bodies;
 mod meshes;
 mod natural_periods;
 mod shapes;
+mod thin_parts;
 mod trim;
 mod walls;
 mod wind;

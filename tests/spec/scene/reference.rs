@@ -67,6 +67,18 @@ fn rows() -> Vec<Row> {
     rows
 }
 
+/// The keys of the list items of the form "- `key`, `key` (unit; default): meaning".
+fn listed_keys() -> Vec<String> {
+    let page = scene_page();
+    let items =
+        page.lines().filter_map(|line| line.trim_start().strip_prefix("- `")?.split_once(" (").map(|(keys, _)| keys));
+    let are_keys = |keys: &&str| keys.split("`, `").all(|key| !key.trim_end_matches('`').contains(['`', ':']));
+    items
+        .filter(are_keys)
+        .flat_map(|keys| unquoted_names(&keys.replace('`', " ")).into_iter().map(String::from).collect::<Vec<_>>())
+        .collect()
+}
+
 #[test]
 fn every_key_of_the_scene_reference_is_a_key_of_a_scene() {
     let mut keys = BTreeSet::new();
@@ -77,6 +89,11 @@ fn every_key_of_the_scene_reference_is_a_key_of_a_scene() {
         for name in code(&row.cells[0]).flat_map(unquoted_names) {
             assert!(keys.contains(name), "{name}, in section {}, is not a key of a scene", row.section);
         }
+    }
+    let listed = listed_keys();
+    assert!(listed.len() > 80, "{} listed keys were found", listed.len());
+    for key in listed {
+        assert!(keys.contains(key.as_str()), "{key}, in a list, is not a key of a scene");
     }
 }
 

@@ -26,21 +26,23 @@ fn hanging_error<const D: usize>(segments: usize, ends: [Vector<D>; 2]) -> f64 {
     errors[0].max(errors[1])
 }
 
-/// The error of 40 segments is below 1e-4, and falls with the square of their length.
+/// The error of 40 segments is below 1e-6 (found: 4.4e-8), and falls with the fourth power of their length.
 #[test]
 fn a_hanging_line_converges_to_the_elastic_catenary() {
     let ends = [[0.0, 0.0].into(), [1.5, 0.6].into()];
     let errors = [10, 20, 40, 80].map(|n| hanging_error::<2>(n, ends));
     println!("hanging: {errors:?}");
-    assert!(errors[2] < 1e-4, "40 segments: {}", errors[2]);
+    assert!(errors[2] < 1e-6, "40 segments: {}", errors[2]);
     for pair in errors.windows(2) {
         let order = (pair[0] / pair[1]).log2();
-        assert!((1.8..2.2).contains(&order), "order {order}");
+        assert!((3.8..4.2).contains(&order), "order {order}");
     }
     let in_space = hanging_error::<3>(40, [[0.0, 0.0, 0.0].into(), [0.9, 1.2, 0.6].into()]);
     assert!((in_space / errors[2] - 1.0).abs() < 1e-3, "3-D has the error {in_space}");
 }
 
+/// The error of 40 segments is below 1e-5 here too (found: 1.7e-6; the bed yields by 1e-7 m), and of 10 and 20 of third order or higher,
+/// wherever in a segment the line leaves the bed.
 #[test]
 fn a_line_partly_on_the_bed_converges_to_the_elastic_catenary() {
     let error = |segments: usize| {
@@ -57,11 +59,10 @@ fn a_line_partly_on_the_bed_converges_to_the_elastic_catenary() {
             .into_iter()
             .fold(0.0, f64::max)
     };
-    let errors = [20, 40, 80, 160].map(error);
+    let errors = [10, 20, 40].map(error);
     println!("on the bed: {errors:?}");
-    // The touchdown point moves within a segment, so that the order holds on average alone.
-    let order = (errors[0] / errors[3]).log2() / 3.0;
-    assert!(errors[1] < 2e-3 && (1.5..2.5).contains(&order), "{errors:?}, order {order}");
+    let order = (errors[0] / errors[1]).log2();
+    assert!(errors[2] < 1e-5 && order > 3.0, "{errors:?}, order {order}");
 }
 
 #[test]

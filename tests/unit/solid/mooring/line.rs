@@ -80,12 +80,12 @@ fn energy_error(part: f64) -> f64 {
     line.held = [true, false];
     let near = air(&line);
     let dt = part * line.step_limit();
-    let total = |line: &MooringLine<2>| line.energies(&down()).iter().sum::<f64>();
+    let total = |line: &MooringLine<2>| line.energies(&near, &down()).iter().sum::<f64>();
     let (start, mut worst, mut motion) = (total(&line), 0.0f64, 0.0f64);
     for _ in 0..(0.5 / dt) as usize {
         line.advance([Vector::zeros(); 2], dt, &near, &down());
         worst = worst.max((total(&line) - start).abs());
-        motion = motion.max(line.energies(&down())[0]);
+        motion = motion.max(line.energies(&near, &down())[0]);
     }
     worst / motion
 }

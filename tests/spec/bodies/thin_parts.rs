@@ -1,0 +1,104 @@
+//! Parts thinner than dp: one layer of boundary particles stands for them, and they have the buoyancy of their volume.
+
+use pontoon::{Result, math::Vector, model::Dimension, simulation::Simulation, solid::Dim};
+
+use crate::common::{scene_simulation, time_mean};
+
+const G: f64 = 9.81;
+
+fn mean_force<const D: usize>(text: &str, from: f64, until: f64) -> Result<Vector<D>>
+where
+    Dim<D>: Dimension<D>,
+{
+    let mut sim: Simulation<D> = scene_simulation(text)?;
+    Ok(time_mean(&mut sim, from, until, |sim| sim.system().solids()[1].load.force.into())?.into())
+}
+
+/// A plate of `size` (m) held at `at` in water 0.4 m deep, dp = 20 mm.
+fn held(size: [f64; 2], at: [f64; 2]) -> String {
+    format!(
+        r#"dimension = 2
+dp = 0.02
+until = 1.5
+[[water]]
+fill = {{ box = {{ min = [0.0, 0.0], max = [0.8, 0.4] }} }}
+[[solid]]
+name = "tank"
+fixed = true
+shape = {{ tank = {{ size = [0.8, 0.6] }} }}
+[[solid]]
+name = "plate"
+shape = {{ box = {{ size = [{}, {}] }} }}
+at = {{ x = {}, y = {} }}
+free = {{ density = 1000, locked = ["x", "y", "turn"] }}
+"#,
+        size[0], size[1], at[0], at[1]
+    )
+}
+
+/// Bound: 0.15 dp of its area, as for the thickness of the layer of water that a face keeps off. A layer dp thick would have five
+/// times the volume of these plates: 63 and 16 N/m more.
+#[test]
+fn plates_of_a_fifth_of_dp_have_the_buoyancy_of_their_volume() -> Result<()> {
+    for (size, at, wet) in
+        [([0.4, 0.004], [0.4, 0.21], 0.4), ([0.004, 0.2], [0.41, 0.4], 0.1), ([0.004, 0.2], [0.403, 0.2], 0.2)]
+    {
+        let (exact, bound) = (1000.0 * G * wet * 0.004, 1000.0 * G * wet * 0.15 * 0.02);
+        let force = mean_force::<2>(&held(size, at), 0.7, 1.5)?;
+        println!("{size:?} at {at:?}: {} N/m, Archimedes {exact}", force[1]);
+        assert!((force[1] - exact).abs() < bound, "{size:?} at {at:?}: {} N/m, Archimedes {exact} N/m", force[1]);
+    }
+    Ok(())
+}
+
+#[test]
+fn a_thin_disc_has_the_buoyancy_of_its_volume_in_3d() -> Result<()> {
+    let text = r#"dimension = 3
+dp = 0.02
+until = 0.8
+[[water]]
+fill = { box = { min = [0.0, 0.0, 0.0], max = [0.36, 0.36, 0.2] } }
+[[solid]]
+name = "tank"
+fixed = true
+shape = { tank = { size = [0.36, 0.36, 0.4] } }
+[[solid]]
+name = "plate"
+shape = { cylinder = { length = 0.004, radius = 0.1 } }
+at = { x = 0.18, y = 0.18, z = 0.11 }
+free = { mass = 1.0, locked = ["x", "y", "z", "turn_x", "turn_y", "turn_z"] }
+"#;
+    let area = std::f64::consts::PI * 0.01;
+    let (exact, bound) = (1000.0 * G * area * 0.004, 1000.0 * G * area * 0.15 * 0.02);
+    let force = mean_force::<3>(text, 0.3, 0.8)?;
+    println!("disc: {} N, Archimedes {exact}", force[2]);
+    assert!((force[2] - exact).abs() < bound, "{} N, Archimedes {exact} N", force[2]);
+    Ok(())
+}
+
+/// A hull with a keel of 0.4 dp 0.2 m deep rests where Archimedes says within the half dp of bodies off the lattice. A keel dp thick
+/// would lift it by 4 mm.
+#[test]
+fn a_hull_with_a_thin_keel_rests_at_its_draft() -> Result<()> {
+    let text = r#"dimension = 2
+dp = 0.01
+until = 3.0
+[[water]]
+fill = { box = { min = [0.0, 0.0], max = [0.8, 0.4] } }
+[[solid]]
+name = "tank"
+fixed = true
+shape = { tank = { size = [0.8, 0.6] } }
+[[solid]]
+name = "hull"
+shape = { polygon = [[-0.15, 0.0], [-0.002, 0.0], [-0.002, -0.2], [0.002, -0.2], [0.002, 0.0], [0.15, 0.0], [0.15, 0.1], [-0.15, 0.1]] }
+at = { x = 0.4, draft = "equilibrium" }
+free = { density = 500.0, locked = ["x", "turn"] }
+"#;
+    let mut sim: Simulation<2> = scene_simulation(text)?;
+    let start = sim.system().solids()[1].kinematics.centre[1];
+    let rest = time_mean(&mut sim, 1.5, 3.0, |sim| [sim.system().solids()[1].kinematics.centre[1], 0.0])?[0];
+    println!("keel: {} mm", (rest - start) * 1e3);
+    assert!((rest - start).abs() < 0.5 * 0.01, "it moves by {} m", rest - start);
+    Ok(())
+}
