@@ -117,7 +117,7 @@ fn a_run_allocates_the_estimated_memory_and_few_bytes_a_particle() {
 /// A little water at rest, of which each step has a frame.
 const PUDDLE: &str = r#"
 dimension = 2
-dp        = 0.05
+dp        = 0.02
 [[water]]
 fill = { box = { min = [0.0, 0.0], max = [0.2, 0.1] } }
 [[solid]]
@@ -135,7 +135,7 @@ fn a_run_and_a_reader_of_its_frames_keep_the_time_of_each_frame_alone() {
     std::fs::create_dir_all(&folder).unwrap();
     let (scene, out) = (folder.join("puddle.toml"), folder.join("run"));
     std::fs::write(&scene, PUDDLE).unwrap();
-    let figures = ["1.0", "4.0"].map(|until| {
+    let figures = ["0.3", "1.2"].map(|until| {
         let run = peak_in(&out, &scene, &owned(&[("until", until)]));
         let before = NOW.load(Relaxed);
         PEAK.store(before, Relaxed);
