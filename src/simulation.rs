@@ -31,17 +31,13 @@ use on_device::OnDevice;
 use rollback::{RollbackControl, StoredState};
 
 use crate::{
-    coupling::{Accounting, AccountingState, AcousticAddedMass, AddedMassState, Bodies, Hook, Interval, Moorings},
+    coupling::{Accounting, AccountingState, AcousticAddedMass, Bodies, BodiesState, Hook, Interval, Moorings},
     error::{Error, ErrorCode, ErrorKind, Fault, Result},
     interaction::{PairLoop, RequestedSums},
     math::{Bivector, Vector},
     model::Dimension,
     ranks::Ranks,
-    solid::{
-        ContactForce, Dim, HasEngine as _, Role, SolidSpec,
-        constraint::assembly::{Assembly, AssemblyState},
-        mooring::LineState,
-    },
+    solid::{ContactForce, Dim, HasEngine as _, Role, SolidSpec, constraint::assembly::Assembly},
     system::{
         LimitViolation, System, SystemState, own_water, set_buffer_time, set_gravity_at, update_buffer, update_current,
     },
@@ -96,10 +92,7 @@ struct SimulationState<'a, const D: usize> {
     system: SystemState<'a, D>,
     stepper: Cow<'a, Stepper<D>>,
     clock: Clock,
-    engine: Option<Vec<u8>>,
-    added_masses: Vec<AddedMassState>,
-    constraints: AssemblyState<D>,
-    moorings: Vec<LineState<D>>,
+    bodies: BodiesState<D>,
     rollbacks: Cow<'a, [Rollback]>,
     removed: Cow<'a, [(f64, RemovedParticle<D>)]>,
     accounting: Option<AccountingState<D>>,
@@ -580,10 +573,7 @@ impl<const D: usize> Simulation<D> {
             system: self.system.save(),
             stepper: Cow::Borrowed(&self.stepper),
             clock: self.clock,
-            engine: self.bodies.engine().map(|e| e.save()).transpose()?,
-            added_masses: self.bodies.added_mass_state(),
-            constraints: self.bodies.constraints().save(),
-            moorings: self.bodies.moorings.states(),
+            bodies: self.bodies.save()?,
             rollbacks: Cow::Borrowed(&self.rollback.log[..rollbacks]),
             removed: Cow::Borrowed(&self.removed),
             accounting: self.bodies.accounting.as_ref().map(Accounting::state),
@@ -605,46 +595,13 @@ impl<const D: usize> Simulation<D> {
     /// Returns to a state from [`Simulation::save`], in a simulation made from the same setup.
     ///
     /// # Errors
-    /// `Restart` if the bytes are damaged or belong to another setup.
+    /// `Restart` if the bytes are damaged or belong to another setup; nothing has changed then.
     pub fn restore(&mut self, bytes: &[u8]) -> Result<()> {
         let kept = Self::read(bytes)?;
-        self.remove_planned(&kept.removed_solids);
-        if kept.removed_solids != self.removed_solids() {
-            return Err(Error::new(
-                ErrorKind::Restart,
-                "solids had been removed from the simulation whose state this is",
-            )
-            .with_code(ErrorCode::OtherSetup)
-            .help("restore_with_added_solids restores it in a simulation made from the same setup"));
-        }
-        match (self.bodies.engine_mut(), kept.engine) {
-            (Some(engine), Some(bytes)) => engine.restore(&bytes)?,
-            (None, None) => {}
-            _ => {
-                return Err(Error::new(ErrorKind::Restart, "the checkpoint holds other bodies")
-                    .with_code(ErrorCode::OtherSetup));
-            }
-        }
-        if !self.bodies.restore(&kept.added_masses, kept.clock.steps)
-            || !self.bodies.restore_constraints(kept.constraints)
-            || !self.bodies.moorings.restore(kept.moorings)
-        {
-            return Err(
-                Error::new(ErrorKind::Restart, "the checkpoint holds other bodies").with_code(ErrorCode::OtherSetup)
-            );
-        }
-        match (&self.bodies.accounting, &kept.accounting) {
-            (Some(own), Some(state)) if own.matches(state) => {}
-            (None, None) => {}
-            _ => {
-                return Err(Error::new(
-                    ErrorKind::Restart,
-                    "the checkpoint holds another load breakdown or energy budget",
-                )
-                .with_code(ErrorCode::OtherSetup));
-            }
-        }
-        self.system.restore(kept.system)?;
+        let planned = self.check_state(&kept)?;
+        self.delete_solids(&planned);
+        self.bodies.restore(kept.bodies, kept.clock.steps)?;
+        self.system.restore(kept.system);
         if let (Some(accounting), Some(state)) = (&mut self.bodies.accounting, kept.accounting) {
             accounting.restore(state);
         }
@@ -656,6 +613,30 @@ impl<const D: usize> Simulation<D> {
         #[cfg(feature = "gpu")]
         on_device::load(self)?;
         Ok(())
+    }
+
+    /// Checks that this simulation can return to the state `kept`; returns the solids whose planned removal comes before that.
+    fn check_state(&self, kept: &SimulationState<D>) -> Result<Vec<usize>> {
+        let planned = self.planned_removals(&kept.removed_solids);
+        let mut removed = self.removed_solids();
+        removed.extend(planned.iter().map(|solid| *solid as u32));
+        removed.sort_unstable();
+        removed.dedup();
+        let other = |what: &str| Error::new(ErrorKind::Restart, what).with_code(ErrorCode::OtherSetup);
+        if kept.removed_solids != removed {
+            return Err(other("solids had been removed from the simulation whose state this is")
+                .help("restore_with_added_solids restores it in a simulation made from the same setup"));
+        }
+        if !self.bodies.matches(&kept.bodies, &planned)? {
+            return Err(other("the checkpoint holds other bodies"));
+        }
+        match (&self.bodies.accounting, &kept.accounting) {
+            (Some(own), Some(state)) if own.matches(state) => {}
+            (None, None) => {}
+            _ => return Err(other("the checkpoint holds another load breakdown or energy budget")),
+        }
+        self.system.check_state(&kept.system, &planned)?;
+        Ok(planned)
     }
 }
 

@@ -613,6 +613,64 @@ const SIZES: &str = "(() => { const { live, charts, films: [film], deck } = pont
     return { rows: live.tables.get('box').t.length, row: live.tables.get('box').t.at(-1), drawn: chart.u.data[0].length, drawnTo: chart.u.data[0].at(-1),
       frames: film.times.length, frame: film.times.at(-1), player: deck.t, links: film.alone.filter(x => !x).length, steps: live.state.steps }; })()";
 
+/// The value of the input of control number `i`, what the run says of it, and the largest rate (m/s) of the rail so far.
+fn control_on_page(i: usize) -> String {
+    format!(
+        "(() => {{ const {{ live }} = pontoon, of = live.told.runs[0].tables.find(table => table.name === 'rail');
+        const rate = live.tables.get('rail').columns.get(of.columns.findIndex(column => column.name.endsWith('mps')));
+        return {{ input: +live.controls[{i}].input.value, value: live.state.controls[{i}].value, message: live.message.textContent,
+          rate: Math.max(...rate.map(Math.abs)) }}; }})()"
+    )
+}
+
+#[test]
+fn a_control_changed_in_a_browser_reaches_the_run_and_its_series_and_is_kept_by_a_checkpoint() {
+    let folder = folder("browser-control");
+    fs::write(folder.join("bay.toml"), format!("{BAY}{CONTROLLED}")).unwrap();
+    let mut run = LiveRun::start(&folder, "a", &["--set", "until=1e6"]);
+    let address = format!("http://127.0.0.1:{}/?token={}", run.port, run.token);
+    let Some(mut browser) = Browser::open(&folder, &address) else { return };
+    browser.wait_for("!!window.pontoon?.live && pontoon.live.events > 0");
+    let labels = browser.evaluate("[...document.querySelectorAll('.live label')].map(label => label.textContent)");
+    assert_eq!(labels, json!(["joint.rail.motor.velocitym/s", "force.thruster.force.0N"]));
+    let before = browser.evaluate(&control_on_page(0));
+    assert_eq!([&before["input"], &before["value"]], [&json!(0), &json!(0)], "{before}");
+    // The box lies still but for the settling of the water: the motor holds it.
+    assert!(before["rate"].as_f64().is_some_and(|rate| rate < 0.05), "{before}");
+
+    // A value beyond the range is refused on the page, and the run hears nothing of it.
+    let type_in = |i: usize, value: f64| {
+        format!(
+            "(() => {{ const {{ input }} = pontoon.live.controls[{i}]; input.focus(); input.value = '{value}';
+              input.dispatchEvent(new Event('change')); input.blur(); }})()"
+        )
+    };
+    browser.evaluate(&type_in(0, 0.6));
+    let refused = browser.evaluate("pontoon.live.message.textContent");
+    assert_eq!(refused, "joint.rail.motor.velocity is a number from −0.5 to 0.5 m/s.");
+    browser.evaluate(&type_in(0, 0.2));
+    browser.wait_for("pontoon.live.state.controls[0].value === 0.2");
+    let told = browser.evaluate("pontoon.live.message.textContent");
+    assert!(told.as_str().unwrap().starts_with("joint.rail.motor.velocity is 0.2"), "{told}");
+    // The motor of 200 N s/m brings the box of 9.6 kg/m to its speed in 0.05 s, less the drag of the water. The peak stays in the
+    // series when the box has reached the wall.
+    browser.wait_for(&format!("(c => c.rate > 0.15 && c.input === 0.2)({})", control_on_page(0)));
+
+    // Ctrl-C: the checkpoint has the value, and the run that goes on from it offers it.
+    run.interrupt();
+    assert_eq!(run.wait(), Some(130));
+    browser.wait_for("pontoon.live.ended === 'interrupted' && pontoon.live.controls.every(c => c.input.disabled)");
+    assert!(browser.console().is_empty(), "{:#?}", browser.console());
+    drop(browser);
+    let reached = Manifest::read(&run.folder).unwrap();
+    let notes = |manifest: &Manifest| manifest.notes.iter().filter(|note| note.starts_with("control: ")).count();
+    assert_eq!(notes(&reached), 1, "{:?}", reached.notes);
+    let resumed = LiveRun::from_command(&folder, "a", &["resume", "a", "--live", "--quiet"]);
+    let state = resumed.hold();
+    assert_eq!([&state["controls"][0]["value"], &state["controls"][1]["value"]], [&json!(0.2), &json!(0.0)]);
+    assert_eq!(notes(&Manifest::read(&resumed.folder).unwrap()), 1);
+}
+
 #[test]
 fn the_live_page_grows_pauses_and_hears_of_the_end_in_a_browser() {
     let folder = folder("browser");

@@ -1,5 +1,5 @@
-//! The memory estimate of `inspect` against the memory that a run allocates. The test is alone in its program, so that the allocator
-//! counts nothing else.
+//! The memory estimate of `inspect` against the memory that a run allocates, and what a run keeps of each frame. The tests are alone in
+//! their program, one after the other, so that the allocator counts nothing else.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::print_stdout, clippy::print_stderr, reason = "tests may")]
 #![allow(unsafe_code, reason = "it counts allocations")]
@@ -7,10 +7,16 @@
 use std::{
     alloc::{GlobalAlloc, Layout, System},
     path::Path,
-    sync::atomic::{AtomicUsize, Ordering::Relaxed},
+    sync::{
+        Mutex,
+        atomic::{AtomicUsize, Ordering::Relaxed},
+    },
 };
 
-use pontoon::run::{self, InspectOptions, Progress, RunOptions};
+use pontoon::{
+    output::FrameSequence,
+    run::{self, InspectOptions, Progress, RunOptions},
+};
 
 static NOW: AtomicUsize = AtomicUsize::new(0);
 static PEAK: AtomicUsize = AtomicUsize::new(0);
@@ -35,16 +41,25 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static COUNTING: Counting = Counting;
 
+/// Held by the test that runs.
+static ALONE: Mutex<()> = Mutex::new(());
+
 /// Memory of the program itself in the estimate, B: the allocator counts none of it.
 const PROGRAM: f64 = 14e6;
 
 /// What a run of `scene` with these keys allocates at most, from its first report of progress on, beyond what is in use before it, B. The
 /// packing of the water, before that, takes more for a while.
 fn peak(scene: &str, sets: &[(String, String)]) -> f64 {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(scene);
     let out = std::env::temp_dir().join(format!("pontoon-memory-{}", std::process::id()));
-    let _ = std::fs::remove_dir_all(&out);
-    let options = RunOptions { out: Some(out.clone()), overrides: sets.to_vec(), threads: Some(1) };
+    let used = peak_in(&out, &Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(scene), sets);
+    std::fs::remove_dir_all(&out).unwrap();
+    used
+}
+
+/// The same of the scene at `path`, whose run stays in the folder `out`.
+fn peak_in(out: &Path, path: &Path, sets: &[(String, String)]) -> f64 {
+    let _ = std::fs::remove_dir_all(out);
+    let options = RunOptions { out: Some(out.to_owned()), overrides: sets.to_vec(), threads: Some(1) };
     let (before, mut begun) = (NOW.load(Relaxed), false);
     let mut report = |_: &Progress| {
         if !begun {
@@ -53,19 +68,17 @@ fn peak(scene: &str, sets: &[(String, String)]) -> f64 {
         }
         true
     };
-    run::run(&path, &options, &mut report).unwrap();
-    let used = PEAK.load(Relaxed) - before;
-    std::fs::remove_dir_all(&out).unwrap();
-    used as f64
+    run::run(path, &options, &mut report).unwrap();
+    (PEAK.load(Relaxed) - before) as f64
 }
 
 fn owned(sets: &[(&str, &str)]) -> Vec<(String, String)> {
     sets.iter().map(|(key, value)| (key.to_string(), value.to_string())).collect()
 }
 
-/// One test, so that no other thread allocates.
 #[test]
 fn a_run_allocates_the_estimated_memory_and_few_bytes_a_particle() {
+    let _alone = ALONE.lock().unwrap();
     let cases = [
         ("lobovsky", "0.004", vec![("dp", "0.003")]),
         ("lobovsky", "0.004", vec![("dp", "0.003"), ("frames", "off")]),
@@ -99,4 +112,42 @@ fn a_run_allocates_the_estimated_memory_and_few_bytes_a_particle() {
     println!("{slope:.1} B a particle");
     assert!(wrong.is_empty(), "{wrong}");
     assert!(slope < 260.0, "{slope} B a particle");
+}
+
+/// A little water at rest, of which each step has a frame.
+const PUDDLE: &str = r#"
+dimension = 2
+dp        = 0.02
+[[water]]
+fill = { box = { min = [0.0, 0.0], max = [0.2, 0.1] } }
+[[solid]]
+name  = "tank"
+fixed = true
+shape = { tank = { size = [0.2, 0.2] } }
+[frames]
+every = 1e-9
+"#;
+
+#[test]
+fn a_run_and_a_reader_of_its_frames_keep_the_time_of_each_frame_alone() {
+    let _alone = ALONE.lock().unwrap();
+    let folder = std::env::temp_dir().join(format!("pontoon-memory-frames-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let (scene, out) = (folder.join("puddle.toml"), folder.join("run"));
+    std::fs::write(&scene, PUDDLE).unwrap();
+    let figures = ["0.3", "1.2"].map(|until| {
+        let run = peak_in(&out, &scene, &owned(&[("until", until)]));
+        let before = NOW.load(Relaxed);
+        PEAK.store(before, Relaxed);
+        let frames = FrameSequence::open(&out).unwrap().unwrap().times().len() as f64;
+        [frames, run, (PEAK.load(Relaxed) - before) as f64]
+    });
+    std::fs::remove_dir_all(&folder).unwrap();
+    let [[few, run, read], [many, run_more, read_more]] = figures;
+    assert!(many > few + 500.0, "{few} and {many} frames");
+    let [run, read] = [(run_more - run) / (many - few), (read_more - read) / (many - few)];
+    println!("{run:.1} B a frame in a run of {many} frames, {read:.1} B in a reader");
+    // A time has 8 B, of which the run keeps three lists: its own and those of two states for a rollback. A list that grows has twice
+    // its size, and half as much again while it is copied. An entry of the list of frames has 170 B.
+    assert!(run < 72.0 && read < 24.0, "{run} B a frame in the run, {read} B in the reader");
 }

@@ -28,14 +28,29 @@ pub fn axial(py: Python<'_>, x: &[f64; 3], dimension: usize) -> PyResult<Py<PyAn
     })
 }
 
+/// Returns `dimension` numbers and zeros behind them, of an array of doubles without a Python object for each.
+fn components(x: &Bound<'_, PyAny>, dimension: usize) -> Option<[f64; 3]> {
+    let from = |numbers: &[f64]| {
+        let mut three = [0.0; 3];
+        three.get_mut(..numbers.len())?.copy_from_slice(numbers);
+        (numbers.len() == dimension).then_some(three)
+    };
+    if let Ok(array) = x.cast::<PyArray1<f64>>()
+        && let Ok(array) = array.try_readonly()
+        && let Ok(numbers) = array.as_slice()
+    {
+        return from(numbers);
+    }
+    from(&x.extract::<Vec<f64>>().ok()?)
+}
+
 /// Returns three components of a vector of `dimension` numbers.
 ///
 /// # Errors
 /// `UsageError` for another number of components, or one that is not finite.
 pub fn three(py: Python<'_>, x: &Bound<'_, PyAny>, dimension: usize, what: &str) -> PyResult<[f64; 3]> {
-    let numbers = x.extract::<Vec<f64>>().ok();
-    match numbers.filter(|x| x.len() == dimension && x.iter().all(|x| x.is_finite())) {
-        Some(numbers) => Ok(std::array::from_fn(|i| numbers.get(i).copied().unwrap_or(0.0))),
+    match components(x, dimension).filter(|numbers| numbers.iter().all(|x| x.is_finite())) {
+        Some(numbers) => Ok(numbers),
         None => {
             let count = if dimension == 1 { "one finite number".into() } else { format!("{dimension} finite numbers") };
             Err(usage(py, &format!("{what} cannot be {x}"), &format!("give {count}")))
@@ -86,17 +101,19 @@ impl Load {
 #[pyclass(frozen, module = "pontoon._pontoon")]
 #[derive(Clone)]
 pub struct BodyState {
-    name: String,
-    role: &'static str,
+    names: Arc<Names>,
+    /// Number of the solid among the names.
+    solid: usize,
     mass: Option<f64>,
     data: BodyData,
     dimension: usize,
 }
 
 impl BodyState {
-    /// Creates the state of a solid.
-    pub fn new((name, role): (String, &'static str), mass: Option<f64>, data: BodyData, dimension: usize) -> Self {
-        Self { name, role, mass, data, dimension }
+    /// Creates the state of solid number `solid`.
+    pub fn new(names: Arc<Names>, solid: usize, mass: Option<f64>, data: BodyData) -> Self {
+        let dimension = names.dimension;
+        Self { names, solid, mass, data, dimension }
     }
 }
 
@@ -105,13 +122,13 @@ impl BodyState {
     /// Name.
     #[getter]
     fn name(&self) -> &str {
-        &self.name
+        &self.names.solids[self.solid].0
     }
 
     /// "fixed", "driven" or "free".
     #[getter]
     fn role(&self) -> &'static str {
-        self.role
+        self.names.solids[self.solid].1
     }
 
     /// Mass of a free solid, kg (kg/m in 2-D); None of any other, and in a callback.
@@ -163,7 +180,8 @@ impl BodyState {
 
     fn __repr__(&self) -> String {
         let centre = &self.data.centre[..self.dimension];
-        format!("BodyState({:?}, {}, centre={centre:?})", self.name, self.role)
+        let (name, role) = &self.names.solids[self.solid];
+        format!("BodyState({name:?}, {role}, centre={centre:?})")
     }
 }
 
@@ -179,6 +197,11 @@ impl BodyStep {
     /// Creates the object that a callback gets.
     pub fn new(names: Arc<Names>, step: StepData) -> Self {
         Self { names, step, commands: Commands::default() }
+    }
+
+    /// Makes this the object of a later step.
+    pub fn renew(&mut self, step: StepData) {
+        self.step = step;
     }
 
     /// Returns the commands that the callback has given.
@@ -244,7 +267,7 @@ impl BodyStep {
     /// Returns a solid at the start of the step, with the load of this step.
     fn __getitem__(&self, py: Python<'_>, name: &str) -> PyResult<BodyState> {
         let solid = self.solid(py, name)?;
-        Ok(BodyState::new(self.names.solids[solid].clone(), None, self.step.bodies[solid], self.names.dimension))
+        Ok(BodyState::new(self.names.clone(), solid, None, self.step.bodies[solid]))
     }
 
     /// Loads of the water in this step, by the name of the solid.

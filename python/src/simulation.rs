@@ -148,17 +148,42 @@ fn busy(py: Python<'_>) -> PyErr {
     usage(py, "the simulation is being stepped", help)
 }
 
-/// Calls the function of Python `call` with `step`. An exception goes into `raised`.
-fn call_back(call: &Py<PyAny>, names: &Arc<Names>, step: StepData, raised: &Mutex<Option<PyErr>>) -> Commands {
-    let called = Python::attach(|py| {
-        let step = Py::new(py, BodyStep::new(names.clone(), step))?;
-        call.call1(py, (&step,))?;
-        Ok::<_, PyErr>(step.borrow_mut(py).commands())
-    });
-    called.unwrap_or_else(|why| {
-        *raised.lock().unwrap_or_else(PoisonError::into_inner) = Some(why);
-        Commands { failed: true, ..Commands::default() }
-    })
+/// A function of Python that is called in the steps of an advance.
+struct CallBack {
+    call: Py<PyAny>,
+    names: Arc<Names>,
+    /// The object of the last call. The next call gets it too, unless the function has kept it.
+    object: Option<Py<BodyStep>>,
+    /// The exception of the function.
+    raised: Option<PyErr>,
+}
+
+impl CallBack {
+    fn new(call: Py<PyAny>, names: Arc<Names>) -> Self {
+        Self { call, names, object: None, raised: None }
+    }
+
+    /// Calls the function with `step`, and keeps its exception.
+    fn run(&mut self, step: StepData) -> Commands {
+        Python::attach(|py| self.call(py, step)).unwrap_or_else(|why| {
+            self.raised = Some(why);
+            Commands { failed: true, ..Commands::default() }
+        })
+    }
+
+    fn call(&mut self, py: Python<'_>, step: StepData) -> PyResult<Commands> {
+        let object = match self.object.take() {
+            Some(object) if object.get_refcnt(py) == 1 => {
+                object.borrow_mut(py).renew(step);
+                object
+            }
+            _ => Py::new(py, BodyStep::new(self.names.clone(), step))?,
+        };
+        self.call.call1(py, (&object,))?;
+        let commands = object.borrow_mut(py).commands();
+        self.object = Some(object);
+        Ok(commands)
+    }
 }
 
 /// Columns and readings of probes by name.
@@ -211,14 +236,14 @@ impl NativeSimulation {
         py.check_signals()?;
         let mut taken = self.take(py)?;
         let world = taken.world.as_mut().ok_or_else(|| busy(py))?;
-        let (stop, names) = (AtomicBool::new(false), self.names());
-        let (raised, signal) = (Mutex::new(None), Mutex::new(None));
+        let (stop, signal) = (AtomicBool::new(false), Mutex::new(None));
         let calls = control.is_some();
+        let mut callback = control.map(|call| CallBack::new(call, self.names()));
         let mut advance = || -> Result<()> {
-            match &control {
+            match &mut callback {
                 None => world.advance(end, single, &stop, None),
-                Some(call) => {
-                    let mut call = |step: StepData| call_back(call, &names, step, &raised);
+                Some(callback) => {
+                    let mut call = |step: StepData| callback.run(step);
                     world.advance(end, single, &stop, Some(Control { call: &mut call, every }))
                 }
             }
@@ -238,8 +263,8 @@ impl NativeSimulation {
             })
         });
         drop(taken);
-        let why = [signal, raised].into_iter().find_map(|why| why.into_inner().unwrap_or_else(PoisonError::into_inner));
-        match (why, outcome) {
+        let why = signal.into_inner().unwrap_or_else(PoisonError::into_inner);
+        match (why.or(callback.and_then(|callback| callback.raised)), outcome) {
             (Some(why), _) => Err(why),
             (None, Some(outcome)) => outcome.or_raise(py),
             (None, None) => Err(PyRuntimeError::new_err("the step ended with an internal error")),
@@ -250,7 +275,7 @@ impl NativeSimulation {
     fn body(&self, py: Python<'_>, name: &str) -> PyResult<BodyState> {
         let (solid, names) = (self.solid(py, name)?, self.names());
         let (data, mass) = self.read(py, |world| (world.bodies()[solid], world.mass(solid)))?;
-        Ok(BodyState::new(names.solids[solid].clone(), mass, data, names.dimension))
+        Ok(BodyState::new(names, solid, mass, data))
     }
 
     /// Number of water particles.

@@ -296,22 +296,18 @@ impl<const D: usize> Running<D>
 where
     Dim<D>: Dimension<D>,
 {
-    /// Calls the callback if it is due, and applies the forces that it asked for.
+    /// Calls the callback with the `bodies` at the start of the step, if it is due, and applies the forces that it asked for.
     fn between(
         step: &mut BodyStep<D>,
-        solids: &[BodyData],
-        due: bool,
+        bodies: Option<Vec<BodyData>>,
         call: &mut Callback<'_>,
         pushes: &mut Vec<Push>,
     ) -> Result<Commands> {
         let mut commands = Commands::default();
-        if due {
-            let with_load = |(body, load): (&BodyData, &Load<D>)| BodyData {
-                force: three(&load.force),
-                torque: axial(&load.torque),
-                ..*body
-            };
-            let bodies = solids.iter().zip(step.loads()).map(with_load).collect();
+        if let Some(mut bodies) = bodies {
+            for (body, load) in bodies.iter_mut().zip(step.loads()) {
+                (body.force, body.torque) = (three(&load.force), axial(&load.torque));
+            }
             commands = call(StepData { time: step.time(), dt: step.dt(), bodies });
             *pushes = std::mem::take(&mut commands.pushes);
             for (solid, motion) in &commands.motions {
@@ -334,12 +330,12 @@ where
         if due {
             self.called = Some(now);
         }
-        let solids = if due { self.bodies() } else { Vec::new() };
+        let mut bodies = due.then(|| self.bodies());
         let (hosted, mut failed) = (self.sim.has_external_bodies(), false);
         let (mut commands, mut spent, pushes) = (Commands::default(), Duration::ZERO, &mut self.pushes);
         let outcome = self.sim.step_with(end, |step| {
             let begun = Instant::now();
-            commands = Self::between(step, &solids, due, control.call, pushes)?;
+            commands = Self::between(step, bodies.take(), control.call, pushes)?;
             spent += begun.elapsed();
             failed = commands.failed;
             if failed && hosted {

@@ -1,5 +1,6 @@
 """Runs: the bits of the program, checkpoints at Ctrl-C, results as arrays and tables."""
 
+import json
 import os
 import signal
 import subprocess
@@ -12,7 +13,7 @@ import pytest
 
 import pontoon as pt
 
-from conftest import TANK, needs_signals
+from conftest import TANK, TANK_3D, needs_signals
 
 
 def files(folder: Path) -> dict[str, bytes]:
@@ -231,6 +232,78 @@ def test_the_answer_to_irregular_waves_is_a_function_of_frequency(tmp_path: Path
     assert any(abs(heave.frequency - 1.45) < 0.1)
     assert (heave.amplitude > 0.0).all() and (abs(heave.phase) <= 180.0).all()
     assert (heave.coherence > 0.0).all() and (heave.coherence < 1.0 + 1e-9).all()
+
+
+#: Amplitudes over the wave (m/m, °/m) and leads (degrees) at frequencies of 0.4 and 0.6 Hz of the six motions of a body.
+MOTIONS_3D = {
+    "surge_m": ((0.9, 0.5), 90.0),
+    "sway_m": ((0.3, 0.2), -60.0),
+    "heave_m": ((1.0, 0.8), 0.0),
+    "roll_deg": ((40.0, 60.0), 30.0),
+    "pitch_deg": ((50.0, 25.0), -90.0),
+    "yaw_deg": ((10.0, 5.0), 150.0),
+}
+
+
+def test_the_answer_of_a_body_in_3d_has_six_motions_alike_here_and_at_the_command_line(tmp_path: Path) -> None:
+    text = TANK_3D + """
+[[probe]]
+motion = "crate"
+
+[[probe]]
+name = "gauge"
+elevation = { x = 0.2, y = 0.3 }
+
+[[statistic]]
+rao = { motion = "crate", wave = "gauge" }
+
+[[statistic]]
+name = "regular"
+rao = { motion = "crate", wave = "gauge" }
+period = 2.5
+"""
+    run = pt.run(pt.Scene.from_toml(text).set(until=0.001, frames="off"), out=tmp_path / "run", report=False)
+    # The tables of a longer run: waves of two frequencies, whose periods divide the segments of the spectra, and a
+    # linear body in them.
+    t, frequencies, amplitudes = np.arange(0.0, 400.0, 0.1), np.array([0.4, 0.6]), np.array([0.02, 0.015])
+
+    def wave(shares: tuple[float, float], lead: float) -> list[float]:
+        phases = 2.0 * np.pi * frequencies[:, None] * t + np.radians([[20.0], [-70.0]]) + np.radians(lead)
+        values: list[float] = ((np.array(shares) * amplitudes)[:, None] * np.cos(phases)).sum(axis=0).tolist()
+        return values
+
+    for name, known in {"crate": MOTIONS_3D, "gauge": {"eta_m": ((1.0, 1.0), 0.0)}}.items():
+        path = run.folder / "series" / f"{name}.csv"
+        head = path.read_text().splitlines()[0]
+        columns = head.split(",")
+        assert set(known) <= set(columns)
+        values = [t.tolist()] + [wave(*known[c]) if c in known else [0.0] * len(t) for c in columns[1:]]
+        rows = [",".join(repr(float(x)) for x in row) for row in zip(*values, strict=True)]
+        path.write_text("\n".join([head, *rows]) + "\n")
+    told = {rao.motion: rao for rao in run.rao()}
+    assert list(told) == [f"crate.{motion}" for motion in MOTIONS_3D]
+    for motion, (shares, lead) in MOTIONS_3D.items():
+        rao = told[f"crate.{motion}"]
+        assert rao.name == "rao" and rao.unit == ("m/m" if motion.endswith("_m") else "°/m")
+        for frequency, share in zip(frequencies, shares, strict=True):
+            k = int(np.argmin(abs(rao.frequency - frequency)))
+            # A line of the spectrum is 0.01 Hz wide. The window of a segment spreads a sine over the lines beside it alike in
+            # wave and motion.
+            assert abs(rao.frequency[k] - frequency) < 0.005
+            assert rao.amplitude[k] == pytest.approx(share, rel=0.01), motion
+            assert (rao.phase[k] - lead + 180.0) % 360.0 - 180.0 == pytest.approx(0.0, abs=1.0), motion
+            assert rao.coherence[k] == pytest.approx(1.0, abs=0.01), motion
+    # The command line has the same answers, and with the period of regular waves the same figures.
+    command = [sys.executable, "-m", "pontoon", "stats", str(run.folder), "--json"]
+    answers = json.loads(subprocess.run([*command, "--rao"], check=True, capture_output=True, text=True).stdout)
+    here = [(rao.motion, f, a) for rao in run.rao() for f, a in zip(rao.frequency, rao.amplitude, strict=True)]
+    assert [(row["series"], row["frequency_hz"], row["rao"]) for row in answers] == here
+    figures = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
+    regular = [row for row in figures if row["name"] == "regular"]
+    assert regular == [vars(row) for row in run.stats() if row.name == "regular"]
+    assert {row["series"] for row in regular if row["quantity"] == "rao"} == set(told)
+    by_period = {row["series"]: row["value"] for row in regular if row["quantity"] == "rao"}
+    assert by_period["crate.roll_deg"] == pytest.approx(40.0, rel=0.01)
 
 
 def test_a_study_gives_a_table(tank: pt.Scene, tmp_path: Path) -> None:

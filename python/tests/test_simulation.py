@@ -8,13 +8,14 @@ import signal
 import threading
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 import pontoon as pt
 
-from conftest import needs_signals
+from conftest import TANK, needs_signals
 
 
 def state(sim: pt.Simulation) -> tuple[bytes, bytes]:
@@ -283,6 +284,70 @@ def test_a_state_from_before_a_change_of_solids_is_refused(tank: pt.Scene) -> No
     sim.remove_solid("ball")
     with pytest.raises(pt.RestartError):
         sim.restore(with_ball)
+
+
+@pytest.mark.parametrize("density", [700.0, 70.0, None])
+def test_a_solid_added_after_a_restart_does_as_without_it(tank: pt.Scene, density: float | None) -> None:
+    role = {"fixed": True} if density is None else {"free": {"density": density}}
+    ball = {"name": "ball", "shape": {"ball": {"radius": 0.08}}, "at": [0.2, 0.2]} | role
+    whole = tank.build()
+    whole.advance(0.02)
+    saved = whole.save()
+    resumed, back = tank.build(), tank.build()
+    back.advance(0.05)
+    for each in (resumed, back):
+        each.restore(saved)
+    for each in (whole, resumed, back):
+        assert each.add_solid(ball) > 0
+    assert whole.save() == resumed.save() == back.save()
+    for each in (whole, resumed, back):
+        each.advance(0.06)
+    assert whole.save() == resumed.save() == back.save()
+
+
+def test_a_state_of_another_scene_is_refused_and_changes_nothing(tank: pt.Scene) -> None:
+    sim, twin = tank.build(), tank.build()
+    for each in (sim, twin):
+        each.advance(0.02)
+    before = sim.save()
+    # The same solids in other water: the bodies alone would fit.
+    other = pt.Scene.from_toml(TANK.replace("max = [1.0, 0.5]", "max = [1.0, 0.4]")).build()
+    other.advance(0.05)
+    with pytest.raises(pt.RestartError):
+        sim.restore(other.save())
+    assert sim.save() == before and state(sim) == state(twin)
+    for each in (sim, twin):
+        each.advance(0.06)
+    assert state(sim) == state(twin)
+
+
+def test_a_step_that_a_function_keeps_stays_as_it_was(tank: pt.Scene) -> None:
+    kept: list[pt.BodyStep] = []
+    times: list[float] = []
+
+    def keep_every_other(h: pt.BodyStep) -> None:
+        times.append(h.time)
+        if len(times) % 2:
+            kept.append(h)
+
+    tank.build().advance(0.05, control=keep_every_other)
+    assert [h.time for h in kept] == times[::2] and len(kept) > 3
+    assert all(h["crate"].name == "crate" and h["crate"].role == "free" for h in kept)
+
+
+def test_vectors_are_taken_from_lists_arrays_and_views(tank: pt.Scene) -> None:
+    def pushed(force: Any) -> tuple[bytes, bytes]:
+        sim = tank.build()
+        sim.advance(0.02, control=lambda h: h.push("crate", force))
+        return state(sim)
+
+    there = pushed([3.0, -2.0])
+    strided = np.array([3.0, 0.0, -2.0, 0.0])[::2]
+    for same in ((3, -2), np.array([3.0, -2.0]), strided, np.array([3.0, -2.0], dtype=np.float32), np.array([3, -2])):
+        assert pushed(same) == there
+    for wrong in ([[3.0, -2.0]], np.zeros((1, 2)), np.zeros(3), np.array([np.inf, 0.0]), "ab", object()):
+        with pytest.raises(pt.UsageError, match="2 finite numbers"):
+            pushed(wrong)
 
 
 def test_contacts_have_names_force_and_place(tank: pt.Scene) -> None:

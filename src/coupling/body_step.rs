@@ -3,6 +3,8 @@
 
 use std::time::{Duration, Instant};
 
+use serde::{Deserialize, Serialize};
+
 use super::{
     Accounting, AcousticAddedMass, AddedMassState, Interval, Moorings,
     load_breakdown::{BodyLoads, LoadBreakdown, contact_sums},
@@ -14,6 +16,7 @@ use crate::{
     solid::{
         ContactForce, Engine, EngineFault, Kinematics, Load, Role, Solid,
         constraint::assembly::{Assembly, AssemblyState, ConstraintLoads},
+        mooring::LineState,
     },
     system::{MomentumTransfer, System, face_reached, return_impulse, spread_impulses},
 };
@@ -29,6 +32,15 @@ pub(crate) struct Bodies<const D: usize> {
     external: bool,
     pub(super) steps: u64,
     spent: Duration,
+}
+
+/// The state of [`Bodies`] in a checkpoint.
+#[derive(Serialize, Deserialize)]
+pub(crate) struct BodiesState<const D: usize> {
+    engine: Option<Vec<u8>>,
+    added_masses: Vec<AddedMassState>,
+    constraints: AssemblyState<D>,
+    moorings: Vec<LineState<D>>,
 }
 
 impl<const D: usize> Bodies<D> {
@@ -93,25 +105,51 @@ impl<const D: usize> Bodies<D> {
         system.solids.iter().enumerate().map(one).collect()
     }
 
-    /// Returns the states of the added masses for a checkpoint.
-    pub(crate) fn added_mass_state(&self) -> Vec<AddedMassState> {
-        self.added_masses.iter().map(AcousticAddedMass::state).collect()
+    /// Whether the saved state belongs to these bodies without the solids `gone`.
+    ///
+    /// # Errors
+    /// `Restart` if the state of the engine is damaged or belongs to other solids.
+    pub(crate) fn matches(&self, state: &BodiesState<D>, gone: &[usize]) -> Result<bool> {
+        let engines = match (&self.engine, &state.engine) {
+            (Some(engine), Some(bytes)) => engine.check(bytes).map(|()| true)?,
+            (engine, bytes) => engine.is_none() && bytes.is_none(),
+        };
+        let added_masses = self.added_masses.iter().filter(|own| !gone.contains(&own.solid)).count();
+        Ok(engines
+            && added_masses == state.added_masses.len()
+            && self.constraints.matches(&state.constraints)
+            && self.moorings.matches(&state.moorings))
     }
 
-    /// Restores the saved state of the constraints, after that of the engine. Returns whether it belongs to these constraints.
-    pub(crate) fn restore_constraints(&mut self, state: AssemblyState<D>) -> bool {
-        let same = self.constraints.restore(state);
-        if let Some(engine) = self.engine.as_deref_mut().filter(|_| same) {
+    /// Returns the state for a checkpoint.
+    ///
+    /// # Errors
+    /// `Restart` if the state of the engine cannot be written.
+    pub(crate) fn save(&self) -> Result<BodiesState<D>> {
+        Ok(BodiesState {
+            engine: self.engine.as_ref().map(|engine| engine.save()).transpose()?,
+            added_masses: self.added_masses.iter().map(AcousticAddedMass::state).collect(),
+            constraints: self.constraints.save(),
+            moorings: self.moorings.states(),
+        })
+    }
+
+    /// Returns to a saved state of a run after `steps` steps, which [`Bodies::matches`] has let pass.
+    ///
+    /// # Errors
+    /// `Restart` if the state of the engine is damaged.
+    pub(crate) fn restore(&mut self, state: BodiesState<D>, steps: u64) -> Result<()> {
+        if let (Some(engine), Some(bytes)) = (&mut self.engine, &state.engine) {
+            engine.restore(bytes)?;
+        }
+        self.added_masses.iter_mut().zip(state.added_masses).for_each(|(own, state)| own.restore(state));
+        self.steps = steps;
+        self.constraints.restore(state.constraints);
+        if let Some(engine) = self.engine.as_deref_mut() {
             self.constraints.restore_ropes(engine);
         }
-        same
-    }
-
-    /// Restores the saved `states` of a run after `steps` steps. Returns whether the states belong to these bodies.
-    pub(crate) fn restore(&mut self, states: &[AddedMassState], steps: u64) -> bool {
-        self.added_masses.iter_mut().zip(states).for_each(|(added_mass, state)| added_mass.restore(*state));
-        self.steps = steps;
-        self.added_masses.len() == states.len()
+        self.moorings.restore(state.moorings);
+        Ok(())
     }
 
     /// Sets the engine, when the first free body is added.

@@ -11,7 +11,7 @@ mod power_breakdown;
 pub use acoustic_added_mass::stiffest_frequency;
 pub(crate) use acoustic_added_mass::{AcousticAddedMass, AddedMassState};
 pub use body_step::BodyStep;
-pub(crate) use body_step::{Bodies, Hook};
+pub(crate) use body_step::{Bodies, BodiesState, Hook};
 pub use energy_budget::EnergyBudget;
 pub(crate) use energy_budget::{Accounting, AccountingState};
 pub use load_breakdown::LoadBreakdown;

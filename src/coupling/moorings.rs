@@ -252,14 +252,15 @@ impl<const D: usize> Moorings<D> {
         self.lines.iter().map(|mooring| mooring.state().clone()).collect()
     }
 
-    /// Returns to saved states; whether they belong to these lines.
-    pub(crate) fn restore(&mut self, states: Vec<LineState<D>>) -> bool {
+    /// Whether saved states belong to these lines.
+    pub(super) fn matches(&self, states: &[LineState<D>]) -> bool {
         let fits = |(mooring, state): (&Mooring<D>, &LineState<D>)| state.x.len() == mooring.line.segments() + 1;
-        let same = states.len() == self.lines.len() && self.lines.iter().zip(&states).all(fits);
-        if same {
-            self.lines.iter_mut().zip(states).for_each(|(mooring, state)| mooring.line.state = state);
-        }
-        same
+        states.len() == self.lines.len() && self.lines.iter().zip(states).all(fits)
+    }
+
+    /// Returns to saved states, which [`Moorings::matches`] has let pass.
+    pub(super) fn restore(&mut self, states: Vec<LineState<D>>) {
+        self.lines.iter_mut().zip(states).for_each(|(mooring, state)| mooring.line.state = state);
     }
 }
 

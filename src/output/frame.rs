@@ -10,7 +10,9 @@ use std::{
 };
 
 use super::{
-    cannot_write, sync_folder,
+    cannot_write,
+    frame_index::FrameIndex,
+    sync_folder,
     vtu::{self, Cells, DataArray, Values},
     write_atomically,
 };
@@ -59,6 +61,7 @@ pub(crate) struct FrameWriter {
     bytes: u64,
     /// Number of frames that are confirmed to be on the disk.
     synced: usize,
+    index: FrameIndex,
 }
 
 impl FrameWriter {
@@ -81,7 +84,8 @@ impl FrameWriter {
         let files = folder.join("frames");
         std::fs::create_dir_all(&files).map_err(|e| cannot_write(&files, &e))?;
         let (synced, parts) = (times.len(), &PARTS[..if moorings { 3 } else { 2 }]);
-        let mut frames = Self { folder: folder.to_owned(), fields, parts, crop, synced, times, bytes: 0 };
+        let index = FrameIndex::new(folder.join("frames.pvd"), "frames", parts);
+        let mut frames = Self { folder: folder.to_owned(), fields, parts, crop, times, bytes: 0, synced, index };
         frames.update_size();
         Ok(frames)
     }
@@ -97,7 +101,7 @@ impl FrameWriter {
         let gone = kept..self.times.len();
         self.times.truncate(kept);
         self.synced = self.synced.min(kept);
-        self.write_index()?;
+        self.index.write(&self.times)?;
         for path in gone.flat_map(|number| self.piece_names(number)).map(|name| self.folder.join("frames").join(name)) {
             match std::fs::remove_file(&path) {
                 Err(why) if why.kind() != io::ErrorKind::NotFound => return Err(cannot_write(&path, &why)),
@@ -113,11 +117,6 @@ impl FrameWriter {
         let files = self.folder.join("frames");
         let there = (0..self.times.len()).flat_map(|number| self.piece_names(number));
         self.bytes = there.filter_map(|name| Some(std::fs::metadata(files.join(name)).ok()?.len())).sum();
-    }
-
-    /// Writes the list of all frames.
-    fn write_index(&self) -> Result<()> {
-        write_atomically(&self.folder.join("frames.pvd"), pvd_index(&self.times, "frames", self.parts).as_bytes())
     }
 
     /// Returns the times of the frames so far, s.
@@ -161,7 +160,7 @@ impl FrameWriter {
         }
         self.bytes += bytes;
         self.times.push(t);
-        self.write_index()
+        self.index.append(&self.times)
     }
 
     /// Waits until all frames are on the disk.
@@ -246,21 +245,6 @@ fn to_3d<const D: usize>(vectors: &[Vector<D>]) -> Vec<f32> {
 fn points_vtu<const D: usize>(points: &[Vector<D>], fields: Vec<DataArray>) -> io::Result<Vec<u8>> {
     let connectivity = (0..points.len() as i64).collect();
     vtu::write(to_3d(points), Cells { connectivity, points_per_cell: 1, cell_type: VERTEX }, fields)
-}
-
-/// Returns the text of a .pvd file, which lists the files of all `parts` in the adjacent `folder` with their times (s).
-pub(super) fn pvd_index(times: &[f64], folder: &str, parts: &[&str]) -> String {
-    let mut text = String::from(
-        "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n<Collection>\n",
-    );
-    for (i, t) in times.iter().enumerate() {
-        for (part, name) in parts.iter().enumerate() {
-            text += &format!(
-                "<DataSet timestep=\"{t:?}\" part=\"{part}\" name=\"{name}\" file=\"{folder}/{name}_{i:05}.vtu\"/>\n"
-            );
-        }
-    }
-    text + "</Collection>\n</VTKFile>\n"
 }
 
 #[cfg(test)]

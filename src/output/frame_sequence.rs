@@ -5,7 +5,10 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use super::vtu::{self, Values};
+use super::{
+    frame_index::read_times,
+    vtu::{self, Values},
+};
 use crate::error::{Error, Result};
 
 /// The frames of a run.
@@ -13,6 +16,8 @@ use crate::error::{Error, Result};
 pub struct FrameSequence {
     folder: PathBuf,
     times: Vec<f64>,
+    /// Where the last entry begins in the list, bytes.
+    last_entry: u64,
 }
 
 /// The points of one part of a frame. Fields that the file does not contain are empty.
@@ -40,19 +45,29 @@ impl FrameSequence {
     /// # Errors
     /// `File` if `frames.pvd` cannot be read.
     pub fn open(folder: &Path) -> Result<Option<Self>> {
-        let path = folder.join("frames.pvd");
-        let text = match std::fs::read_to_string(&path) {
-            Ok(text) => text,
-            Err(why) if why.kind() == std::io::ErrorKind::NotFound => return Ok(None),
-            Err(why) => return Err(Error::read(&path, &why)),
-        };
-        let after = |text: &str, word: &str| Some(text.split_once(word)?.1.split('"').next()?.to_string());
-        let entries = text.split("<DataSet ").skip(1).filter(|p| p.contains("name=\"water\""));
-        let times: Option<Vec<f64>> = entries.map(|p| after(p, "timestep=\"")?.parse().ok()).collect();
-        match times {
-            Some(times) => Ok((!times.is_empty()).then(|| Self { folder: folder.join("frames"), times })),
-            None => Err(Error::file(&path, "is not a list of frames of this program")),
+        let path = list_path(folder);
+        if !path.exists() {
+            return Ok(None);
         }
+        let mut times = Vec::new();
+        let last_entry = read_times(&path, 0, &mut times)?;
+        Ok((!times.is_empty()).then(|| Self { folder: folder.to_owned(), times, last_entry }))
+    }
+
+    /// Reads what was added to the list since it was read, or all of it if it is another one.
+    ///
+    /// # Errors
+    /// As [`FrameSequence::open`].
+    pub(crate) fn update(&mut self) -> Result<()> {
+        let known = self.times.len();
+        let (last, path) = (self.times.pop(), list_path(&self.folder));
+        self.last_entry = read_times(&path, self.last_entry, &mut self.times)?;
+        // The last entry is read again: it tells that the list before it is the known one.
+        if known == 0 || self.times.get(known - 1) != last.as_ref() {
+            self.times.clear();
+            self.last_entry = read_times(&path, 0, &mut self.times)?;
+        }
+        Ok(())
     }
 
     /// Returns the times of the frames, s.
@@ -108,8 +123,13 @@ impl FrameSequence {
     }
 
     fn path(&self, part: &str, number: usize) -> PathBuf {
-        self.folder.join(format!("{part}_{number:05}.vtu"))
+        self.folder.join("frames").join(format!("{part}_{number:05}.vtu"))
     }
+}
+
+/// Path of the list of frames of the run in `folder`.
+fn list_path(folder: &Path) -> PathBuf {
+    folder.join("frames.pvd")
 }
 
 fn read_points(path: &Path) -> Result<FramePoints> {

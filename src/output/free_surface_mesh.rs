@@ -8,7 +8,7 @@ use splashsurf_lib::{Parameters, nalgebra::Vector3, reconstruct_surface, sph_int
 
 use super::{
     cannot_write,
-    frame::pvd_index,
+    frame_index::FrameIndex,
     frame_sequence::{FramePoints, FrameSequence},
     vtu::{self, Cells, DataArray},
     write_atomically,
@@ -92,7 +92,7 @@ pub fn write(folder: &Path, frames: &FrameSequence, dp: f64) -> Result<usize> {
         let file = surface.to_vtu().map_err(|why| cannot_write(&path, &why))?;
         write_atomically(&path, &file)?;
     }
-    write_atomically(&folder.join("surface.pvd"), pvd_index(frames.times(), "surface", &["surface"]).as_bytes())?;
+    FrameIndex::new(folder.join("surface.pvd"), "surface", &["surface"]).write(frames.times())?;
     Ok(frames.times().len())
 }
 

@@ -4,6 +4,7 @@ pub(crate) mod checkpoint;
 pub(crate) mod csv;
 #[doc(hidden)]
 pub mod frame;
+mod frame_index;
 pub(crate) mod frame_sequence;
 pub(crate) mod gdf;
 #[doc(hidden)]

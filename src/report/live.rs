@@ -91,8 +91,8 @@ struct Basis {
 pub(crate) struct LiveRun {
     folder: PathBuf,
     basis: Mutex<Option<Arc<Basis>>>,
-    /// The length of the list of frames (bytes) when it was last read, and its number of frames.
-    listed: Mutex<(u64, usize)>,
+    /// The length of the list of frames (bytes) when it was last read, and the frames. Of a frame it keeps the time alone.
+    listed: Mutex<(u64, Option<Arc<FrameSequence>>)>,
 }
 
 impl LiveRun {
@@ -145,41 +145,29 @@ impl LiveRun {
                 added.rows.insert(name.clone(), columns);
             }
         }
-        let count = self.frame_count()?;
+        let film = self.frames()?;
+        let count = film.as_ref().map_or(0, |film| film.times().len());
         if count < position.frames || count > 0 && basis.shown.is_none() {
             return Ok(None);
         }
-        if count > position.frames {
-            self.add_frames(&basis, position, &mut added)?;
+        if let Some(film) = film.filter(|_| count > position.frames) {
+            add_frames(&basis, &film, position, &mut added);
         }
         Ok(Some(added))
     }
 
-    /// Returns the number of frames. Their list is read only if it has another length than before.
-    fn frame_count(&self) -> Result<usize> {
+    /// Returns the frames. Their list is read only if it has another length than before, and then only what is new.
+    fn frames(&self) -> Result<Option<Arc<FrameSequence>>> {
         let length = std::fs::metadata(self.folder.join("frames.pvd")).map_or(0, |file| file.len());
         let mut listed = self.listed.lock().unwrap_or_else(PoisonError::into_inner);
         if length != listed.0 {
-            *listed = (length, FrameSequence::open(&self.folder)?.map_or(0, |film| film.times().len()));
+            match &mut listed.1 {
+                Some(film) => Arc::make_mut(film).update()?,
+                none => *none = FrameSequence::open(&self.folder)?.map(Arc::new),
+            }
+            listed.0 = length;
         }
-        Ok(listed.1)
-    }
-
-    /// Adds the newest frames to an increment.
-    fn add_frames(&self, basis: &Basis, position: &mut FeedPosition, added: &mut Increment) -> Result<()> {
-        let (Some(shown), Some(film)) = (&basis.shown, FrameSequence::open(&self.folder)?) else { return Ok(()) };
-        let count = film.times().len();
-        let most = (MOST_SAMPLES / shown.count()).clamp(2, MOST_FRAMES);
-        // The frame before the new ones tells how the particles moved.
-        let from = position.frames.max(count.saturating_sub(most)).saturating_sub(1);
-        let numbers: Vec<usize> = (from..count).collect();
-        let mut blob = BinaryData::default();
-        // A frame that a rollback removes meanwhile is left out.
-        if let Ok(reel) = shown.encode(&film, &numbers, basis.geometry.as_ref(), false, &mut blob) {
-            (added.reel, added.blob) = (Some(reel), Some(blob.to_base64()));
-        }
-        position.frames = count;
-        Ok(())
+        Ok(listed.1.clone())
     }
 
     fn table_path(&self, name: &str) -> PathBuf {
@@ -198,6 +186,22 @@ impl LiveRun {
         file.take(length - from).read_to_end(&mut last).map_err(refused)?;
         Ok(last.iter().rposition(|byte| *byte == b'\n').map_or(from, |i| from + i as u64 + 1))
     }
+}
+
+/// Adds the newest frames to an increment.
+fn add_frames(basis: &Basis, film: &FrameSequence, position: &mut FeedPosition, added: &mut Increment) {
+    let Some(shown) = &basis.shown else { return };
+    let count = film.times().len();
+    let most = (MOST_SAMPLES / shown.count()).clamp(2, MOST_FRAMES);
+    // The frame before the new ones tells how the particles moved.
+    let from = position.frames.max(count.saturating_sub(most)).saturating_sub(1);
+    let numbers: Vec<usize> = (from..count).collect();
+    let mut blob = BinaryData::default();
+    // A frame that a rollback removes meanwhile is left out.
+    if let Ok(reel) = shown.encode(film, &numbers, basis.geometry.as_ref(), false, &mut blob) {
+        (added.reel, added.blob) = (Some(reel), Some(blob.to_base64()));
+    }
+    position.frames = count;
 }
 
 /// Returns the names of the tables in the folder `series`, sorted.

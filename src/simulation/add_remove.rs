@@ -3,7 +3,7 @@
 use super::{Simulation, external_bodies::refuse_ballast};
 use crate::{
     coupling::AcousticAddedMass,
-    error::{Error, ErrorKind, Result},
+    error::{Error, ErrorCode, ErrorKind, Result},
     interaction::RequestedSums,
     model::Dimension,
     solid::{Constraints, Dim, HasEngine as _, Kinematics, Role, Solid, SolidSpec, containment::depth_inside_mesh},
@@ -75,22 +75,23 @@ where
     /// been added, in this order.
     ///
     /// # Errors
-    /// `Restart` if the bytes are damaged or belong to another setup, or other solids had been added.
+    /// `Restart` if the bytes are damaged or another number of solids had been added: nothing has changed then. `Restart` also if they
+    /// belong to another setup, or other solids had been added: the solids have come in then.
     pub fn restore_with_added_solids(&mut self, bytes: &[u8], added: Vec<SolidSpec<D>>) -> Result<()> {
+        let kept = Self::read(bytes)?;
+        let (own, there) = (self.system.solids().len() + added.len(), kept.system.solid_count());
+        if own != there || kept.removed_solids.iter().any(|solid| *solid as usize >= there) {
+            let what = format!("the state is of {there} solids, and with the added ones there are {own} here");
+            return Err(Error::new(ErrorKind::Restart, what)
+                .with_code(ErrorCode::OtherSetup)
+                .help("give all solids that had been added, in their order"));
+        }
+        added.iter().try_for_each(SolidSpec::check)?;
         for spec in added {
             let start = spec.initial_kinematics();
             self.insert_solid(spec, start)?;
         }
-        for solid in Self::read(bytes)?.removed_solids {
-            if solid as usize >= self.system.solids().len() {
-                return Err(Error::new(
-                    ErrorKind::Restart,
-                    format!("the state says that solid number {solid} was removed"),
-                )
-                .help("give all solids that had been added, in their order"));
-            }
-            self.delete_solid(solid as usize);
-        }
+        kept.removed_solids.iter().for_each(|solid| self.delete_solid(*solid as usize));
         self.restore(bytes)
     }
 
@@ -191,14 +192,16 @@ impl<const D: usize> Simulation<D> {
         Ok(())
     }
 
-    /// Removes those of `solids` whose removal is part of the set-up, before the state after it is restored.
-    pub(super) fn remove_planned(&mut self, solids: &[u32]) {
-        for solid in solids.iter().map(|solid| *solid as usize) {
-            let there = self.system.solids().get(solid).is_some_and(|solid| !solid.boundary.is_empty());
-            if there && self.bodies.constraints().plans_removal(solid) {
-                self.delete_solid(solid);
-            }
-        }
+    /// Those of `solids` that are still there and whose removal is part of the set-up.
+    pub(super) fn planned_removals(&self, solids: &[u32]) -> Vec<usize> {
+        let there = |solid: usize| self.system.solids().get(solid).is_some_and(|solid| !solid.boundary.is_empty());
+        let planned = |solid: &usize| there(*solid) && self.bodies.constraints().plans_removal(*solid);
+        solids.iter().map(|solid| *solid as usize).filter(planned).collect()
+    }
+
+    /// Takes solids out of water and world, before the state after that is restored.
+    pub(super) fn delete_solids(&mut self, solids: &[usize]) {
+        solids.iter().for_each(|solid| self.delete_solid(*solid));
     }
 
     /// Takes a solid out of water and world.

@@ -301,12 +301,14 @@ impl<const D: usize> System<D> {
         self.boundary.shifting_suppressed = Some(suppressed);
     }
 
-    /// Gives each boundary particle of `range` near water the density of still water at its depth.
+    /// Gives each boundary particle of `range` near water the density of still water at its depth, but not below ρ₀. It reads nothing
+    /// of the last force pass, which a restored state does not hold.
     pub(super) fn init_hydrostatic(&mut self, range: Range<usize>) {
-        let (water, boundary) = (&self.fluid.particles, &self.boundary.particles);
-        let still: Vec<f64> = self
-            .neighbours
-            .boundary_near_fluid()
+        let (water, boundary, rho0) = (&self.fluid.particles, &self.boundary.particles, self.properties.rho0);
+        let near = self.neighbours.boundary_near_fluid();
+        let place = |end: usize| near.partition_point(|&i| (i as usize) < end);
+        let near = &near[place(range.start)..place(range.end)];
+        let still: Vec<f64> = near
             .par_iter()
             .map(|&i| {
                 let x = &boundary.r[i as usize];
@@ -318,10 +320,12 @@ impl<const D: usize> System<D> {
                         nearest = (d, head + self.properties.gravity.dot(&(x - water.r[j])));
                     }
                 });
-                self.properties.rho0 * (1.0 + self.equation_of_state.compression(nearest.1.max(0.0)))
+                rho0 * (1.0 + self.equation_of_state.compression(nearest.1.max(0.0)))
             })
             .collect();
-        self.set_boundary_density(None, |k, i, rho| if range.contains(&i) { still[k] } else { rho });
+        for (&i, still) in near.iter().zip(still) {
+            self.boundary.particles.rho[i as usize] = DynamicBoundary.limited_density(still, rho0);
+        }
     }
 
     /// Sets the density (kg/m³) of each boundary particle near water to what `rho` makes of its place among them, its

@@ -45,6 +45,13 @@ pub(crate) struct SystemState<'a, const D: usize> {
     passes: u64,
 }
 
+impl<const D: usize> SystemState<'_, D> {
+    /// Number of solids, with those that were removed.
+    pub(crate) fn solid_count(&self) -> usize {
+        self.kinematics.len()
+    }
+}
+
 impl<const D: usize> System<D> {
     /// The state from which [`System::restore`] continues with the same bits.
     pub(crate) fn save(&self) -> SystemState<'_, D> {
@@ -76,10 +83,11 @@ impl<const D: usize> System<D> {
         }
     }
 
-    /// Whether `state` has the numbers of particles and solids of this system.
-    fn matches(&self, state: &SystemState<D>) -> bool {
+    /// Whether `state` has the numbers of particles and solids of this system without the solids `gone`.
+    fn matches(&self, state: &SystemState<D>, gone: &[usize]) -> bool {
         let whole = |p: &Particles<D>| p.v.len() == p.len() && p.rho.len() == p.len() && p.id.len() == p.len();
         let (count, solids) = (state.fluid.len(), self.solids.len());
+        let skin_gone: usize = gone.iter().map(|&i| self.solids[i].boundary.len()).sum();
         let tensors = |own: &Option<Vec<Matrix<D>>>, kept: &[Matrix<D>]| {
             kept.len() == if own.as_ref().is_none_or(Vec::is_empty) { 0 } else { count }
         };
@@ -100,7 +108,7 @@ impl<const D: usize> System<D> {
         fits && all
             && state.images.iter().all(|&i| (i as usize) < real)
             && state.reflections.len() == if self.symmetry_planes().any() { state.images.len() } else { 0 }
-            && state.boundary_count == self.boundary.particles.len()
+            && state.boundary_count == self.boundary.particles.len() - skin_gone
             && state.boundary_density.iter().all(|&(i, _)| (i as usize) < state.boundary_count)
             && state.kinematics.len() == solids
             && state.loads.len() == solids
@@ -114,23 +122,32 @@ impl<const D: usize> System<D> {
             && whole(&state.fluid)
     }
 
-    /// Returns to a saved state of the same scene.
-    pub(crate) fn restore(&mut self, state: SystemState<D>) -> Result<()> {
-        if !self.matches(&state) {
+    /// Checks that [`System::restore`] can return to `state` once the solids `gone` are removed.
+    ///
+    /// # Errors
+    /// `Restart` if the state belongs to another scene or is damaged.
+    pub(crate) fn check_state(&self, state: &SystemState<D>, gone: &[usize]) -> Result<()> {
+        if !self.matches(state, gone) {
             return Err(Error::new(ErrorKind::Restart, "the checkpoint holds another number of particles")
                 .help("it belongs to another scene: resume in the folder of its own run"));
         }
-        let (water, poses) = (state.at_rebuild.0, state.at_rebuild.1.into_owned());
-        let boundary = self.boundary.positions_at(&poses, &self.solids, &self.fluid.images);
         // No run continues with water outside its domain, but images lie beyond periodic sides.
         let around = self.fluid_domain.domain.grown(self.fluid_domain.domain.size().max());
-        let near = water.iter().chain(&state.fluid.r).all(|x| around.contains(x));
-        let now: Vec<Pose<D>> = state.kinematics.iter().map(|kinematics| kinematics.pose).collect();
-        let mut places =
-            boundary.iter().copied().chain(self.boundary.positions_at(&now, &self.solids, &self.fluid.images));
-        if !near || !places.all(|x| x.amax() < FARTHEST) {
+        let near = state.at_rebuild.0.iter().chain(state.fluid.r.iter()).all(|x| around.contains(x));
+        // A solid takes no particle further than the furthest corner of the box around them.
+        let poses = state.at_rebuild.1.iter().chain(state.kinematics.iter().map(|kinematics| &kinematics.pose));
+        let boxes = self.boundary.local_bounds.iter().cycle();
+        let mut corners = poses.zip(boxes).flat_map(|(pose, own)| own.corners().map(|x| pose.point(&x)));
+        if !near || !corners.all(|x| x.iter().all(|x| x.abs() < FARTHEST)) {
             return Err(Error::new(ErrorKind::Restart, "the checkpoint holds a particle that is nowhere"));
         }
+        Ok(())
+    }
+
+    /// Returns to a saved state of the same scene, which [`System::check_state`] has let pass.
+    pub(crate) fn restore(&mut self, state: SystemState<D>) {
+        let (water, poses) = (state.at_rebuild.0, state.at_rebuild.1.into_owned());
+        let boundary = self.boundary.positions_at(&poses, &self.solids, &self.fluid.images);
         self.status.passes = state.passes;
         own_water::set_apart(self, false);
         self.fluid.particles = state.fluid.into_owned();
@@ -163,6 +180,5 @@ impl<const D: usize> System<D> {
         self.boundary.poses_at_rebuild = Some(poses);
         self.find_gaps(&boundary);
         self.check_water();
-        Ok(())
     }
 }

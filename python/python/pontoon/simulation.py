@@ -319,8 +319,8 @@ class _Stepped:
         """Returns to a saved state of this simulation, or of one built alike with the same solids added and removed.
 
         Raises:
-            RestartError: the state was saved before a solid was added or removed, and the simulation is as before; or the
-                state is damaged or belongs to another scene, and the simulation is to be built again.
+            RestartError: the state was saved before a solid was added or removed, is damaged or belongs to another scene.
+                The simulation is as before.
         """
         self._native.restore(state)
 

@@ -447,18 +447,19 @@ impl<const D: usize> Assembly<D> {
         self.state.clone()
     }
 
-    /// Returns to a saved state; whether it belongs to these constraints.
-    pub(crate) fn restore(&mut self, kept: AssemblyState<D>) -> bool {
-        let same = kept.joints.len() == self.joints.len()
+    /// Whether a saved state belongs to these constraints.
+    pub(crate) fn matches(&self, kept: &AssemblyState<D>) -> bool {
+        kept.joints.len() == self.joints.len()
             && kept.springs.len() == self.springs.len()
             && kept.ropes.len() == self.ropes.len()
             && kept.forces.len() == self.forces.len()
-            && kept.phases.matches(&self.state.phases);
-        if same {
-            self.state = kept;
-            self.restore_frames();
-        }
-        same
+            && kept.phases.matches(&self.state.phases)
+    }
+
+    /// Returns to a saved state, which [`Assembly::matches`] has let pass.
+    pub(crate) fn restore(&mut self, kept: AssemblyState<D>) {
+        self.state = kept;
+        self.restore_frames();
     }
 }
 

@@ -109,6 +109,12 @@ pub trait Engine<const D: usize>: Send + Sync {
     /// `Restart` if the state cannot be written.
     fn save(&self) -> Result<Vec<u8>>;
 
+    /// Checks that [`Engine::restore`] takes these bytes.
+    ///
+    /// # Errors
+    /// As [`Engine::restore`].
+    fn check(&self, bytes: &[u8]) -> Result<()>;
+
     /// Restores a state that an engine made from the same solids has saved.
     ///
     /// # Errors

@@ -90,6 +90,9 @@ pub(in crate::solid) struct RapierWorld {
 /// A load on a solid in the next step.
 type Push = (usize, Load<D>);
 
+/// What a checkpoint holds of a [`RapierWorld`]: its world, `tuned_for`, `met` and `pushes`.
+type SavedWorld = (PhysicsWorld, f64, Vec<Impact>, Vec<Push>);
+
 impl RapierWorld {
     pub(in crate::solid) fn new(
         solids: &[SolidSpec<D>],
@@ -136,6 +139,25 @@ impl RapierWorld {
             gone,
             turned: Vec::new(),
         })
+    }
+
+    /// Reads a saved state of the same solids.
+    fn read_state(&self, bytes: &[u8]) -> Result<SavedWorld> {
+        let (engine, rest): (&str, &[u8]) = postcard::take_from_bytes(bytes).map_err(restart_error)?;
+        if engine != ENGINE {
+            return Err(restart_error(format!("they were written by {engine}, this is {ENGINE}")));
+        }
+        let saved: SavedWorld = postcard::from_bytes(rest).map_err(restart_error)?;
+        let (world, _, _, pushes) = &saved;
+        let same = world.bodies.len() == self.world.bodies.len()
+            && world.impulse_joints.len() == self.world.impulse_joints.len()
+            && self.bodies.iter().all(|&h| world.bodies.contains(h))
+            && pushes.iter().all(|push| push.0 < self.bodies.len());
+        if !same {
+            let (there, own) = (world.bodies.len(), self.bodies.len());
+            return Err(restart_error(format!("{there} solids, where the scene has {own}")));
+        }
+        Ok(saved)
     }
 
     fn body(&self, solid: usize) -> &RigidBody {
@@ -382,25 +404,12 @@ impl Engine<D> for RapierWorld {
         postcard::to_stdvec(&(ENGINE, &self.world, self.tuned_for, &self.met, &self.pushes)).map_err(restart_error)
     }
 
+    fn check(&self, bytes: &[u8]) -> Result<()> {
+        self.read_state(bytes).map(drop)
+    }
+
     fn restore(&mut self, bytes: &[u8]) -> Result<()> {
-        let (engine, rest): (&str, &[u8]) = postcard::take_from_bytes(bytes).map_err(restart_error)?;
-        if engine != ENGINE {
-            return Err(restart_error(format!("they were written by {engine}, this is {ENGINE}")));
-        }
-        let (world, tuned_for, met, pushes): (PhysicsWorld, f64, Vec<Impact>, Vec<Push>) =
-            postcard::from_bytes(rest).map_err(restart_error)?;
-        let same = world.bodies.len() == self.world.bodies.len()
-            && world.impulse_joints.len() == self.world.impulse_joints.len()
-            && self.bodies.iter().all(|&h| world.bodies.contains(h))
-            && pushes.iter().all(|push| push.0 < self.bodies.len());
-        if !same {
-            return Err(restart_error(format!(
-                "{} solids, where the scene has {}",
-                world.bodies.len(),
-                self.bodies.len()
-            )));
-        }
-        (self.world, self.tuned_for, self.met, self.pushes) = (world, tuned_for, met, pushes);
+        (self.world, self.tuned_for, self.met, self.pushes) = self.read_state(bytes)?;
         self.when_near = registry::iterations_in_contact(&self.world);
         Ok(())
     }

@@ -5,15 +5,20 @@ use std::{f64::consts::PI, fs, path::Path};
 
 use pontoon::{
     Result,
+    error::ErrorKind,
+    geometry::Shape,
     model::Dimension,
     output::Checkpoint,
     run::{self, Progress, RunOptions},
     scene::Scene,
     simulation::Simulation,
-    solid::Dim,
+    solid::{Dim, SolidSpec},
 };
 
-use crate::{common::TestFolder, run_files::assert_same_files};
+use crate::{
+    common::{self, TestFolder},
+    run_files::assert_same_files,
+};
 
 /// Asserts that the scene `name` writes the same files without interruption and with two interruptions (s). Returns the folder of both
 /// runs and the simulation at the second interruption, on which `enable` has switched on its budgets.
@@ -158,5 +163,139 @@ fn mooring_lines_survive_a_restart() -> Result<()> {
     let reading = sim.mooring_reading(0);
     assert!(reading.on_bed > 0.0 && reading.end_forces[0].norm() > 0.0, "{reading:?}");
     assert!(home.join("whole/frames/moorings_00003.vtu").exists(), "frames have the lines");
+    Ok(())
+}
+
+/// A crate afloat in a tank, with what `more` adds.
+fn crate_afloat(more: &str) -> String {
+    format!(
+        r#"
+dimension = 2
+dp        = 0.05
+until     = 1.0
+[[water]]
+fill = {{ box = {{ min = [0.0, 0.0], max = [1.0, 0.5] }} }}
+[[solid]]
+name  = "tank"
+fixed = true
+shape = {{ tank = {{ size = [1.0, 1.0] }} }}
+[[solid]]
+name  = "crate"
+free  = {{ density = 500.0 }}
+shape = {{ box = {{ size = [0.3, 0.2] }} }}
+at    = {{ x = 0.6, draft = 0.12 }}
+{more}"#
+    )
+}
+
+/// A ball of `density` (kg/m³) under water, or one that stays there without a density.
+fn ball(density: Option<f64>) -> SolidSpec<2> {
+    let shape = Shape::Ball { radius: 0.08 };
+    let ball = match density {
+        Some(density) => SolidSpec::free("ball", shape, density),
+        None => SolidSpec::fixed("ball", shape),
+    };
+    ball.at([0.2, 0.2])
+}
+
+#[test]
+fn a_solid_that_comes_in_or_goes_after_a_restart_does_as_without_it() -> Result<()> {
+    // A heavy, a light and a fixed ball: a light one has acoustic added mass, a fixed one no place in the engine's free bodies.
+    for density in [Some(700.0), Some(20.0), None] {
+        let mut whole = common::scene_simulation::<2>(&crate_afloat(""))?;
+        common::steps(&mut whole, 25);
+        let saved = whole.save()?;
+        let mut fresh = common::scene_simulation::<2>(&crate_afloat(""))?;
+        fresh.restore(&saved)?;
+        // A simulation that goes back remembers the force pass of another state.
+        let mut back = common::scene_simulation::<2>(&crate_afloat(""))?;
+        common::steps(&mut back, 60);
+        back.restore(&saved)?;
+        let course = |sim: &mut Simulation<2>| -> Result<[Vec<u8>; 4]> {
+            sim.add_solid(ball(density))?;
+            let added = sim.save()?;
+            common::steps(sim, 40);
+            let later = sim.save()?;
+            sim.remove_solid(2)?;
+            let removed = sim.save()?;
+            common::steps(sim, 40);
+            Ok([added, later, removed, sim.save()?])
+        };
+        let told = course(&mut whole)?;
+        assert!(course(&mut fresh)? == told, "{density:?}: restored in a new simulation");
+        assert!(course(&mut back)? == told, "{density:?}: restored in a simulation that was ahead");
+    }
+    Ok(())
+}
+
+#[test]
+fn a_solid_removed_after_a_restart_leaves_the_same_water_as_without_it() -> Result<()> {
+    let with_ball = || -> Result<Simulation<2>> {
+        let mut sim = common::scene_simulation::<2>(&crate_afloat(""))?;
+        sim.add_solid(ball(Some(20.0)))?;
+        common::steps(&mut sim, 25);
+        Ok(sim)
+    };
+    let mut whole = with_ball()?;
+    let mut resumed = common::scene_simulation::<2>(&crate_afloat(""))?;
+    resumed.restore_with_added_solids(&whole.save()?, vec![ball(Some(20.0))])?;
+    for sim in [&mut whole, &mut resumed] {
+        sim.remove_solid(2)?;
+        common::steps(sim, 40);
+    }
+    assert!(whole.save()? == resumed.save()?);
+    Ok(())
+}
+
+#[test]
+fn a_refused_state_changes_nothing() -> Result<()> {
+    let own = |more: &str| -> Result<Simulation<2>> {
+        let mut sim = common::scene_simulation::<2>(&crate_afloat(more))?;
+        common::steps(&mut sim, 20);
+        Ok(sim)
+    };
+    let rail =
+        "[[joint]]\nname = \"rail\"\nkind = \"slider\"\nbetween = [\"crate\"]\nat = [0.6, 0.5]\nalong = [1.0, 0.0]\n";
+    let line =
+        "[[spring]]\nname = \"line\"\nbetween = [\"crate\"]\nfrom = [0.6, 0.6]\nto = [0.6, 0.9]\nstiffness = 10.0\n";
+    let more_water = "[[water]]\nfill = { box = { min = [0.0, 0.5], max = [0.3, 0.6] } }\n";
+    let other_ball = "[[solid]]\nname = \"ball\"\nfree = { density = 700.0 }\nshape = { ball = { radius = 0.08 } }\nat = [0.2, 0.2]\n";
+    let leaving = "[[solid]]\nname = \"plate\"\nfixed = true\nuntil = 0.01\nshape = { box = { size = [0.1, 0.1] } }\nat = [0.2, 0.2]\n";
+    let mut states: Vec<(&str, Vec<u8>)> = Vec::new();
+    for (what, more) in [("water", more_water), ("joint", rail), ("spring", line), ("solid", other_ball)] {
+        states.push((what, own(more)?.save()?));
+    }
+    let mut budgeted = common::scene_simulation::<2>(&crate_afloat(""))?;
+    budgeted.enable_energy_budget();
+    common::steps(&mut budgeted, 30);
+    states.push(("energy budget", budgeted.save()?));
+    let mut later = own("")?;
+    common::steps(&mut later, 10);
+    // Positions of the crate that are not finite, at each place where they stand in its state.
+    let (whole, at) = (later.save()?, later.system().solids()[1].kinematics.pose.position[0].to_le_bytes());
+    let places: Vec<usize> = (0..whole.len() - 8).filter(|&i| whole[i..i + 8] == at).collect();
+    assert!(!places.is_empty(), "the crate has a position");
+    let mut nowhere = whole.clone();
+    places.iter().for_each(|&i| nowhere[i..i + 8].copy_from_slice(&f64::NAN.to_le_bytes()));
+    states.push(("a solid that is nowhere", nowhere));
+    states.push(("half of a state", whole[..whole.len() / 2].to_vec()));
+    let (mut sim, mut twin) = (own("")?, own("")?);
+    let before = sim.save()?;
+    for (what, state) in &states {
+        let refused = sim.restore(state).expect_err(what);
+        assert_eq!(refused.kind, ErrorKind::Restart, "{what}: {refused}");
+        assert!(sim.save()? == before, "{what}: the refusal changes nothing");
+    }
+    // A removal that is planned is not done for a state that is refused.
+    let mut waiting = common::scene_simulation::<2>(&crate_afloat(leaving))?;
+    let (boundary, start) = (waiting.system().boundary().len(), waiting.save()?);
+    let mut gone = common::scene_simulation::<2>(&crate_afloat(&format!("{leaving}{line}")))?;
+    common::run_to(&mut gone, 0.03)?;
+    assert!(gone.system().solids()[2].boundary.is_empty(), "the plate has gone");
+    assert!(waiting.restore(&gone.save()?).is_err());
+    assert!(waiting.save()? == start && waiting.system().boundary().len() == boundary);
+    common::steps(&mut sim, 30);
+    common::steps(&mut twin, 30);
+    assert!(sim.save()? == twin.save()?, "the run goes on as if nothing had been asked");
     Ok(())
 }

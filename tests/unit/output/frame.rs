@@ -18,13 +18,6 @@ fn points_in_2d_are_written_with_a_third_coordinate_and_a_vertex_each() -> io::R
 }
 
 #[test]
-fn the_index_of_frames_names_both_files_of_each_time() {
-    let text = pvd_index(&[0.0, 0.25], "frames", &PARTS[..2]);
-    assert!(text.contains("timestep=\"0.25\" part=\"1\" name=\"solids\" file=\"frames/solids_00001.vtu\""));
-    assert_eq!(text.matches("<DataSet ").count(), 4);
-}
-
-#[test]
 fn an_unknown_field_is_refused_with_the_nearest_name() {
     let plan = FramesPlan { every: 1.0, fields: vec!["presure".into()], crop: None, moorings: false };
     let error = FrameWriter::new(&std::env::temp_dir(), &plan, vec![]).err();
@@ -45,7 +38,7 @@ fn a_broken_line_is_read_in_two_parts_and_one_that_does_not_act_in_none() -> Res
     writer
         .write_lines("moorings_00000.vtu", &[line(0.0, 3, None), MooringReading::default(), line(2.0, 4, Some(1))])?;
     writer.times.push(0.0);
-    writer.write_index()?;
+    writer.index.append(&writer.times)?;
     let parts = FrameSequence::open(&folder)?.map(|frames| frames.moorings(0)).transpose()?.unwrap_or_default();
     let nodes = |y: f32, from: u8, to: u8| (from..=to).map(|k| [f32::from(k), y, 0.0]).collect::<Vec<_>>();
     assert_eq!(parts, [nodes(0.0, 0, 3), nodes(2.0, 0, 1), nodes(2.0, 2, 4)]);
