@@ -307,7 +307,7 @@ impl<const D: usize> System<D> {
     /// Sorts the water along the columns and rebuilds the neighbour lists, if that is needed; returns how arrays of
     /// particles that are kept elsewhere must change.
     pub(crate) fn rebuild_neighbours(&mut self) -> Option<Reordering<D>> {
-        if !self.needs_rebuild() {
+        if !self.needs_rebuild() && !open_boundary::needs_exchange(self) {
             return None;
         }
         let start = Instant::now();

@@ -17,6 +17,8 @@
 //! The second is the relation of velocity and pressure in a linear wave that moves out, at every depth @dean1991; for long waves it is
 //! that of @flather1976. Waves that enter add their velocity to U and their pressure to x_rest.
 
+mod water_beside;
+
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -283,6 +285,16 @@ pub(super) fn start_buffers<const D: usize>(system: &mut System<D>) {
     system.fluid.permute(&order);
 }
 
+/// Whether a particle has passed a face by as much as it may move between two rebuilds of the lists. The rebuild within a step keeps the
+/// order of the water, and where all rebuilds fall within steps, no water would enter.
+pub(super) fn needs_exchange<const D: usize>(system: &System<D>) -> bool {
+    let (faces, r) = (&system.fluid_domain.open_boundaries, &system.fluid.particles.r);
+    let (water, far) = (system.particle_count(), system.neighbours.margin());
+    let buffer = system.fluid.buffer.faces.iter().zip(&r[water..]);
+    faces.iter().any(|face| r[..water].par_iter().any(|r| face.beyond(r) > far))
+        || buffer.into_iter().any(|(face, r)| faces[usize::from(*face)].beyond(r) < -far)
+}
+
 /// Sorts the particles of `order` into water and buffers by their places, and appends the sources of new buffer particles.
 /// Returns the number of these.
 pub(super) fn exchange_at_faces<const D: usize>(system: &mut System<D>, order: &mut Vec<u32>) -> usize {
@@ -433,6 +445,7 @@ fn buffer_state<const D: usize>(system: &System<D>, i: usize, t: f64, dt: f64) -
     let density = |x: f64| rho0 * (1.0 + at_rest(r) + rise + x);
     let Some(prescribed) = face.outward_velocity(r, t) else {
         let held = face.level.is_some();
+        let velocity = if beside { water_beside::linear_velocity(system, &place, volume, &velocity) } else { velocity };
         return (velocity, density(if held { 0.0 } else { compression }));
     };
     let mut along = Vector::zeros();

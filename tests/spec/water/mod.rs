@@ -7,6 +7,7 @@ mod kernels;
 mod laws;
 mod neighbours;
 mod open_boundaries;
+mod open_flows;
 mod periodic;
 mod simd;
 mod still_water;
