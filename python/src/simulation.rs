@@ -143,6 +143,13 @@ impl NativeSimulation {
     }
 }
 
+/// Whether nothing else refers to `object`.
+#[expect(unsafe_code, reason = "the count of references of the interpreter")]
+fn is_alone<T>(_py: Python<'_>, object: &Py<T>) -> bool {
+    // SAFETY: the object is alive while `object` refers to it, and the interpreter's lock is held.
+    unsafe { pyo3::ffi::Py_REFCNT(object.as_ptr()) == 1 }
+}
+
 fn busy(py: Python<'_>) -> PyErr {
     let help = "in a callback read the object that it gets; one simulation is stepped by one thread at a time";
     usage(py, "the simulation is being stepped", help)
@@ -172,12 +179,12 @@ impl CallBack {
     }
 
     fn call(&mut self, py: Python<'_>, step: StepData) -> PyResult<Commands> {
-        let object = match self.object.take() {
-            Some(object) if object.get_refcnt(py) == 1 => {
+        let object = match self.object.take().filter(|object| is_alone(py, object)) {
+            Some(object) => {
                 object.borrow_mut(py).renew(step);
                 object
             }
-            _ => Py::new(py, BodyStep::new(self.names.clone(), step))?,
+            None => Py::new(py, BodyStep::new(self.names.clone(), step))?,
         };
         self.call.call1(py, (&object,))?;
         let commands = object.borrow_mut(py).commands();
