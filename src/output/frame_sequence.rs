@@ -58,7 +58,7 @@ impl FrameSequence {
     ///
     /// # Errors
     /// As [`FrameSequence::open`].
-    pub(crate) fn update(&mut self) -> Result<()> {
+    pub fn update(&mut self) -> Result<()> {
         let known = self.times.len();
         let (last, path) = (self.times.pop(), list_path(&self.folder));
         self.last_entry = read_times(&path, self.last_entry, &mut self.times)?;
