@@ -367,14 +367,7 @@ impl<const D: usize> Simulation<D> {
         let divided = own_water::may_be_divided(&self.system, self.clock.time) && !self.bodies.read_water();
         own_water::divide(&mut self.system, divided);
         set_buffer_time(&mut self.system, self.clock.time);
-        if let Some(reordering) = self.system.rebuild_neighbours() {
-            self.stepper.reorder(&reordering, self.system.properties().rho0);
-            if let Some(accounting) = &mut self.bodies.accounting {
-                accounting.add_removed(&self.system, &reordering.removed);
-                accounting.add_displaced(-reordering.exchanged_energy);
-            }
-            self.removed.extend(reordering.removed.into_iter().map(|lost| (self.clock.time, lost)));
-        }
+        self.rebuild_neighbours();
         update_buffer(&mut self.system, self.clock.time, self.clock.dt);
         self.system.update_rates(self.stepper.sums_at_start());
         let allowed = self.step_limit();
@@ -399,6 +392,18 @@ impl<const D: usize> Simulation<D> {
         self.bodies.update_masses(&mut self.system, self.clock.time, dt)?;
         self.guard()?;
         self.remove_due()
+    }
+
+    /// Makes the neighbour lists anew where they may miss a pair, and removes the water that has left the domain then.
+    fn rebuild_neighbours(&mut self) {
+        if let Some(reordering) = self.system.rebuild_neighbours() {
+            self.stepper.reorder(&reordering, self.system.properties().rho0);
+            if let Some(accounting) = &mut self.bodies.accounting {
+                accounting.add_removed(&self.system, &reordering.removed);
+                accounting.add_displaced(-reordering.exchanged_energy);
+            }
+            self.removed.extend(reordering.removed.into_iter().map(|lost| (self.clock.time, lost)));
+        }
     }
 
     /// Sets gravity to that of time `t` (s), if it changes.

@@ -26,6 +26,8 @@ use pontoon::{
 #[path = "spec/water/beside_reference.rs"]
 mod beside_reference;
 use beside_reference::{run, sizes, under};
+#[path = "device/coupled.rs"]
+mod coupled;
 
 fn device() -> String {
     std::env::var("PONTOON_DEVICE").unwrap_or_else(|_| "llvmpipe".into())
@@ -233,7 +235,7 @@ fn a_driven_solid_agrees_with_the_reference() {
 fn falling_boxes(walls: Walls) -> Setup<2> {
     let dp = 0.02;
     let model = Model::water(2, dp, 0.3).for_free_bodies().walls(walls);
-    // Ten rows: smaller bodies are light, and no device computes them.
+    // Ten rows: smaller bodies are light.
     let hull = || Shape::Box { size: [0.2, 0.2].into() };
     let lower = SolidSpec::free("lower", hull(), 900.0).at([0.14, 0.42]);
     dam_with(model, [0.8, 0.3], [lower, SolidSpec::free("upper", hull(), 900.0).at([0.17, 0.64])])
@@ -523,7 +525,7 @@ const COUNTS: [[[usize; 3]; 2]; 2] = [[[43, 36, 17], [41, 36, 17]], [[47, 40, 20
 #[test]
 fn the_traced_equations_of_the_defaults_are_the_recorded_ones() {
     let setup = dam(Model::water(3, 0.05, 0.3), [0.6, 0.2, 0.3]);
-    let shader = pontoon::device::shaders_of(Simulation::new(setup).unwrap().system()).unwrap().sweep;
+    let shader = pontoon::device::shaders_of(Simulation::new(setup).unwrap().system(), false).unwrap().sweep;
     // Only traces have names of a letter and a number.
     let is_traced = |line: &&str| {
         let name = line.strip_prefix("let ").and_then(|rest| rest.split(' ').next()).unwrap_or("");
@@ -550,10 +552,12 @@ fn every_shader_is_valid_and_translates_to_metal_and_hlsl() {
         let mut checked = 0;
         for model in every_choice::<D>(dp) {
             let sim = Simulation::new(dam(model, size)).unwrap();
-            let Ok(texts) = pontoon::device::shaders_of(sim.system()) else { continue };
+            // Half of them with what the host reads of the water.
+            let Ok(texts) = pontoon::device::shaders_of(sim.system(), checked % 2 == 1) else { continue };
             checked += 1;
             let all = [&texts.search, &texts.lists, &texts.sweep, &texts.step, &texts.solids];
-            for text in all.into_iter().chain(&texts.gaps).chain(&texts.inputs).chain(&texts.moments) {
+            for text in all.into_iter().chain(&texts.gaps).chain(&texts.inputs).chain(&texts.moments).chain(&texts.near)
+            {
                 let module = front::wgsl::parse_str(text).expect("WGSL");
                 let mut validator =
                     valid::Validator::new(valid::ValidationFlags::all(), valid::Capabilities::default());

@@ -100,6 +100,24 @@ impl<const D: usize> AcousticAddedMass<D> {
         Some(Self { solid: i, outer, state, given: Six::zeros() })
     }
 
+    /// Indices of the outer boundary particles, in ascending order.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn outer_particles(&self) -> impl Iterator<Item = u32> + '_ {
+        self.outer.iter().map(|(i, _)| *i)
+    }
+
+    /// Whether springs were wet in the last step.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn was_wet(&self) -> bool {
+        self.state.stiffness_sum > 0.0
+    }
+
+    /// Index of the body among the solids.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn solid(&self) -> usize {
+        self.solid
+    }
+
     /// Renumbers the boundary particles after solid number `solid` and its `gone` boundary particles were removed.
     pub(super) fn renumber(&mut self, solid: usize, gone: u32) {
         if self.solid > solid {
@@ -235,13 +253,12 @@ impl<const D: usize> AcousticAddedMass<D> {
     fn for_each_wet(&self, system: &System<D>, mut visit: impl FnMut(f64, &Vector<D>, &Vector<D>, Six)) {
         let solid = &system.solids()[self.solid];
         let turn = &solid.kinematics.pose.rotation;
-        let wet = system.neighbours.boundary_near_fluid();
         let wetness = system.boundary.wetness.as_deref().unwrap_or_default();
         let of_whole = system.symmetry_planes().multiplicity(!solid.division.cut);
-        let mut k = wet.partition_point(|&i| (i as usize) < solid.boundary.start);
+        let mut k = wetness.partition_point(|&(i, _)| (i as usize) < solid.boundary.start);
         for (i, normal) in &self.outer {
-            k += wet[k..].iter().take_while(|w| *w < i).count();
-            if wet.get(k) == Some(i) {
+            k += wetness[k..].iter().take_while(|(wet, _)| wet < i).count();
+            if let Some((_, weight)) = wetness.get(k).filter(|(wet, _)| wet == i) {
                 let (x, normal) = (&system.boundary.particles.r[*i as usize], turn * normal);
                 if !system.is_between_sides(x) {
                     continue;
@@ -250,7 +267,7 @@ impl<const D: usize> AcousticAddedMass<D> {
                 let images = system.computed_share(solid, x) * of_whole;
                 let arm = system.place_on_solid(self.solid, *i as usize) - solid.kinematics.centre;
                 let torque = Bivector::torque(&arm, &normal);
-                visit((wetness[k] / FULL).min(1.0) * images, x, &normal, to_six(&Load { force: normal, torque }));
+                visit((weight / FULL).min(1.0) * images, x, &normal, to_six(&Load { force: normal, torque }));
             }
         }
     }

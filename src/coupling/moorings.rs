@@ -129,6 +129,15 @@ impl<const D: usize> Moorings<D> {
         &self.on_water
     }
 
+    /// The boxes (m) whose water the lines read in a step from time `t` (s) on; `None` if a line begins then, which may read any.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn water_ranges(&self, t: f64, reach: f64) -> Option<Vec<Bounds<D>>> {
+        let begins = |mooring: &Mooring<D>| !mooring.line.state.acts && mooring.lifetime().contains(t);
+        let around = |x: &Vector<D>| Bounds { min: *x, max: *x }.grown(reach);
+        let nodes = self.lines.iter().flat_map(|mooring| &mooring.line.state.x).map(around);
+        (!self.lines.iter().any(begins)).then(|| nodes.collect())
+    }
+
     /// Time (s) from `t` (s) to the next begin or end of a line; infinite if there is none.
     pub(crate) fn next_event(&self, t: f64) -> f64 {
         self.lines.iter().map(|mooring| mooring.lifetime().next_limit(t)).fold(f64::INFINITY, f64::min)

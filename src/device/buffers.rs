@@ -36,6 +36,7 @@ impl Control {
     pub(super) const FAULT: usize = 22;
     pub(super) const LONGEST: usize = 23;
     pub(super) const FACTOR: usize = 26;
+    pub(super) const FOUND: usize = 27;
 
     /// A displacement that asks for new lists.
     pub(super) const FAR: u32 = 0x7f00_0000;
@@ -81,6 +82,10 @@ impl Control {
 
     pub(super) fn fault(&self) -> u32 {
         self.0[Self::FAULT]
+    }
+
+    pub(super) fn found(&self) -> u32 {
+        self.0[Self::FOUND]
     }
 
     pub(super) fn longest(&self) -> u32 {
@@ -181,7 +186,7 @@ impl Counts {
         (self.most, self.part) = (most, fit.max(GROUP).min(self.n.next_multiple_of(GROUP)));
     }
 
-    fn parts(&self) -> usize {
+    pub(super) fn parts(&self) -> usize {
         self.n.div_ceil(self.part).max(1)
     }
 
@@ -212,6 +217,8 @@ pub(super) struct Buffers {
     backup: Vec<wgpu::Buffer>,
     /// Whether rows of additional inputs belong to the state.
     keeps_rows: bool,
+    /// Particles for which there is room.
+    pub(super) room: usize,
 }
 
 /// The arrays that only the passes over pairs use.
@@ -255,6 +262,7 @@ impl Buffers {
         let solids = chunks.owners.iter().max().map_or(1, |most| most + 1);
         let total = 2 * counts.cells + 1;
         let if_gaps = |bytes: usize| if gaps { bytes } else { 16 };
+        let aways = if gaps || texts.near.is_some() { 16 * boundary } else { 16 };
         let pairs = PairBuffers {
             positions: gpu.buffer(16 * n)?,
             velocities: gpu.buffer(16 * n)?,
@@ -263,7 +271,7 @@ impl Buffers {
             rows: gpu.buffer(4 * input_rows * n)?,
             spans: gpu.buffer(8 * n)?,
             walls: gpu.buffer(16 * boundary)?,
-            aways: gpu.buffer(if_gaps(16 * boundary))?,
+            aways: gpu.buffer(aways)?,
             gaps: gpu.buffer(if_gaps(4 * boundary))?,
             local: gpu.buffer(16 * boundary)?,
             chunks: gpu.buffer(4 * chunks.members.len())?,
@@ -293,6 +301,7 @@ impl Buffers {
             search,
             backup: Vec::new(),
             keeps_rows: kept_rows > 0,
+            room: n,
         };
         buffers.backup = buffers.state().iter().map(|of| gpu.buffer(of.size() as usize)).collect::<Result<_>>()?;
         buffers.make_lists(gpu, counts)?;

@@ -55,11 +55,14 @@ impl Layout {
     /// Velocity and excess density of a particle with `v` (m/s) and `rho` (kg/m³).
     pub(super) fn motion<const D: usize>(&self, v: &Vector<D>, rho: f64) -> [u32; 4] {
         let mut motion = [0; 4];
-        for k in 0..D {
-            motion[k] = ((v[k] / self.speed) as f32).to_bits();
-        }
+        motion[..3].copy_from_slice(&self.velocity_words(v));
         motion[3] = (((rho - self.rho0) / (self.rho0 * EXCESS)).round() as i32) as u32;
         motion
+    }
+
+    /// The change of a velocity by `v` (m/s).
+    pub(super) fn velocity_words<const D: usize>(&self, v: &Vector<D>) -> [u32; 3] {
+        std::array::from_fn(|k| if k < D { ((v[k] / self.speed) as f32).to_bits() } else { 0 })
     }
 
     /// The velocity, m/s.

@@ -11,17 +11,20 @@
 mod buffers;
 mod gpu;
 mod layout;
+mod near;
 mod passes;
 mod shaders;
 mod solids;
 mod text;
 
 pub use gpu::{Adapter, adapters};
+pub(crate) use near::NearParticle;
 pub use shaders::ShaderTexts;
 
 use buffers::{Buffers, Control, Counts, WORDS};
 use gpu::Gpu;
 use layout::Layout;
+use near::{Answer, Near};
 use passes::{Passes, Shaders};
 use shaders::{ShaderInput, TICKS, entries};
 use solids::SolidChunks;
@@ -29,7 +32,7 @@ use solids::SolidChunks;
 use crate::{
     error::{Error, ErrorCode, ErrorKind, Result},
     interaction::{PairSums, StepLimits},
-    math::{Matrix, Vector},
+    math::{Bounds, Matrix, Vector},
     model::{TimeScheme, Walls},
     solid::Load,
     sph::Units,
@@ -58,6 +61,8 @@ pub(crate) struct Device<const D: usize> {
     chunks: SolidChunks,
     buffers: Buffers,
     passes: Passes,
+    /// By what the host reads water between two outputs, if it does.
+    near: Option<Near>,
     /// Time (s) at tick 0, and the ticks since.
     start: f64,
     ticks: u64,
@@ -120,6 +125,41 @@ pub(crate) enum StepsEnd {
     Fault(usize),
     /// There is no time step.
     NoStep,
+    /// Water has left the domain, and is to be removed.
+    Escape,
+}
+
+/// What the host reads of the water between two outputs.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct WaterReads {
+    /// Whether it reads the water near some places.
+    pub(crate) near: bool,
+    /// The boundary particles of which it reads the weight of the water around, in ascending order.
+    pub(crate) watched: Vec<u32>,
+}
+
+/// A step up to its middle.
+pub(crate) struct FirstHalf<const D: usize> {
+    /// Length of the step, s.
+    pub(crate) dt: f64,
+    /// The water at its start near the places that were asked for.
+    pub(crate) near: Vec<NearParticle<D>>,
+}
+
+/// The rest of a step.
+pub(crate) struct SecondHalf<const D: usize> {
+    pub(crate) done: DeviceSteps,
+    pub(crate) loads: WaterLoads<D>,
+    /// The water at its end near the places that were asked for.
+    pub(crate) near: Vec<NearParticle<D>>,
+}
+
+/// What the water does to the solids in a force pass.
+pub(crate) struct WaterLoads<const D: usize> {
+    /// The load on each solid.
+    pub(crate) loads: Vec<Load<D>>,
+    /// Weight (–) of the water around each watched boundary particle that has any.
+    pub(crate) weights: Vec<(u32, f64)>,
 }
 
 /// The refusal of `what` on a device.
@@ -153,17 +193,23 @@ fn sponge_statements<const D: usize>(system: &System<D>, layout: &Layout, units:
     Ok(text)
 }
 
-/// The texts of the shaders for `system`, without a device.
+/// The texts of the shaders for `system`, without a device; with those by which the host reads water if it `reads` any.
 ///
 /// # Errors
 /// `Usage` if no device computes the system yet.
 #[doc(hidden)]
-pub fn shaders_of<const D: usize>(system: &System<D>) -> Result<ShaderTexts> {
-    shader_texts(system, &Layout::new::<D>(system.model()), &SolidChunks::new(system))
+pub fn shaders_of<const D: usize>(system: &System<D>, reads: bool) -> Result<ShaderTexts> {
+    let reads = WaterReads { near: reads, watched: if reads { vec![0] } else { Vec::new() } };
+    shader_texts(system, &Layout::new::<D>(system.model()), &SolidChunks::new(system), &reads)
 }
 
 /// The texts of the shaders for the present state of `system`.
-fn shader_texts<const D: usize>(system: &System<D>, layout: &Layout, chunks: &SolidChunks) -> Result<ShaderTexts> {
+fn shader_texts<const D: usize>(
+    system: &System<D>,
+    layout: &Layout,
+    chunks: &SolidChunks,
+    reads: &WaterReads,
+) -> Result<ShaderTexts> {
     if let Some(what) = device_state::unsupported_on_device(system) {
         return Err(refused(what));
     }
@@ -181,6 +227,8 @@ fn shader_texts<const D: usize>(system: &System<D>, layout: &Layout, chunks: &So
         ],
         margin: MARGIN,
         chunks: [chunks.moving, chunks.owners.len()],
+        near: reads.near || !reads.watched.is_empty(),
+        weighs: !reads.watched.is_empty(),
         sponge: sponge_statements(system, layout, &units)?,
         gaps: device_state::has_free_solids(system) && model.walls == Walls::RelaxedAdami,
     };
@@ -188,11 +236,18 @@ fn shader_texts<const D: usize>(system: &System<D>, layout: &Layout, chunks: &So
 }
 
 impl<const D: usize> Device<D> {
-    /// Puts the particles of `system` on the device `name`, at `time` (s).
-    pub(crate) fn new(name: &str, system: &System<D>, stepper: &Stepper<D>, time: f64) -> Result<Self> {
+    /// Puts the particles of `system` on the device `name`, at `time` (s); `reads` is what the host reads of the water between two
+    /// outputs.
+    pub(crate) fn new(
+        name: &str,
+        system: &System<D>,
+        stepper: &Stepper<D>,
+        time: f64,
+        reads: WaterReads,
+    ) -> Result<Self> {
         let (model, chunks) = (system.model(), SolidChunks::new(system));
         let layout = Layout::new::<D>(model);
-        let texts = shader_texts(system, &layout, &chunks)?;
+        let texts = shader_texts(system, &layout, &chunks, &reads)?;
         if !system.fluid().r.iter().chain(system.boundary().r).all(|r| layout.reaches(r)) {
             return Err(refused("places a million kernel supports from the origin"));
         }
@@ -202,11 +257,26 @@ impl<const D: usize> Device<D> {
         let shaders = Shaders::new(&gpu, &texts, verlet)?;
         let buffers = Buffers::new(&gpu, &counts, &chunks, &texts, verlet)?;
         let passes = Passes::new(&gpu, &shaders, &counts, &chunks, &buffers)?;
+        let near = Near::new(&gpu, &texts, &counts, &buffers, reads.watched)?;
         let (units, rows) =
             (model.single_precision_units::<D>(), RowCounts { stress: texts.stress, inputs: texts.rows[1] });
         let (start, ticks, steps) = (time, 0, FIRST_STEPS);
-        let mut device =
-            Self { gpu, layout, units, shaders, rows, counts, chunks, buffers, passes, start, ticks, steps, verlet };
+        let mut device = Self {
+            gpu,
+            layout,
+            units,
+            shaders,
+            rows,
+            counts,
+            chunks,
+            buffers,
+            passes,
+            near,
+            start,
+            ticks,
+            steps,
+            verlet,
+        };
         device.load(system, stepper, time)?;
         Ok(device)
     }
@@ -223,11 +293,12 @@ impl<const D: usize> Device<D> {
 
     /// Memory of the arrays, B: all, and of these the neighbour lists.
     pub(crate) fn memory_bytes(&self) -> [u64; 2] {
-        [self.buffers.bytes(), self.buffers.list_bytes()]
+        [self.buffers.bytes() + self.near.as_ref().map_or(0, Near::bytes), self.buffers.list_bytes()]
     }
 
     /// Takes the state of `system` at `time` (s).
     pub(crate) fn load(&mut self, system: &System<D>, stepper: &Stepper<D>, time: f64) -> Result<()> {
+        self.fit(system)?;
         let (gpu, layout, buffers) = (&self.gpu, self.layout, &self.buffers);
         let (water, boundary) = (system.fluid(), system.boundary());
         let count = water.len();
@@ -333,12 +404,26 @@ impl<const D: usize> Device<D> {
         }
         self.counts.set_list_length(longest + longest / 8, &self.gpu.adapter);
         self.buffers.make_lists(&self.gpu, &self.counts)?;
+        self.make_passes()?;
+        self.go_back();
+        Ok(true)
+    }
+
+    /// Makes the passes for the present arrays and numbers of particles.
+    fn make_passes(&mut self) -> Result<()> {
         self.passes = Passes::new(&self.gpu, &self.shaders, &self.counts, &self.chunks, &self.buffers)?;
+        match &mut self.near {
+            Some(near) => near.make_passes(&self.gpu, &self.counts, &self.buffers),
+            None => Ok(()),
+        }
+    }
+
+    /// Goes back to the state before the submission.
+    fn go_back(&self) {
         let copies = self.buffers.restores();
         self.gpu.run(&copies, [self.passes.derive.as_ref()]);
         self.gpu.write(&self.buffers.control, Control::MOVED * 4, &[Control::FAR]);
         self.gpu.write(&self.buffers.control, Control::LONGEST * 4, &[0u32]);
-        Ok(true)
     }
 
     /// What the control words say of the steps since the last call.
@@ -353,6 +438,7 @@ impl<const D: usize> Device<D> {
             0 => StepsEnd::Steps,
             2 => StepsEnd::Fault(control.fault() as usize),
             3 => StepsEnd::NoStep,
+            5 => StepsEnd::Escape,
             _ => StepsEnd::Time,
         };
         let dt = f64::from(control.dt()) * self.units.time;
@@ -361,36 +447,58 @@ impl<const D: usize> Device<D> {
     }
 
     /// Makes the first half of a step: the rates, the step's length and, of the symplectic scheme, the way of half a step. Returns
-    /// the length (s), or why there is none.
-    pub(crate) fn first_half(&mut self, request: &StepRequest) -> Result<std::result::Result<f64, DeviceSteps>> {
+    /// the length with the water at the start in `ranges` (m), or why there is none.
+    pub(crate) fn first_half(
+        &mut self,
+        request: &StepRequest,
+        ranges: &[Bounds<D>],
+    ) -> Result<std::result::Result<FirstHalf<D>, DeviceSteps>> {
         loop {
             self.begin(request);
+            self.prepare_find(ranges)?;
             let saved = self.buffers.backups();
-            self.gpu.run(&saved, self.passes.first.iter().map(AsRef::as_ref));
-            let control = self.control()?;
-            if !self.grow_lists(&control)? {
-                return Ok(match control.halt() {
-                    0 => Ok(f64::from(control.dt()) * self.units.time),
-                    _ => Err(self.outcome(&control, request.end)),
-                });
+            let passes = self.find(ranges).into_iter().chain(self.passes.first.iter().map(AsRef::as_ref));
+            self.gpu.run(&saved, passes);
+            let Answer { control, near, has_all, .. } = self.answer(ranges, false)?;
+            if self.grow_lists(&control)? {
+                continue;
             }
+            if control.halt() != 0 {
+                return Ok(Err(self.outcome(&control, request.end)));
+            }
+            if has_all {
+                return Ok(Ok(FirstHalf { dt: f64::from(control.dt()) * self.units.time, near }));
+            }
+            self.go_back();
         }
     }
 
-    /// Completes the step with the solids of `system` where they are halfway, and returns the loads on them.
+    /// Completes the step with the solids of `system` where they are halfway, and returns the loads on them with the water at the end
+    /// in `ranges` (m).
     ///
     /// `None` if a list was too short: then the state is that before the step, and the step is to be made again.
-    pub(crate) fn second_half(&mut self, system: &System<D>, end: f64) -> Result<Option<(DeviceSteps, Vec<Load<D>>)>> {
+    pub(crate) fn second_half(
+        &mut self,
+        system: &System<D>,
+        end: f64,
+        ranges: &[Bounds<D>],
+    ) -> Result<Option<SecondHalf<D>>> {
         self.write_solids(system);
-        self.gpu.run(&[], self.passes.second.iter().map(AsRef::as_ref));
-        let counts = [(&self.buffers.control, WORDS), (&self.buffers.loads, 8 * self.chunks.owners.len())];
-        let [control, loads] = self.gpu.read(counts)?;
-        let control = Control::from_words(&control);
-        if self.grow_lists(&control)? {
+        self.prepare_find(ranges)?;
+        let passes = self.passes.second.iter().map(AsRef::as_ref);
+        self.gpu.run(&[], passes.chain(self.weigh()).chain(self.find(ranges)));
+        let mut answer = self.answer(ranges, true)?;
+        if self.grow_lists(&answer.control)? {
             return Ok(None);
         }
-        let outcome = self.outcome(&control, end);
-        Ok(Some((outcome, self.chunks.loads(&loads, system, &self.units))))
+        if !answer.has_all {
+            self.prepare_find(ranges)?;
+            self.gpu.run(&[], self.find(ranges));
+            answer = self.answer(ranges, true)?;
+        }
+        let Answer { control, loads, weights, near, .. } = answer;
+        let loads = WaterLoads { loads: self.chunks.loads(&loads, system, &self.units), weights };
+        Ok(Some(SecondHalf { done: self.outcome(&control, end), loads, near }))
     }
 
     /// Gives the device the solids of `system` at the end of a step.
@@ -422,10 +530,10 @@ impl<const D: usize> Device<D> {
     }
 
     /// The loads on the solids by the last force pass.
-    pub(crate) fn loads(&mut self, system: &System<D>) -> Result<Vec<Load<D>>> {
-        self.gpu.run(&[], [self.passes.loads.as_ref()]);
-        let [loads] = self.gpu.read([(&self.buffers.loads, 8 * self.chunks.owners.len())])?;
-        Ok(self.chunks.loads(&loads, system, &self.units))
+    pub(crate) fn loads(&mut self, system: &System<D>) -> Result<WaterLoads<D>> {
+        self.gpu.run(&[], std::iter::once(self.passes.loads.as_ref()).chain(self.weigh()));
+        let Answer { loads, weights, .. } = self.answer(&[], true)?;
+        Ok(WaterLoads { loads: self.chunks.loads(&loads, system, &self.units), weights })
     }
 
     /// Gives the state back to `system` and `stepper`.

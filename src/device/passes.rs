@@ -210,7 +210,7 @@ fn rates(
         search.pass("put_back", n)?,
     ];
     let (mut sweeps, mut corrections) = (Vec::new(), Vec::new());
-    for (number, list) in buffers.lists.iter().enumerate() {
+    for (number, list) in buffers.lists.iter().take(counts.parts()).enumerate() {
         let start = number * counts.part;
         let first = gpu.uniform(&[start as u32, counts.part as u32, 0, 0]);
         let lists = Maker::new(

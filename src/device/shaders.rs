@@ -12,7 +12,7 @@ use crate::{
         pressure::repulsion,
         trace::{Recorder, Trace, Traced},
     },
-    system::ParticleLimits,
+    system::{Escape, ParticleLimits},
     time_integration::FOLDINGS,
 };
 
@@ -44,6 +44,10 @@ pub(super) struct ShaderInput<'a, const D: usize> {
     pub(super) chunks: [usize; 2],
     /// Whether there may be narrow gaps beside free solids.
     pub(super) gaps: bool,
+    /// Whether the host reads the water between outputs.
+    pub(super) near: bool,
+    /// Whether the host reads the weights of the water around boundary particles.
+    pub(super) weighs: bool,
     /// Statements that add the rates of the sponge layers at `place` to `rate`.
     pub(super) sponge: String,
 }
@@ -67,6 +71,8 @@ pub struct ShaderTexts {
     pub inputs: Option<String>,
     /// Moments of the neighbours, if gradients are corrected.
     pub moments: Option<String>,
+    /// Water near places of the host, if it reads any.
+    pub near: Option<String>,
     /// Rows of sums, of additional inputs, and of those that are kept from pass to pass.
     pub rows: [usize; 3],
     /// The first row of the stress of the water, if it is kept.
@@ -125,6 +131,7 @@ impl<const D: usize> ShaderInput<'_, D> {
                 .then(|| self.input_rows(&properties))
                 .flatten()
                 .map(|text| with_head(&text)),
+            near: self.near.then(|| with_head(include_str!("shaders/near.wgsl"))),
             moments: self.moments(&properties).map(|text| with_head(&text)),
             rows: [self.traces.rows[1], self.traces.rows[0], self.kept_rows()],
             stress: self.traces.layout.stress,
@@ -149,6 +156,8 @@ impl<const D: usize> ShaderInput<'_, D> {
             format!("const LAYERS: i32 = {};", if D == 3 { 2 } else { 0 }),
             format!("const CELL: i32 = {};", cell_width(*margin)),
             format!("const GAPS: bool = {};", self.gaps),
+            format!("const WEIGHS: bool = {};", self.weighs),
+            format!("const REMOVES: bool = {};", limits.escape == Escape::Remove),
             format!("const SUMS: u32 = {}u;", self.traces.rows[1]),
             format!("const REACH2: f32 = {};", float(support.powi(2))),
             format!("const LOOK2: f32 = {};", float((support * (1.0 + margin)).powi(2))),
@@ -184,18 +193,24 @@ impl<const D: usize> ShaderInput<'_, D> {
         let wall = pair_body(&self.traces.wall, "u")?;
         let mut beside = wall.clone();
         let (mut fit_rows, mut target) = (0, String::new());
-        if relaxed {
-            let trace = &self.traces.extrapolation;
+        if relaxed || self.weighs {
+            let mut trace = self.traces.extrapolation.clone();
+            // Walls that do not relax have no use for more than the weight.
+            trace.results.retain(|(name, _)| relaxed || name == "sum0");
             let read = |other: fn(&str) -> String| {
                 move |name: &str| name.strip_prefix("sum").map_or_else(|| other(name), |row| format!("fit{row}"))
             };
-            let mut fit = statements(trace, "f", read(extrapolation_input))?;
+            let mut fit = statements(&trace, "f", read(extrapolation_input))?;
             fit_rows = trace.results.len();
             (0..fit_rows).for_each(|row| fit += &format!("fit{row} = out_sum{row};\n"));
             // The results of the extrapolation have the names of those of the pair.
             beside = format!("{{\n{wall}}}\n{{\n{fit}}}\n");
-            let equations = statements(&wall_target(properties, eos), "w", read(wall_input))?;
-            target = include_str!("shaders/wall_target.wgsl").replace("{{TARGET}}", &equations);
+            target = if relaxed {
+                let equations = statements(&wall_target(properties, eos), "w", read(wall_input))?;
+                include_str!("shaders/wall_target.wgsl").replace("{{TARGET}}", &equations)
+            } else {
+                "aways[k - params.water] = vec4<f32>(0.0f, 0.0f, 0.0f, fit0);\n".into()
+            };
         }
         let zeros =
             |name: &str, rows: usize| (0..rows).map(|row| format!("var {name}{row} = 0.0f;\n")).collect::<String>();

@@ -61,6 +61,9 @@ pub struct NeighbourLists<const D: usize> {
     positions_at_build: Vec<Vector<D>>,
     /// The positions of water and boundary particles at the last build in grids, for queries at a point; made at the first query.
     grids: [OnceLock<CellGrid<D>>; 2],
+    /// The water particles whose places are known, if a device has told those of some alone.
+    #[cfg(feature = "gpu")]
+    known: Option<Vec<u32>>,
 }
 
 impl<const D: usize> NeighbourLists<D> {
@@ -78,6 +81,8 @@ impl<const D: usize> NeighbourLists<D> {
             boundary_near_fluid: Vec::new(),
             positions_at_build: Vec::new(),
             grids: Default::default(),
+            #[cfg(feature = "gpu")]
+            known: None,
         }
     }
 
@@ -189,6 +194,10 @@ impl<const D: usize> NeighbourLists<D> {
 
     fn build_sorted(&mut self, columns: &Columns<D>, (water, sorted): (&[Vector<D>], &Sorted), skin: &[Vector<D>]) {
         self.grids = Default::default();
+        #[cfg(feature = "gpu")]
+        {
+            self.known = None;
+        }
         let look = self.list_radius();
         let mut heights = columns.heights(water, sorted, look);
         if let Some(division) = self.division().filter(|division| division.is_apart) {
@@ -268,8 +277,23 @@ impl<const D: usize> NeighbourLists<D> {
     /// Takes the positions (m) of water that a device has moved, for queries at a point. The lists of pairs stay as they are.
     #[cfg(feature = "gpu")]
     pub(crate) fn set_fluid_positions(&mut self, water: &[Vector<D>]) {
-        self.grids = Default::default();
+        (self.grids, self.known) = (Default::default(), None);
         self.positions_at_build.copy_from_slice(water);
+    }
+
+    /// Takes the positions (m) of `these` water particles alone, for queries at a point, until all are known again.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn set_known_positions(&mut self, these: Vec<u32>, water: &[Vector<D>]) {
+        self.grids[0] = OnceLock::from(CellGrid::new(water, self.list_radius()));
+        self.known = Some(these);
+    }
+
+    /// The water particles whose places are known, if a device has told those of some alone.
+    pub(crate) fn known_water(&self) -> Option<&[u32]> {
+        #[cfg(feature = "gpu")]
+        return self.known.as_deref();
+        #[cfg(not(feature = "gpu"))]
+        None
     }
 
     /// The positions of the water for which the lists were made, m.
@@ -298,7 +322,10 @@ impl<const D: usize> NeighbourLists<D> {
 
     /// Calls `visit` with the index of every water particle that may be within the support of `x`.
     pub(crate) fn visit_fluid_around(&self, x: &Vector<D>, visit: &mut dyn FnMut(usize)) {
-        self.visit_around(self.fluid_grid(), x, visit);
+        match self.known_water() {
+            None => self.visit_around(self.fluid_grid(), x, visit),
+            Some(known) => self.visit_around(self.fluid_grid(), x, &mut |i| visit(known[i] as usize)),
+        }
     }
 
     /// The indices of every water particle that may be within `bounds` (m), in order.
@@ -306,6 +333,9 @@ impl<const D: usize> NeighbourLists<D> {
         let mut these = Vec::new();
         let bounds = bounds.grown(self.margin());
         self.fluid_grid().visit_rows(&bounds, |row| these.extend(row.iter().map(|&i| i as usize)));
+        if let Some(known) = self.known_water() {
+            these.iter_mut().for_each(|i| *i = known[*i] as usize);
+        }
         these.sort_unstable();
         these
     }

@@ -15,7 +15,6 @@ use crate::{
     scene::Scene,
     simulation::Simulation,
     solid::Solid,
-    system::thin_layers,
 };
 
 /// Checks that no device is asked for on several `ranks`.
@@ -35,19 +34,9 @@ pub(super) fn check_ranks(scene: &Scene, ranks: &Ranks) -> Result<()> {
 /// What a device leaves out of the physics of `sim`, if `scene` names one.
 pub(super) fn omission<const D: usize>(scene: &Scene, sim: &Simulation<D>) -> Option<String> {
     scene.device_name()?;
-    let mut left_out = Vec::new();
-    if sim.system().solids().iter().any(Solid::is_free) {
-        left_out.push(
-            "the pressure of the film of water between a body and what it touches, so that a body on the bed is not lifted",
-        );
-    }
-    if thin_layers::any(sim.system()) {
-        left_out.push("the correction of the buoyancy of parts thinner than dp");
-    }
-    (!left_out.is_empty()).then(|| {
-        let what = left_out.join(", and ");
-        format!("a device leaves out {what}: let such a scene run on the processor, without --device (model.device)")
-    })
+    let text = "a device leaves out the pressure of the film of water between a body and what it touches, so that a body on the bed \
+                is not lifted: let such a scene run on the processor, without --device (model.device)";
+    sim.system().solids().iter().any(Solid::is_free).then(|| text.into())
 }
 
 /// Puts the water of `sim` on the device that `scene` names, if it names one.

@@ -4,13 +4,14 @@ use std::time::Instant;
 
 use super::Simulation;
 use crate::{
-    coupling::{Hook, Interval, drift_half_step},
-    device::{Adapter, Device, DeviceSteps, StepRequest, StepsEnd, refused},
+    coupling::{AcousticAddedMass, Bodies, Hook, Interval, drift_half_step},
+    device::{Adapter, Device, DeviceSteps, SecondHalf, StepRequest, StepsEnd, WaterReads, refused},
     error::{ErrorCode, Result},
     interaction::{PairSums, StepLimits},
+    math::Bounds,
     model::TimeScheme,
-    solid::Role,
-    system::device_state,
+    solid::{Role, Solid},
+    system::{System, device_state},
 };
 
 /// The water of a simulation on a device.
@@ -22,6 +23,8 @@ pub(super) struct OnDevice<const D: usize> {
     loads_are_current: bool,
     /// Whether no solid moves.
     all_fixed: bool,
+    /// Numbers of the solids whose boundary particles the host places too.
+    watched_solids: Vec<usize>,
     /// Steps after which a state for a rollback is stored.
     next_state: u64,
     /// Whether the state of the host was changed by hand, and must go to the device.
@@ -57,11 +60,29 @@ const STATE_EVERY: u64 = 500;
 /// `Usage` if there is no such device, or the simulation has something that no device computes yet: names both and the remedy.
 pub(super) fn place<const D: usize>(mut sim: Simulation<D>, name: &str) -> Result<Simulation<D>> {
     refuse_unsupported(&sim)?;
-    let device = Device::new(name, &sim.system, &sim.stepper, sim.clock.time)?;
-    let all_fixed = sim.system.solids().iter().all(|solid| matches!(solid.spec.role, Role::Fixed));
+    let light = sim.bodies.added_masses().iter().flat_map(AcousticAddedMass::outer_particles);
+    let mut watched: Vec<u32> = light.chain(device_state::thin_particles(&sim.system)).collect();
+    watched.sort_unstable();
+    watched.dedup();
+    let mut watched_solids: Vec<usize> =
+        watched.iter().map(|i| device_state::solid_of_boundary(&sim.system, *i as usize)).collect();
+    watched_solids.dedup();
+    let absorbs = |solid: &Solid<D>| matches!(&solid.spec.role, Role::Driven(motion) if motion.absorber().is_some());
+    let moored = !sim.bodies.moorings.is_empty();
+    let near = moored || !sim.bodies.added_masses().is_empty() || sim.system.solids().iter().any(absorbs);
+    let device = Device::new(name, &sim.system, &sim.stepper, sim.clock.time, WaterReads { near, watched })?;
+    let all_fixed = !moored && sim.system.solids().iter().all(|solid| matches!(solid.spec.role, Role::Fixed));
     device_state::leave_to_device(&mut sim.system);
     let (host_is_current, loads_are_current) = (true, true);
-    let own = OnDevice { device, host_is_current, loads_are_current, all_fixed, next_state: 0, host_changed: false };
+    let own = OnDevice {
+        device,
+        host_is_current,
+        loads_are_current,
+        all_fixed,
+        watched_solids,
+        next_state: 0,
+        host_changed: false,
+    };
     sim.device = Some(own);
     Ok(sim)
 }
@@ -73,8 +94,6 @@ fn refuse_unsupported<const D: usize>(sim: &Simulation<D>) -> Result<()> {
     let other_count = sim.device.as_ref().is_some_and(|own| own.device.particle_count() != count);
     let cases = [
         (sim.custom_terms, "pair terms of your own"),
-        (!bodies.added_masses().is_empty(), "light bodies"),
-        (!bodies.moorings.is_empty(), "mooring lines"),
         (bodies.accounting.is_some(), "load breakdowns and energy budgets"),
         (bodies.has_external_bodies(), "bodies that an external program moves"),
         (bodies.constraints().due_removals(f64::MAX).next().is_some(), "solids that are removed during the run"),
@@ -177,20 +196,26 @@ fn body_step<const D: usize>(
     request: &StepRequest,
     hook: &mut Hook<D>,
 ) -> Result<Option<DeviceSteps>> {
-    let Simulation { device: Some(own), system, bodies, clock, .. } = sim else { return Ok(None) };
+    let Simulation { device: Some(own), system, bodies, clock, stepper, .. } = sim else { return Ok(None) };
     (own.host_is_current, own.loads_are_current) = (false, true);
     let start: Vec<_> = system.solids.iter().map(|solid| solid.kinematics).collect();
-    let (over, done, loads) = loop {
-        let dt = match own.device.first_half(request)? {
-            Ok(dt) => dt,
+    let gauges = device_state::gauge_ranges(system, clock.time);
+    let (over, SecondHalf { done, loads, near }) = loop {
+        let first = match own.device.first_half(request, &gauges)? {
+            Ok(first) => first,
             Err(done) => return Ok(Some(done)),
         };
-        let over = Interval { t: clock.time, dt };
+        let over = Interval { t: clock.time, dt: first.dt };
+        if !gauges.is_empty() {
+            device_state::take_near(system, first.near);
+            system.update_absorption(over.t);
+        }
         if system.model().scheme == TimeScheme::Symplectic {
             drift_half_step(system, over);
         }
-        if let Some((done, loads)) = own.device.second_half(system, request.end)? {
-            break (over, done, loads);
+        own.watched_solids.iter().for_each(|solid| device_state::place_solid(system, *solid));
+        if let Some(second) = own.device.second_half(system, request.end, &ranges_at_end(system, bodies, over))? {
+            break (over, second);
         }
         system.solids.iter_mut().zip(&start).for_each(|(solid, start)| solid.kinematics = *start);
         own.device.move_solids(system);
@@ -199,9 +224,43 @@ fn body_step<const D: usize>(
     if let StepsEnd::Fault(_) | StepsEnd::NoStep = done.end {
         return Ok(Some(done));
     }
-    bodies.advance(system, over, done.weight, hook)?;
+    if bodies.read_water() {
+        device_state::take_near(system, near);
+        if reads_all_water(system, bodies, over.t) {
+            own.device.fetch(system, stepper)?;
+        }
+    }
+    let transfers = bodies.advance(system, over, done.weight, hook)?;
+    own.device.change_velocities(&device_state::velocity_changes(&transfers))?;
     own.device.move_solids(system);
     Ok(Some(done))
+}
+
+/// Where (m) light bodies and mooring lines read the water at the end of a step, before they move.
+fn ranges_at_end<const D: usize>(system: &System<D>, bodies: &Bodies<D>, over: Interval) -> Vec<Bounds<D>> {
+    let of_body = |added_mass: &AcousticAddedMass<D>| {
+        let solid = added_mass.solid();
+        device_state::range_beside(system, solid, system.solids[solid].kinematics.velocity.norm() * over.dt)
+    };
+    let lines = bodies.moorings.water_ranges(over.t, system.model().support_radius());
+    bodies.added_masses().iter().map(of_body).chain(lines.into_iter().flatten()).collect()
+}
+
+/// Whether bodies or lines read more water than that of [`ranges_at_end`]: a light body that has left the water, and gives it
+/// the rest of its impulse, or a line that begins.
+fn reads_all_water<const D: usize>(system: &System<D>, bodies: &Bodies<D>, t: f64) -> bool {
+    let gives_far = |added_mass: &AcousticAddedMass<D>| {
+        added_mass.was_wet() && !device_state::has_water_beside(system, added_mass.solid())
+    };
+    bodies.moorings.water_ranges(t, 0.0).is_none() || bodies.added_masses().iter().any(gives_far)
+}
+
+/// Removes the water that has left the domain from the host, which then gives the device the rest.
+fn remove_escaped<const D: usize>(sim: &mut Simulation<D>) -> Result<()> {
+    fetch(sim)?;
+    device_state::ask_for_lists(&mut sim.system);
+    sim.rebuild_neighbours();
+    load(sim)
 }
 
 /// Counts the steps of a device, and stops at what it found.
@@ -211,6 +270,10 @@ fn take_steps<const D: usize>(sim: &mut Simulation<D>, done: &DeviceSteps) -> Re
     device_state::count_device_passes(&mut sim.system, done.passes);
     match done.end {
         StepsEnd::Steps | StepsEnd::Time => sim.remove_due(),
+        StepsEnd::Escape => {
+            remove_escaped(sim)?;
+            sim.remove_due()
+        }
         StepsEnd::Fault(particle) => {
             fetch(sim)?;
             sim.guard()?;

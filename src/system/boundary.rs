@@ -30,8 +30,9 @@ pub(crate) struct Boundary<const D: usize> {
     pub(crate) particles: Particles<D>,
     /// Positions in the frame of each solid, m; none of a fixed solid, whose particles stay where they are.
     pub(super) local_positions: Vec<Vec<Vector<D>>>,
-    /// Share of the kernel's support that water fills, Σ V_f W, of each one near water, –; `None` unless a body needs it.
-    pub(crate) wetness: Option<Vec<f64>>,
+    /// Share of the kernel's support that water fills, Σ V_f W, of those near water, –, in ascending order; `None` unless a body needs
+    /// it. Of a system on a device, of those alone that a body needs.
+    pub(crate) wetness: Option<Vec<(u32, f64)>>,
     /// Depths below the face, m; `None` unless the density relaxes to the water's pressure or water sticks to the face.
     pub(super) depths: Option<Vec<f64>>,
     /// Outward normals in the frames of their solids; `None` unless water sticks to the face.
@@ -366,12 +367,14 @@ impl<const D: usize> System<D> {
         let mut fits = vec![WallExtrapolation::filled_with(0.0); neighbours.boundary_near_fluid().len()];
         pair_loop.extrapolate_to_boundary(&input, sticks || relaxes, &mut fits);
         if let Some(wetness) = &mut self.boundary.wetness {
-            *wetness = fits.iter().map(|fit| fit.weight_sum).collect();
+            let near = self.neighbours.boundary_near_fluid().iter();
+            *wetness = near.zip(&fits).map(|(i, fit)| (*i, fit.weight_sum)).collect();
         }
         if relaxes {
             self.gap_pressure.update_directions(&fits);
             film::update_water(self, &fits);
-            thin_layers::update_water(self, &fits);
+            let place = |system: &Self, i: u32| system.neighbours.boundary_near_fluid().binary_search(&i).ok();
+            thin_layers::update_water(self, |system, i| place(system, i).map(|place| fits[place].weight_sum));
             self.update_wall_pressure(&fits);
         }
         if sticks {

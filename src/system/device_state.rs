@@ -1,31 +1,32 @@
 //! What a device reads of a system, and what a system takes back from it.
 
-use super::{Escape, ParticleLimits, System};
+use std::collections::BTreeMap;
+
+use super::{
+    ParticleLimits, System,
+    impulses::{MomentumTransfer, bounds_beside, water_beside},
+    thin_layers,
+};
 use crate::{
-    math::{Matrix, Vector},
+    device::{NearParticle, WaterLoads},
+    math::{Bounds, Matrix, Vector},
     model::Slip,
-    solid::{Load, Role, Solid},
+    solid::{Role, Solid},
 };
 
 /// What this system has that no device computes yet, if anything.
 pub(crate) fn unsupported_on_device<const D: usize>(system: &System<D>) -> Option<&'static str> {
     let (model, region, driving) = (&system.model, &system.fluid_domain, &system.driving.driving);
     let [least, most] = region.limits.density;
-    let absorbs = |solid: &Solid<D>| match &solid.spec.role {
-        Role::Driven(motion) => motion.absorber().is_some(),
-        _ => false,
-    };
     let cases = [
         (system.fluid.images.periodic.iter().any(Option::is_some), "periodic sides"),
         (system.symmetry_planes().any(), "symmetry planes"),
         (!region.open_boundaries.is_empty(), "open boundaries ([[inflow]], [[outflow]])"),
         (driving.current.is_some() || driving.towed.is_some(), "currents and towed frames"),
         (!system.gravity_law.is_empty(), "gravity that changes with time"),
-        (region.limits.escape == Escape::Remove, "removal of particles (guard.escape = \"remove\")"),
         (!(0.5..1.0).contains(&least) || !(1.0..=1.5).contains(&most), "density limits beyond 0.5 to 1.5"),
         (model.slip == Slip::None, "slip = \"none\""),
         (model.gamma != 7.0, "an exponent model.gamma other than 7"),
-        (system.solids.iter().any(absorbs), "paddles that absorb waves"),
         (system.solids.iter().any(|solid| !solid.spec.ballast.is_empty()), "ballast"),
     ];
     cases.into_iter().find(|(has, _)| *has).map(|(_, what)| what)
@@ -121,7 +122,75 @@ pub(crate) fn place_solids<const D: usize>(system: &mut System<D>) {
     solids.iter().enumerate().for_each(|(i, solid)| boundary.place(i, solid, &fluid.images));
 }
 
-/// Sets the load of the water on each solid.
-pub(crate) fn set_loads<const D: usize>(system: &mut System<D>, loads: Vec<Load<D>>) {
+/// Sets what the water does to the solids, where they were in the force pass: loads, corrected for thin parts, and weights.
+pub(crate) fn set_loads<const D: usize>(system: &mut System<D>, of: WaterLoads<D>) {
+    let WaterLoads { loads, weights } = of;
+    let weight = |i: u32| weights.binary_search_by_key(&i, |(watched, _)| *watched).ok().map(|place| weights[place].1);
+    thin_layers::update_water(system, |_, i| weight(i));
+    let thin = thin_layers::loads(system);
     system.solids.iter_mut().zip(loads).for_each(|(solid, load)| solid.load = load);
+    system.solids.iter_mut().zip(thin).for_each(|(solid, load)| solid.load += load);
+    if let Some(wetness) = &mut system.boundary.wetness {
+        *wetness = weights;
+    }
+}
+
+/// The boundary particles in the middle of thin parts.
+pub(crate) fn thin_particles<const D: usize>(system: &System<D>) -> Vec<u32> {
+    thin_layers::particles(system).collect()
+}
+
+/// Places the boundary particles of solid number `solid` on the host.
+pub(crate) fn place_solid<const D: usize>(system: &mut System<D>, solid: usize) {
+    let System { boundary, solids, fluid, .. } = system;
+    boundary.place(solid, &solids[solid], &fluid.images);
+}
+
+/// Where (m) the paddles that absorb look for the surface at time `t` (s), the start of a step.
+pub(crate) fn gauge_ranges<const D: usize>(system: &System<D>, t: f64) -> Vec<Bounds<D>> {
+    let reach = system.model.support_radius().max(2.0 * system.model.h);
+    let range = |solid: &Solid<D>| match &solid.spec.role {
+        Role::Driven(motion) => motion.gauge_position(&solid.absorption, t).map(|gauge| {
+            let mut range = Bounds { min: gauge, max: gauge }.grown(reach);
+            (range.min[D - 1], range.max[D - 1]) = (f64::NEG_INFINITY, f64::INFINITY);
+            range
+        }),
+        _ => None,
+    };
+    system.solids.iter().filter_map(range).collect()
+}
+
+/// Where (m) solid number `solid` gives impulses to the water that has moved by `way` (m) more.
+pub(crate) fn range_beside<const D: usize>(system: &System<D>, solid: usize, way: f64) -> Bounds<D> {
+    bounds_beside(system, solid, system.model.support_radius() + way)
+}
+
+/// Whether there is water within the support of solid number `solid`.
+pub(crate) fn has_water_beside<const D: usize>(system: &System<D>, solid: usize) -> bool {
+    !water_beside(system, solid, system.model.support_radius()).is_empty()
+}
+
+/// Takes water particles from a device, which are all that are known until [`take_from_device`].
+pub(crate) fn take_near<const D: usize>(system: &mut System<D>, near: Vec<NearParticle<D>>) {
+    let particles = &mut system.fluid.particles;
+    for &(i, r, v, rho) in &near {
+        let i = i as usize;
+        (particles.r[i], particles.v[i], particles.rho[i]) = (r, v, rho);
+    }
+    let (these, places): (Vec<_>, Vec<_>) = near.into_iter().map(|(i, r, ..)| (i, r)).unzip();
+    system.neighbours.set_known_positions(these, &places);
+}
+
+/// The changes of velocity (m/s) of water particles in all `transfers`, each particle once and in order.
+pub(crate) fn velocity_changes<const D: usize>(transfers: &[MomentumTransfer<D>]) -> Vec<(usize, Vector<D>)> {
+    let mut sums = BTreeMap::<usize, Vector<D>>::new();
+    for (i, change) in transfers.iter().flat_map(|transfer| &transfer.changes) {
+        *sums.entry(*i).or_insert_with(Vector::zeros) += change;
+    }
+    sums.into_iter().collect()
+}
+
+/// Lets the next [`System::rebuild_neighbours`] make new lists.
+pub(crate) fn ask_for_lists<const D: usize>(system: &mut System<D>) {
+    system.boundary.poses_at_rebuild = None;
 }

@@ -13,8 +13,11 @@ impl<const D: usize> System<D> {
         let (dp, h, up) = (self.model.dp, self.model.h, D - 1);
         let beside = |r: &Vector<D>| (0..up).map(|i| (r[i] - at[i]).powi(2)).sum::<f64>() < (2.0 * h).powi(2);
         let nothing = || (f64::INFINITY, f64::NEG_INFINITY);
-        let heights =
-            self.fluid().r.par_iter().with_min_len(PARTICLES_PER_TASK).filter(|r| beside(r)).map(|r| (r[up], r[up]));
+        let (r, known) = (self.fluid().r, self.neighbours.known_water());
+        let count = known.map_or(r.len(), <[u32]>::len);
+        let place = |k: usize| &r[known.map_or(k, |known| known[k] as usize)];
+        let all = (0..count).into_par_iter().with_min_len(PARTICLES_PER_TASK).map(place);
+        let heights = all.filter(|r| beside(r)).map(|r| (r[up], r[up]));
         let (low, high) = heights.reduce(nothing, |a, b| (a.0.min(b.0), a.1.max(b.1)));
         let at = *at;
         let filled = move |z: f64| {

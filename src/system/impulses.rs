@@ -24,13 +24,10 @@ pub(crate) fn return_impulse<const D: usize>(
         return None;
     }
     let mass = system.particle_mass() * system.symmetry_planes().multiplicity(!system.solids[solid].division.cut);
-    let (count, images_of_all) = (system.particle_count(), system.solid_multiplicity(solid));
-    let own = Bounds::around(&system.boundary.particles.r[system.home_boundary(solid)]);
+    let images_of_all = system.solid_multiplicity(solid);
     let mut distance = system.model.support_radius();
     loop {
-        let around = own.grown(distance);
-        let mut particles = system.neighbours.fluid_within(&around);
-        particles.retain(|&i| i < count && around.contains(&system.fluid.particles.r[i]));
+        let particles = water_beside(system, solid, distance);
         if !particles.is_empty() {
             let velocity = impulse / (particles.len() as f64 * mass);
             let changes = particles.into_iter().map(|i| (i, velocity)).collect();
@@ -41,6 +38,20 @@ pub(crate) fn return_impulse<const D: usize>(
             return None;
         }
     }
+}
+
+/// Returns the box around `solid`, grown by `distance` (m).
+pub(super) fn bounds_beside<const D: usize>(system: &System<D>, solid: usize, distance: f64) -> Bounds<D> {
+    Bounds::around(&system.boundary.particles.r[system.home_boundary(solid)]).grown(distance)
+}
+
+/// Returns the water particles in the box around `solid`, grown by `distance` (m).
+pub(super) fn water_beside<const D: usize>(system: &System<D>, solid: usize, distance: f64) -> Vec<usize> {
+    let around = bounds_beside(system, solid, distance);
+    let mut particles = system.neighbours.fluid_within(&around);
+    let count = system.particle_count();
+    particles.retain(|&i| i < count && around.contains(&system.fluid.particles.r[i]));
+    particles
 }
 
 /// Gives each of these impulses (N s) at its place (m) to the water around it, in shares V W of the kernel W as those of a mean over

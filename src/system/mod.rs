@@ -22,7 +22,7 @@ mod sponge_layer;
 mod step_check;
 mod symmetric_setup;
 pub(crate) mod symmetry;
-pub(crate) mod thin_layers;
+mod thin_layers;
 mod view;
 
 pub(crate) use boundary::Boundary;

@@ -12,7 +12,6 @@ use crate::{
     math::Vector,
     model::{Model, Walls},
     solid::{Load, Solid},
-    sph::boundary::WallExtrapolation,
 };
 
 /// Depth of a particle below its face, dp, from which on its part is not thinner than dp.
@@ -69,20 +68,19 @@ impl ThinLayers {
     }
 }
 
-/// Whether a solid has parts whose buoyancy is corrected.
-pub(crate) fn any<const D: usize>(system: &System<D>) -> bool {
-    system.boundary.thin.of_solid.iter().any(|particles| !particles.is_empty())
+/// The boundary particles in the middle of thin parts.
+#[cfg(feature = "gpu")]
+pub(super) fn particles<const D: usize>(system: &System<D>) -> impl Iterator<Item = u32> + '_ {
+    system.boundary.thin.each(&system.solids).map(|(_, i, _)| i as u32)
 }
 
-/// Reads the water around the thin parts from `fits`, one for each boundary particle near water.
-pub(super) fn update_water<const D: usize>(system: &mut System<D>, fits: &[WallExtrapolation<f64, D>]) {
-    let (near, boundary) = (system.neighbours.boundary_near_fluid(), &mut system.boundary);
-    let both_sides = 2.0 * boundary.coverage.full_weight(0.5 * system.model.dp);
-    let share = |i: usize| match near.binary_search(&(i as u32)) {
-        Ok(place) => (fits[place].weight_sum / both_sides).min(1.0),
-        Err(_) => 0.0,
-    };
-    boundary.thin.wet = boundary.thin.each(&system.solids).map(|(_, i, _)| share(i)).collect();
+/// Reads the water around the thin parts from the `weight` (–) of that around a boundary particle, if there is any.
+pub(super) fn update_water<const D: usize>(system: &mut System<D>, weight: impl Fn(&System<D>, u32) -> Option<f64>) {
+    let thin = &system.boundary.thin;
+    let both_sides = 2.0 * system.boundary.coverage.full_weight(0.5 * system.model.dp);
+    let share = |i: usize| weight(system, i as u32).map_or(0.0, |weight| (weight / both_sides).min(1.0));
+    let wet = thin.each(&system.solids).map(|(_, i, _)| share(i)).collect();
+    system.boundary.thin.wet = wet;
 }
 
 /// The loads that take the buoyancy in excess off the computed part of each solid, about its centre; an empty list without thin parts.

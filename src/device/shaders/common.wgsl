@@ -10,7 +10,7 @@ struct Params {
 };
 struct Place { hi: vec4<i32>, lo: vec4<u32> };
 struct Control {
-    halt: u32,       // 0: runs; 1: paused; 2: a particle left the valid range; 3: no time step; 4: a list is too short
+    halt: u32,       // 0: runs; 1: paused; 2: a particle left the valid range; 3: no time step; 4: a list is too short; 5: water is to be removed
     rebuild: u32,
     dt: f32,
     span: f32,       // what a Verlet step integrates over
@@ -34,7 +34,10 @@ struct Control {
     age: u32,        // force passes since the gradients were corrected
     correct: u32,
     factor: f32,     // part of the step of the water that is taken, after a rollback
-    pad: array<u32, 5>,
+    found: atomic<u32>,   // water particles that the host asked for
+    outside: atomic<u32>, // whether water has left the domain in this step
+    renewed: u32,         // whether there were new lists in this step
+    pad: array<u32, 2>,
 };
 struct Solid {
     origin: Place,           // of its frame; hi.w: 1 if water beside it is not shifted

@@ -26,6 +26,7 @@ fn cell(i: u32) -> u32 {
 @compute @workgroup_size(1)
 fn decide() {
     control.rebuild = select(0u, 1u, control.halt == 0u && atomicLoad(&control.moved2) >= MARGIN2);
+    if (REMOVES && control.rebuild != 0u) { control.renewed = 1u; }
     if (control.halt == 0u) {
         control.passes += 1u;
         control.age += 1u;

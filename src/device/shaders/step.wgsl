@@ -141,7 +141,8 @@ fn guard(k: u32, place: Place, v: vec3<f32>, x: i32) {
     // Whatever is not finite is greater, as whole numbers.
     let fast = bitcast<u32>(dot(v, v)) > FASTEST2;
     let outside = any(place.hi.xyz < DOMAIN_MIN) || any(place.hi.xyz > DOMAIN_MAX);
-    if (fast || x < LEAST || x > MOST || outside) { atomicMin(&control.fault, u32(place.hi.w)); }
+    if (REMOVES && outside) { atomicStore(&control.outside, 1u); }
+    if (fast || x < LEAST || x > MOST || (outside && !REMOVES)) { atomicMin(&control.fault, u32(place.hi.w)); }
 }
 
 @compute @workgroup_size(128)
@@ -219,5 +220,12 @@ fn finish() {
     control.dt_before = control.dt;
     let later = control.time.y > control.stop.y || (control.time.y == control.stop.y && control.time.x >= control.stop.x);
     if (later) { control.halt = 1u; }
+    if (REMOVES) {
+        // Water beyond the domain is removed when the lists are made anew, or were.
+        let renewed = control.renewed != 0u || atomicLoad(&control.moved2) >= MARGIN2;
+        if (renewed && atomicLoad(&control.outside) != 0u) { control.halt = 5u; }
+        control.renewed = 0u;
+        atomicStore(&control.outside, 0u);
+    }
     if (atomicLoad(&control.fault) != NONE) { control.halt = 2u; }
 }

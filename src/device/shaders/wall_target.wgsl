@@ -7,4 +7,4 @@ let depth = constants.x;
 let full_weight = constants.y;
 let own = a_compression;
 {{TARGET}}walls[k - params.water] = vec4<f32>(out_density, out_increase, out_prompt_decrease, out_prompt_increase);
-if (GAPS) { aways[k - params.water] = vec4<f32>(out_away0, out_away1, out_away2, 0.0f); }
+if (GAPS || WEIGHS) { aways[k - params.water] = vec4<f32>(out_away0, out_away1, out_away2, fit0); }

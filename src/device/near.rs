@@ -1,0 +1,254 @@
+//! What the host reads of a device between two outputs: the water near some places, and the weights of the water around some boundary
+//! particles; and the velocities that it changes.
+
+use super::{
+    Device,
+    buffers::{Buffers, Control, Counts, WORDS},
+    gpu::{Gpu, Pass, Shader},
+    layout::Layout,
+    shaders::{GROUP, ShaderTexts},
+};
+use crate::{
+    error::Result,
+    math::{Bounds, Vector},
+    system::System,
+};
+
+/// A water particle near a place: its index on the host, place (m), velocity (m/s) and density (kg/m³).
+pub(crate) type NearParticle<const D: usize> = (u32, Vector<D>, Vector<D>, f64);
+
+/// Words of a [`NearParticle`] on the device.
+const PARTICLE: usize = 12;
+
+/// Particles for which there is room at first.
+const ROOM: usize = 2048;
+
+/// No particle.
+const NONE: u32 = u32::MAX;
+
+/// The arrays and passes by which the host reads water.
+pub(super) struct Near {
+    shader: Shader,
+    /// Boundary particles that the host watches, in ascending order.
+    watched: Vec<u32>,
+    ranges: wgpu::Buffer,
+    found: wgpu::Buffer,
+    watched_on_device: wgpu::Buffer,
+    weights: wgpu::Buffer,
+    changes: wgpu::Buffer,
+    /// Particles for which there is room, and how many are read at once: somewhat more than the last time.
+    room: usize,
+    expected: usize,
+    passes: NearPasses,
+}
+
+/// The passes that do not depend on a number of changes.
+struct NearPasses {
+    params: wgpu::Buffer,
+    find: Pass,
+    weigh: Pass,
+}
+
+/// The buffers of the shader by their bindings.
+fn bindings<'a>(
+    params: &'a wgpu::Buffer,
+    buffers: &'a Buffers,
+    [ranges, found, watched, weights, changes]: [&'a wgpu::Buffer; 5],
+) -> Vec<&'a wgpu::Buffer> {
+    let b = &buffers.pairs;
+    let state = [params, &buffers.control, &buffers.places, &buffers.motion, &buffers.before, &b.velocities];
+    state.into_iter().chain([&buffers.slot, &b.spans, &b.aways, ranges, found, watched, weights, changes]).collect()
+}
+
+impl NearPasses {
+    fn new(gpu: &Gpu, shader: &Shader, counts: &Counts, buffers: &Buffers, own: [&wgpu::Buffer; 5]) -> Result<Self> {
+        let params = gpu.uniform(&counts.words());
+        let all = bindings(&params, buffers, own);
+        let find = gpu.pass(shader, "find_near", counts.water, &all)?;
+        let weigh = gpu.pass(shader, "weigh", own[2].size() as usize / 4, &all)?;
+        Ok(Self { params, find, weigh })
+    }
+}
+
+impl Near {
+    /// For the shader of `texts`, if the host reads water.
+    pub(super) fn new(
+        gpu: &Gpu,
+        texts: &ShaderTexts,
+        counts: &Counts,
+        buffers: &Buffers,
+        watched: Vec<u32>,
+    ) -> Result<Option<Self>> {
+        let Some(text) = &texts.near else { return Ok(None) };
+        let shader = gpu.shader(text, &["find_near", "weigh", "change_velocities"])?;
+        let mut padded = watched.clone();
+        padded.resize(watched.len().next_multiple_of(GROUP).max(GROUP), NONE);
+        let (ranges, changes) = (gpu.buffer(64)?, gpu.buffer(16)?);
+        let (on_device, weights) = (gpu.buffer(4 * padded.len())?, gpu.buffer(4 * padded.len())?);
+        gpu.write(&on_device, 0, &padded);
+        let room = ROOM.min(counts.water.max(1));
+        let found = gpu.buffer(4 * PARTICLE * room)?;
+        let own = [&ranges, &found, &on_device, &weights, &changes];
+        let passes = NearPasses::new(gpu, &shader, counts, buffers, own)?;
+        let watched_on_device = on_device;
+        Ok(Some(Self {
+            shader,
+            watched,
+            ranges,
+            found,
+            watched_on_device,
+            weights,
+            changes,
+            room,
+            expected: ROOM.min(room),
+            passes,
+        }))
+    }
+
+    /// Makes the passes anew, for other numbers of particles or other arrays.
+    pub(super) fn make_passes(&mut self, gpu: &Gpu, counts: &Counts, buffers: &Buffers) -> Result<()> {
+        let own = [&self.ranges, &self.found, &self.watched_on_device, &self.weights, &self.changes];
+        self.passes = NearPasses::new(gpu, &self.shader, counts, buffers, own)?;
+        Ok(())
+    }
+
+    /// Memory, B.
+    pub(super) fn bytes(&self) -> u64 {
+        let all = [&self.ranges, &self.found, &self.watched_on_device, &self.weights, &self.changes];
+        all.map(wgpu::Buffer::size).iter().sum()
+    }
+
+    /// The pass that weighs the water, if boundary particles are watched.
+    pub(super) fn weigh(&self) -> Option<&Pass> {
+        (!self.watched.is_empty()).then_some(&self.passes.weigh)
+    }
+
+    /// The weights among `words`, with the boundary particles that have water.
+    pub(super) fn weights(&self, words: &[u32]) -> Vec<(u32, f64)> {
+        let all = self.watched.iter().zip(words).map(|(i, word)| (*i, f64::from(f32::from_bits(*word))));
+        all.filter(|(_, weight)| *weight > 0.0).collect()
+    }
+}
+
+/// What a device says beside its control words.
+pub(super) struct Answer<const D: usize> {
+    pub(super) control: Control,
+    pub(super) loads: Vec<u32>,
+    pub(super) weights: Vec<(u32, f64)>,
+    pub(super) near: Vec<NearParticle<D>>,
+    /// Whether there was room for all particles near the places.
+    pub(super) has_all: bool,
+}
+
+impl<const D: usize> Device<D> {
+    /// Lets the next submission find the water in these `ranges` (m).
+    pub(super) fn prepare_find(&mut self, ranges: &[Bounds<D>]) -> Result<()> {
+        let (layout, Some(near), false) = (self.layout, &mut self.near, ranges.is_empty()) else { return Ok(()) };
+        let all = ranges.iter().fold(Bounds::empty(), |all, range| all.union(range));
+        let mut words: Vec<[i32; 8]> = std::iter::once(&all).chain(ranges).map(|range| words(&layout, range)).collect();
+        words[0][3] = ranges.len() as i32;
+        let bytes = size_of_val(&words[..]);
+        if bytes > near.ranges.size() as usize {
+            near.ranges = self.gpu.buffer(2 * bytes)?;
+            near.make_passes(&self.gpu, &self.counts, &self.buffers)?;
+        }
+        self.gpu.write(&near.ranges, 0, &words);
+        self.gpu.write(&self.buffers.control, Control::FOUND * 4, &[0u32]);
+        Ok(())
+    }
+
+    /// The pass that finds the water in `ranges`, if there are any.
+    pub(super) fn find(&self, ranges: &[Bounds<D>]) -> Option<&Pass> {
+        self.near.as_ref().filter(|_| !ranges.is_empty()).map(|near| &near.passes.find)
+    }
+
+    /// The pass that weighs the water around watched boundary particles, if there are any.
+    pub(super) fn weigh(&self) -> Option<&Pass> {
+        self.near.as_ref().and_then(Near::weigh)
+    }
+
+    /// What the device says after all passes: with the water in `ranges` that it found, and the loads if `loaded`.
+    pub(super) fn answer(&mut self, ranges: &[Bounds<D>], loaded: bool) -> Result<Answer<D>> {
+        let Self { gpu, layout, buffers, near, counts, .. } = self;
+        let loads = if loaded { 8 * self.chunks.owners.len() } else { 0 };
+        let Some(near) = near else {
+            let [control, loads] = gpu.read([(&buffers.control, WORDS), (&buffers.loads, loads)])?;
+            let control = Control::from_words(&control);
+            return Ok(Answer { control, loads, weights: Vec::new(), near: Vec::new(), has_all: true });
+        };
+        let expected = if ranges.is_empty() { 0 } else { near.expected };
+        let [control, loads, weights, mut particles] = gpu.read([
+            (&buffers.control, WORDS),
+            (&buffers.loads, loads),
+            (&near.weights, if loaded { near.watched.len() } else { 0 }),
+            (&near.found, PARTICLE * expected),
+        ])?;
+        let control = Control::from_words(&control);
+        let count = if ranges.is_empty() { 0 } else { control.found() as usize };
+        let has_all = count <= near.room;
+        if has_all && count > expected {
+            [particles] = gpu.read([(&near.found, PARTICLE * count)])?;
+        }
+        if !ranges.is_empty() {
+            near.expected = (count + count / 8 + 64).min(near.room);
+        }
+        if !has_all {
+            near.room = (count + count / 4).min(counts.water);
+            near.found = gpu.buffer(4 * PARTICLE * near.room)?;
+            near.make_passes(gpu, counts, buffers)?;
+        }
+        let of = |words: &[u32]| {
+            let (place, motion) = words.split_at(8);
+            (place[3], layout.position(place), layout.velocity(motion), layout.density(motion))
+        };
+        let mut found: Vec<NearParticle<D>> = particles.chunks_exact(PARTICLE).take(count).map(of).collect();
+        found.sort_unstable_by_key(|(i, ..)| *i);
+        Ok(Answer { control, weights: near.weights(&weights), loads, near: found, has_all })
+    }
+
+    /// Adds to the velocities (m/s) of these water particles, of which none comes twice.
+    pub(crate) fn change_velocities(&mut self, changes: &[(usize, Vector<D>)]) -> Result<()> {
+        let (Some(near), false) = (&mut self.near, changes.is_empty()) else { return Ok(()) };
+        let words = |(i, v): &(usize, Vector<D>)| {
+            let [x, y, z] = self.layout.velocity_words(v);
+            [x, y, z, *i as u32]
+        };
+        let mut all: Vec<[u32; 4]> = changes.iter().map(words).collect();
+        let bytes = size_of_val(&all[..]);
+        if bytes > near.changes.size() as usize {
+            near.changes = self.gpu.buffer(2 * bytes)?;
+            near.make_passes(&self.gpu, &self.counts, &self.buffers)?;
+        }
+        let threads = near.changes.size() as usize / 16;
+        all.resize(threads, [NONE; 4]);
+        let own = [&near.ranges, &near.found, &near.watched_on_device, &near.weights, &near.changes];
+        let buffers = bindings(&near.passes.params, &self.buffers, own);
+        let pass = self.gpu.pass(&near.shader, "change_velocities", threads, &buffers)?;
+        self.gpu.write(&near.changes, 0, &all);
+        self.gpu.run(&[], [&pass]);
+        Ok(())
+    }
+
+    /// Takes other numbers of particles, those of `system`, if they have changed.
+    pub(super) fn fit(&mut self, system: &System<D>) -> Result<()> {
+        let (water, boundary) = (system.fluid().len(), system.boundary().len());
+        if (water, water + boundary) == (self.counts.water, self.counts.n) {
+            return Ok(());
+        }
+        if water + boundary > self.buffers.room {
+            return Err(super::refused("a state with more water than there was when it got the water"));
+        }
+        (self.counts.water, self.counts.n) = (water, water + boundary);
+        self.make_passes()
+    }
+}
+
+/// The corners of `range` (m) on a device, in 2⁻⁸ of the support.
+fn words<const D: usize>(layout: &Layout, range: &Bounds<D>) -> [i32; 8] {
+    let [mut low, mut high] = [[i32::MIN; 4], [i32::MAX; 4]];
+    for k in 0..D {
+        (low[k], high[k]) = (layout.coarse(range.min[k], f64::floor), layout.coarse(range.max[k], f64::ceil));
+    }
+    (low[3], high[3]) = (0, 0);
+    std::array::from_fn(|k| if k < 4 { low[k] } else { high[k - 4] })
+}
