@@ -161,12 +161,26 @@ fn beside<const D: usize>(setup: &Setup<D>, start: f64, steps: usize) -> [Simula
 where
     Dim<D>: Dimension<D>,
 {
+    beside_with(setup, start, steps, |_, _| {})
+}
+
+/// The same, with a look at both after each step.
+fn beside_with<const D: usize>(
+    setup: &Setup<D>,
+    start: f64,
+    steps: usize,
+    mut look: impl FnMut(&Simulation<D>, &Simulation<D>),
+) -> [Simulation<D>; 2]
+where
+    Dim<D>: Dimension<D>,
+{
     let state = run(setup, start);
     let mut reference = under(setup, PairLoopKind::Reference, &state);
     let mut on_device = under(setup, PairLoopKind::Fast, &state).on_device(&device()).expect("a device");
     for _ in 0..steps {
         reference.step().expect("a sound run");
         on_device.step().expect("a sound run");
+        look(&on_device, &reference);
     }
     [on_device, reference]
 }

@@ -282,22 +282,23 @@ impl Gpu {
     pub(super) fn read<T: Pod, const N: usize>(&self, buffers: [(&wgpu::Buffer, usize); N]) -> Result<[Vec<T>; N]> {
         let mut encoder = self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let copied = buffers.map(|(buffer, count)| {
+            if count == 0 {
+                return None;
+            }
             let size = (count * size_of::<T>()) as u64;
             let usage = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
             let copy = self.device.create_buffer(&wgpu::BufferDescriptor {
                 label: None,
-                size: size.max(4),
+                size,
                 usage,
                 mapped_at_creation: false,
             });
-            if size > 0 {
-                encoder.copy_buffer_to_buffer(buffer, 0, &copy, 0, size);
-            }
-            copy
+            encoder.copy_buffer_to_buffer(buffer, 0, &copy, 0, size);
+            Some(copy)
         });
         self.queue.submit([encoder.finish()]);
         let failure = self.failure.clone();
-        for copy in &copied {
+        for copy in copied.iter().flatten() {
             let failure = failure.clone();
             copy.slice(..).map_async(wgpu::MapMode::Read, move |result| {
                 if let (Err(why), Ok(mut first)) = (result, failure.lock()) {
@@ -309,6 +310,7 @@ impl Gpu {
         self.check()?;
         let mut out: [Vec<T>; N] = std::array::from_fn(|_| Vec::new());
         for ((out, copy), (_, count)) in out.iter_mut().zip(&copied).zip(buffers) {
+            let Some(copy) = copy else { continue };
             let range = copy.slice(..).get_mapped_range().map_err(|why| self.failed(&why.to_string()))?;
             *out = bytemuck::pod_collect_to_vec(&range[..count * size_of::<T>()]);
         }

@@ -18,7 +18,6 @@ mod solids;
 mod text;
 
 pub use gpu::{Adapter, adapters};
-pub(crate) use near::NearParticle;
 pub use shaders::ShaderTexts;
 
 use buffers::{Buffers, Control, Counts, WORDS};
@@ -34,9 +33,11 @@ use crate::{
     interaction::{PairSums, StepLimits},
     math::{Bounds, Matrix, Vector},
     model::{TimeScheme, Walls},
-    solid::Load,
     sph::Units,
-    system::{System, device_state},
+    system::{
+        System,
+        device_state::{self, NearParticle, WaterLoads},
+    },
     time_integration::{Stepper, VerletHistory},
 };
 
@@ -152,14 +153,6 @@ pub(crate) struct SecondHalf<const D: usize> {
     pub(crate) loads: WaterLoads<D>,
     /// The water at its end near the places that were asked for.
     pub(crate) near: Vec<NearParticle<D>>,
-}
-
-/// What the water does to the solids in a force pass.
-pub(crate) struct WaterLoads<const D: usize> {
-    /// The load on each solid.
-    pub(crate) loads: Vec<Load<D>>,
-    /// Weight (–) of the water around each watched boundary particle that has any.
-    pub(crate) weights: Vec<(u32, f64)>,
 }
 
 /// The refusal of `what` on a device.
@@ -354,9 +347,9 @@ impl<const D: usize> Device<D> {
         if ticks < 9e18 { ticks.round().max(0.0) as u64 } else { u64::MAX / 2 }
     }
 
-    /// The ticks of a longest step `dt` (s).
+    /// The ticks of a longest step `dt` (s), rounded up: a step that ends where a constraint begins does not end before.
     fn limit(&self, dt: f64) -> u32 {
-        (dt / self.units.time * TICKS).min(1e9) as u32
+        (dt / self.units.time * TICKS).ceil().min(1e9) as u32
     }
 
     /// Makes up to `most` steps until the water has reached the time of the pause; of a system whose solids are fixed.
@@ -532,7 +525,8 @@ impl<const D: usize> Device<D> {
     /// The loads on the solids by the last force pass.
     pub(crate) fn loads(&mut self, system: &System<D>) -> Result<WaterLoads<D>> {
         self.gpu.run(&[], std::iter::once(self.passes.loads.as_ref()).chain(self.weigh()));
-        let Answer { loads, weights, .. } = self.answer(&[], true)?;
+        let [loads, weights] = self.gpu.read([(&self.buffers.loads, 8 * self.chunks.owners.len()), self.weights()])?;
+        let weights = self.near.as_ref().map_or_else(Vec::new, |near| near.weights(&weights));
         Ok(WaterLoads { loads: self.chunks.loads(&loads, system, &self.units), weights })
     }
 

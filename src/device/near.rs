@@ -11,11 +11,8 @@ use super::{
 use crate::{
     error::Result,
     math::{Bounds, Vector},
-    system::System,
+    system::{System, device_state::NearParticle},
 };
-
-/// A water particle near a place: its index on the host, place (m), velocity (m/s) and density (kg/m³).
-pub(crate) type NearParticle<const D: usize> = (u32, Vector<D>, Vector<D>, f64);
 
 /// Words of a [`NearParticle`] on the device.
 const PARTICLE: usize = 12;
@@ -165,6 +162,11 @@ impl<const D: usize> Device<D> {
     /// The pass that weighs the water around watched boundary particles, if there are any.
     pub(super) fn weigh(&self) -> Option<&Pass> {
         self.near.as_ref().and_then(Near::weigh)
+    }
+
+    /// Where the weights are, and how many.
+    pub(super) fn weights(&self) -> (&wgpu::Buffer, usize) {
+        self.near.as_ref().map_or((&self.buffers.loads, 0), |near| (&near.weights, near.watched.len()))
     }
 
     /// What the device says after all passes: with the water in `ranges` that it found, and the loads if `loaded`.

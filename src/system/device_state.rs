@@ -8,11 +8,21 @@ use super::{
     thin_layers,
 };
 use crate::{
-    device::{NearParticle, WaterLoads},
     math::{Bounds, Matrix, Vector},
     model::Slip,
-    solid::{Role, Solid},
+    solid::{Load, Role, Solid},
 };
+
+/// A water particle near a place: its index, place (m), velocity (m/s) and density (kg/m³).
+pub(crate) type NearParticle<const D: usize> = (u32, Vector<D>, Vector<D>, f64);
+
+/// What the water on a device does to the solids in a force pass.
+pub(crate) struct WaterLoads<const D: usize> {
+    /// The load on each solid.
+    pub(crate) loads: Vec<Load<D>>,
+    /// Weight (–) of the water around each watched boundary particle that has any.
+    pub(crate) weights: Vec<(u32, f64)>,
+}
 
 /// What this system has that no device computes yet, if anything.
 pub(crate) fn unsupported_on_device<const D: usize>(system: &System<D>) -> Option<&'static str> {

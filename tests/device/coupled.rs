@@ -11,7 +11,7 @@ use pontoon::{
     solid::{Dim, Role, SolidSpec},
 };
 
-use super::{Shape, assert_rates_agree, beside, dam, dam_with, device, distances, run, under};
+use super::{Shape, assert_rates_agree, beside, beside_with, dam, dam_with, device, distances, run, under};
 
 fn setup_of(text: &str) -> Setup<2> {
     Scene::parse(text, Path::new(""), &[]).unwrap().build::<2>().unwrap().setup
@@ -73,13 +73,14 @@ fn light_bodies_agree_with_the_reference() {
     ];
     for (name, model) in cases {
         let setup = light(model);
-        let [on_device, reference] = beside(&setup, 0.02, 300);
-        let [r, v] = distances(&on_device, &reference);
-        let body = solids_apart(&on_device, &reference);
-        let pending = [&on_device, &reference].map(|sim| sim.pending_impulse(1));
-        println!("{name}: water {r:.1e} dp, {v:.1e} c0, body {body:.1e} dp, pending impulses {pending:?}");
-        assert!(pending[1].norm() > 0.0, "{name}: no acoustic added mass");
-        assert!((pending[0] - pending[1]).norm() < 1e-2 * pending[1].norm(), "{name}: {pending:?}");
+        let (mut most, mut apart) = (0.0f64, 0.0f64);
+        let [on_device, reference] = beside_with(&setup, 0.02, 300, |on_device, reference| {
+            let [here, there] = [on_device, reference].map(|sim| sim.pending_impulse(1));
+            (most, apart) = (most.max(there.norm()), apart.max((here - there).norm()));
+        });
+        let ([r, v], body) = (distances(&on_device, &reference), solids_apart(&on_device, &reference));
+        println!("{name}: water {r:.1e} dp, {v:.1e} c0, body {body:.1e} dp, impulses {apart:.1e} of {most:.1e} N s");
+        assert!(most > 0.01 && apart < 1e-3 * most, "{name}: pending impulses {apart} of {most} N s apart");
         // The bound of free bodies.
         assert!(r < 1e-3 && body < 1e-3, "{name}: water {r} dp, body {body} dp off");
     }
@@ -100,16 +101,16 @@ fn a_light_body_in_space_agrees_with_the_reference() {
 
 #[test]
 fn a_light_body_that_leaves_the_water_gives_its_impulse_back() {
-    // It leaves at once: the water that then gets the pending impulse is further away than its support.
+    // It hovers within the support of the water and leaves upwards: what then gets the rest of the pending impulse is further away.
     let mut setup = light(Model::water(2, 0.02, 0.3).for_free_bodies());
     let Role::Free(body) = &mut setup.solids[1].role else { panic!("a free body") };
-    body.velocity = Vector::from([0.0, 2.0]);
-    setup.solids[1] = setup.solids[1].clone().at([0.15, 0.34]);
+    body.velocity = Vector::from([0.0, 3.0]);
+    setup.solids[1] = setup.solids[1].clone().at([0.16, 0.355]);
     let state = run(&setup, 0.0);
     let mut reference = under(&setup, PairLoopKind::Reference, &state);
     let mut on_device = under(&setup, PairLoopKind::Fast, &state).on_device(&device()).expect("a device");
     let mut most: f64 = 0.0;
-    while reference.time() < 0.06 {
+    while reference.time() < 0.04 {
         reference.step().unwrap();
         on_device.step().unwrap();
         most = most.max(on_device.pending_impulse(1).norm());
@@ -118,7 +119,7 @@ fn a_light_body_that_leaves_the_water_gives_its_impulse_back() {
     let ([r, v], body) = (distances(&on_device, &reference), solids_apart(&on_device, &reference));
     println!("water {r:.1e} dp, {v:.1e} c0, body {body:.1e} dp; pending {most:.1e}, at the end {left:?}");
     assert!(most > 0.0 && left.iter().all(|left| *left < 1e-9 * most), "pending {most}, at the end {left:?}");
-    assert!(r < 1e-4 && body < 1e-4, "water {r} dp, body {body} dp off");
+    assert!(r < 1e-4 && v < 1e-7 && body < 1e-4, "water {r} dp, {v} c0, body {body} dp off");
 }
 
 /// A standing wave whose left end is a paddle.
@@ -279,9 +280,11 @@ fn water_that_leaves_the_domain_is_removed() {
         println!("{name}: {} removed, {there} by the reference", removed.len());
         assert!(there > 10 && removed.len().abs_diff(there) <= 2, "{name}: {} and {there}", removed.len());
         assert_eq!(bits(&first), bits(&again), "{name}: other bits");
-        let energy = first.system().kinetic_energy() / reference.system().kinetic_energy() - 1.0;
-        println!("{name}: kinetic energy {energy:.1e}");
-        assert!(energy.abs() < 0.02, "{name}: kinetic energy {energy} off");
+        let energy = first.system().kinetic_energy() - reference.system().kinetic_energy();
+        let fastest = removed.iter().map(|(_, lost)| lost.v.norm()).fold(0.0, f64::max);
+        let of_one = 0.5 * first.system().particle_mass() * fastest.powi(2);
+        println!("{name}: kinetic energy {energy:.2} J/m apart, of one particle {of_one:.2} J/m");
+        assert!(energy.abs() < 3.0 * of_one, "{name}: kinetic energy {energy} J/m off");
         // The processor goes on from there.
         let mut on_processor = Simulation::new(setup.clone()).unwrap();
         on_processor.restore(&first.save().unwrap()).unwrap();
