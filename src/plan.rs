@@ -275,8 +275,12 @@ impl CheckPlan {
         Self { bound: Some(bound), ..self }
     }
 
-    /// Returns a label with the name of the series and the time at which the instrument was set to zero.
+    /// Returns a label with the name of the series, and the series to which it responds or the time at which the
+    /// instrument was set to zero.
     pub(crate) fn label(&self) -> String {
+        if let Reference::Response(response) = &self.reference {
+            return format!("{}, over {}", self.series, response.to);
+        }
         self.zero.map_or(self.series.clone(), |at| format!("{}, 0 at {at} s", self.series))
     }
 }
@@ -299,6 +303,25 @@ pub enum Reference {
     },
     /// A formula in the run's time t (s).
     Formula(String),
+    /// A response to a regular wave.
+    Response(ResponseReference),
+}
+
+/// What the fundamental of a series is to that of another series of the run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ResponseReference {
+    /// The other series, such as the wave, as `gauge.eta_m`.
+    pub to: String,
+    /// Period of the wave, s.
+    pub period: f64,
+    /// Amplitude over that of the other series, in the units of both.
+    pub ratio: f64,
+    /// Lag behind the other series, in periods; absent if the reference has none.
+    pub lag: Option<f64>,
+    /// First time of the other series that counts, s; absent if it is that of the check.
+    pub from: Option<f64>,
+    /// Last time of the other series that counts, s; absent if it is that of the check.
+    pub until: Option<f64>,
 }
 
 /// How a run is moved in time, as a whole, to lie on its reference.
@@ -336,4 +359,7 @@ pub struct Score {
     /// The largest delay of either sign that passes, s.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub delay: Option<f64>,
+    /// The largest relative error of the period of a response that passes, –.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub period: Option<f64>,
 }

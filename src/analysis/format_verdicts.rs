@@ -31,6 +31,7 @@ pub(crate) fn format_bound(bound: Option<Score>) -> String {
     ];
     let mut words: Vec<String> = said.iter().filter_map(|(word, x)| x.map(|x| format!("{word} ≤ {x}"))).collect();
     words.extend(b.delay.map(|x| format!("|delay| ≤ {x} s")));
+    words.extend(b.period.map(|x| format!("period ≤ {x}")));
     words.join(", ")
 }
 
@@ -50,7 +51,7 @@ type VerdictColumn = (&'static str, fn(&Verdict) -> String);
 
 /// Columns before the bound. The table shows those after the first three only if at least one verdict has a value for
 /// them.
-const COLUMNS: [VerdictColumn; 13] = [
+const COLUMNS: [VerdictColumn; 14] = [
     ("check", |v| v.series.clone()),
     ("N", |v| format_metric(v.metrics.relative_l2)),
     ("M", |v| format_metric(v.metrics.amplitude_ratio)),
@@ -66,6 +67,7 @@ const COLUMNS: [VerdictColumn; 13] = [
     ),
     ("mean peak", |v| v.meaned.filter(|_| is_impact_load(v)).map_or(String::new(), |m| format_metric(m.metrics.peak))),
     ("off", |v| if has_limit(v, |s| s.off) { format_value(v.metrics.off) } else { String::new() }),
+    ("period", |v| v.metrics.period.map_or(String::new(), |x| format_metric(Some(x)))),
     ("paper N, M", |v| {
         v.paper.map_or(String::new(), |p| {
             format!("{}, {}", format_metric(p.relative_l2), format_metric(p.amplitude_ratio))

@@ -8,11 +8,12 @@ mod harmonic;
 mod moments;
 mod rao;
 mod reflection;
+mod response;
 mod spectrum;
 mod verdict;
 mod zero_crossings;
 
-pub use crate::plan::{Align, CheckPlan, Reference, Score};
+pub use crate::plan::{Align, CheckPlan, Reference, ResponseReference, Score};
 pub use alignment::best_delay;
 pub use alignment::{AlignedMetrics, ArrivalTimes};
 pub use error_metrics::{amplitude_ratio, first_peak_error, max_abs, relative_l2};

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::{
     alignment::{AlignedMetrics, ArrivalTimes, align},
     error_metrics::{amplitude_ratio, first_peak_error, max_abs, relative_l2},
+    response::Response,
 };
 use crate::{
     error::{Error, Result},
@@ -15,7 +16,7 @@ use crate::{
         table::{ColumnName, TableReader},
         time_series::{SampleScaling, TimeSeries},
     },
-    plan::{Align, CheckPlan, Reference, Score},
+    plan::{Align, CheckPlan, Reference, ResponseReference, Score},
 };
 
 /// A reference for a comparison with a run.
@@ -32,6 +33,8 @@ enum KnownReference {
     Table(TimeSeries),
     /// A formula, which has a value at any time.
     Formula(Formula),
+    /// A response to another series of the run.
+    Response(ResponseReference),
 }
 
 /// The curves of a run and its reference.
@@ -60,6 +63,9 @@ pub struct ErrorMetrics {
     pub peak: Option<f64>,
     /// Largest |run − reference|, in the unit of the series.
     pub off: Option<f64>,
+    /// Relative error of the period of a response, –.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub period: Option<f64>,
 }
 
 /// Metrics of the run after the running mean of an instrument.
@@ -107,6 +113,7 @@ impl ReferenceCheck {
     pub fn new(words: &CheckPlan, folder: &Path) -> Result<Self> {
         let reference = match &words.reference {
             Reference::Formula(text) => KnownReference::Formula(Formula::parse(text)?),
+            Reference::Response(response) => KnownReference::Response(response.clone()),
             Reference::Table { file, time, column, scaling } => {
                 let path = folder.join(file);
                 let (from, until) = window(words, 0.0);
@@ -133,8 +140,8 @@ impl ReferenceCheck {
     /// have no time in common.
     pub fn curves(&self, folder: &Path) -> Result<CheckCurves> {
         let (sim, meaned) = self.run_series(folder)?;
-        let (reference, ..) = self.overlap(&sim)?;
-        let exact = matches!(self.reference, KnownReference::Formula(_));
+        let (reference, ..) = self.overlap(folder, &sim)?;
+        let exact = !matches!(self.reference, KnownReference::Table(_));
         Ok(CheckCurves { sim, running_mean: meaned, reference, exact })
     }
 
@@ -150,20 +157,25 @@ impl ReferenceCheck {
                 return Verdict { note: Some(why.to_string()), ..verdict };
             }
         };
-        let (reference, covered, start) = match self.overlap(&sim) {
+        let (reference, covered, start) = match self.overlap(folder, &sim) {
             Ok(common) => common,
             Err(why) => {
                 // A run that ends before its reference begins, or before its zero time, is too short; it is not a
                 // failure.
                 let (from, until) = window(&self.plan, 0.0);
                 let set = self.plan.zero.is_none_or(|at| at <= sim.span().1);
-                let reaches =
-                    set && matches!(self.reference, KnownReference::Formula(_)) && sim.window(from, until).is_ok();
+                let reaches = set
+                    && !matches!(self.reference, KnownReference::Table(_))
+                    && sim.window(from, until).is_ok()
+                    && covered_share((from, until), sim.span()) >= 0.5;
                 verdict.passed = self.plan.bound.filter(|_| reaches).map(|_| false);
                 return Verdict { note: Some(why.to_string()), ..verdict };
             }
         };
         verdict.covered = covered;
+        if let KnownReference::Response(words) = &self.reference {
+            return self.of_response(verdict, self.response(folder, &sim, words).ok());
+        }
         verdict.note = relative_l2(&sim, &reference).err().map(|why| why.to_string());
         verdict.metrics = self.metrics(&sim, &reference, start);
         verdict.meaned = self
@@ -178,13 +190,14 @@ impl ReferenceCheck {
                 how => align(shown, &reference, how, window(&self.plan, start)),
             };
         }
-        match self.plan.bound {
-            Some(_) if covered < 0.5 => {
-                verdict.note = Some("the run covers less than half of the reference: not judged".into());
-            }
-            bound => verdict.passed = bound.map(|bound| verdict.meets(&bound)),
-        }
-        verdict
+        verdict.judged()
+    }
+
+    /// Returns `verdict` with the figures of a response.
+    fn of_response(&self, verdict: Verdict, response: Option<Response>) -> Verdict {
+        let metrics = response.as_ref().map_or_else(ErrorMetrics::default, Response::metrics);
+        let aligned = response.as_ref().and_then(Response::aligned);
+        Verdict { metrics, aligned, ..verdict }.judged()
     }
 
     fn empty_verdict(&self) -> Verdict {
@@ -204,9 +217,7 @@ impl ReferenceCheck {
 
     /// Returns the series of the run, and its running mean if the check has an instrument.
     fn run_series(&self, folder: &Path) -> Result<(TimeSeries, Option<TimeSeries>)> {
-        let (probe, column) = self.plan.series.split_once('.').unwrap_or((&self.plan.series, ""));
-        let path: PathBuf = folder.join(format!("{probe}.csv"));
-        let mut sim = read_series(&path, &"t_s".into(), &column.into(), &SampleScaling::default())?;
+        let mut sim = own_series(folder, &self.plan.series)?;
         if let Some(at) = self.plan.zero {
             sim = sim.minus(sim.value_at(at));
         }
@@ -224,7 +235,7 @@ impl ReferenceCheck {
 
     /// Returns the reference over the times of the run, the share of the reference that they cover, and the start of
     /// its clock.
-    fn overlap(&self, sim: &TimeSeries) -> Result<(TimeSeries, f64, f64)> {
+    fn overlap(&self, folder: &Path, sim: &TimeSeries) -> Result<(TimeSeries, f64, f64)> {
         let (first, last) = sim.span();
         if let Some(at) = self.plan.zero.filter(|at| *at > last) {
             return Err(Error::scene(format!("the run ends at {last} s, before it is set to zero at {at} s")));
@@ -249,20 +260,32 @@ impl ReferenceCheck {
                 if let Some(i) = values.iter().position(|x| !x.is_finite()) {
                     return Err(Error::scene(format!("the formula gives {} at t = {} s", values[i], times[i])));
                 }
-                let covered = if until.is_finite() {
-                    let from = from.max(first);
-                    ((last.min(until) - from) / (until - from)).clamp(0.0, 1.0)
-                } else {
-                    1.0
-                };
-                Ok((TimeSeries::new(times, values)?, covered, start))
+                Ok((TimeSeries::new(times, values)?, covered_share((from, until), (first, last)), start))
+            }
+            KnownReference::Response(words) => {
+                let times = sim.window(from, until)?.times().to_vec();
+                let values = self.response(folder, sim, words)?.expected(&times);
+                Ok((TimeSeries::new(times, values)?, covered_share((from, until), (first, last)), start))
             }
         }
+    }
+
+    /// Returns the response of `sim` to another series of the run, which is in `folder`.
+    fn response(&self, folder: &Path, sim: &TimeSeries, words: &ResponseReference) -> Result<Response> {
+        let (from, until) = window(&self.plan, 0.0);
+        let wave = own_series(folder, &words.to)?;
+        let wave = wave.window(words.from.unwrap_or(from), words.until.unwrap_or(until))?;
+        Response::new(&sim.window(from, until)?, &wave, words).ok_or_else(|| {
+            let what =
+                format!("{} or {} does not swing for two periods of {} s", self.plan.series, words.to, words.period);
+            Error::scene(what)
+        })
     }
 
     fn metrics(&self, sim: &TimeSeries, reference: &TimeSeries, start: f64) -> ErrorMetrics {
         let (from, until) = window(&self.plan, start);
         ErrorMetrics {
+            period: None,
             relative_l2: relative_l2(sim, reference).ok(),
             amplitude_ratio: amplitude_ratio(sim, reference).ok(),
             peak: sim.window(from, until).and_then(|sim| first_peak_error(&sim, reference)).ok(),
@@ -272,6 +295,17 @@ impl ReferenceCheck {
 }
 
 impl Verdict {
+    /// Returns this verdict with the outcome of its bound; a run that covers less than half of its reference has none.
+    fn judged(mut self) -> Self {
+        match self.bound {
+            Some(_) if self.covered < 0.5 => {
+                self.note = Some("the run covers less than half of the reference: not judged".into());
+            }
+            bound => self.passed = bound.map(|bound| self.meets(&bound)),
+        }
+        self
+    }
+
     /// Returns whether every metric that `bound` names exists and is within the bound.
     pub(crate) fn meets(&self, bound: &Score) -> bool {
         let within =
@@ -282,6 +316,7 @@ impl Verdict {
             && within(bound.off, self.metrics.off)
             && within(bound.aligned_relative_l2, self.aligned.map(|a| a.relative_l2))
             && within(bound.delay, self.aligned.map(|a| a.delay.abs()))
+            && within(bound.period, self.metrics.period)
     }
 }
 
@@ -292,6 +327,20 @@ fn window(words: &CheckPlan, start: f64) -> (f64, f64) {
         _ => f64::NEG_INFINITY,
     };
     (words.from.unwrap_or(from) + start, words.until.unwrap_or(f64::INFINITY) + start)
+}
+
+/// Returns the share of the time range `of` that lies within `span`; 1 for a range without an end.
+fn covered_share(of: (f64, f64), span: (f64, f64)) -> f64 {
+    let ((from, until), (first, last)) = (of, span);
+    let from = from.max(first);
+    if until.is_finite() { ((last.min(until) - from) / (until - from)).clamp(0.0, 1.0) } else { 1.0 }
+}
+
+/// Returns the series `name` of the run with tables in `folder`.
+fn own_series(folder: &Path, name: &str) -> Result<TimeSeries> {
+    let (probe, column) = name.split_once('.').unwrap_or((name, ""));
+    let path: PathBuf = folder.join(format!("{probe}.csv"));
+    read_series(&path, &"t_s".into(), &column.into(), &SampleScaling::default())
 }
 
 /// Returns the series of `column` over `time` of the table at `path`, in the scale and on the clock of the run. Rows may

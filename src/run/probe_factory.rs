@@ -4,7 +4,7 @@ use crate::{
     analysis::ReferenceCheck,
     error::{Error, ErrorCode, Result, nearest_name},
     model::Dimension,
-    plan::{CheckPlan, Plan},
+    plan::{CheckPlan, Plan, Reference},
     probe::{Probe, ProbePlan},
     simulation::Simulation,
     solid::Dim,
@@ -56,8 +56,12 @@ pub(crate) fn checks_from_plan<const D: usize>(
         return Err(unknown_series(series, &known));
     }
     let check = |words: &CheckPlan| {
-        if !known.contains(&words.series) {
-            return Err(unknown_series(&words.series, &known));
+        let wave = match &words.reference {
+            Reference::Response(response) => Some(&response.to),
+            _ => None,
+        };
+        if let Some(series) = [&words.series].into_iter().chain(wave).find(|series| !known.contains(series)) {
+            return Err(unknown_series(series, &known));
         }
         ReferenceCheck::new(words, &plan.folder)
     };

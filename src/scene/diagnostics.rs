@@ -220,6 +220,11 @@ const EXAMPLES: &[(&str, &str)] = &[
     ("time_factor", "time_factor = 0.001        # milliseconds to s"),
     ("offset", "offset = -12.5        # s, added to the times of the table"),
     ("check.formula", "formula = \"0.05*cos(2*pi*t/1.2)\""),
+    ("response", "response = { to = \"gauge.eta_m\", period = 1.2, ratio = 1.1 }"),
+    ("response.to", "to = \"gauge.eta_m\""),
+    ("response.period", "period = 1.2        # s"),
+    ("response.ratio", "ratio = 1.1        # amplitude over that of the other series"),
+    ("response.lag", "lag = 0.25        # periods behind the other series"),
     ("check.from", "from = 1.0         # s, of the run"),
     ("check.until", "until = 2.0        # s, of the run"),
     ("check.zero", "zero = 6.32        # s, of the run"),
@@ -227,7 +232,7 @@ const EXAMPLES: &[(&str, &str)] = &[
     ("align", "align = \"best\", or  align = { crossing = 5.0 }"),
     ("align.crossing", "align = { crossing = 5.0 }        # in the unit of the series"),
     ("align.start", "align = { start = 5.0 }        # in the unit of the series"),
-    ("bound", "bound = { N = 0.3, M = 0.2, peak = 0.2, off = 0.01, aligned_N = 0.2, delay = 0.05 }"),
+    ("bound", "bound = { N = 0.3, M = 0.2, peak = 0.2, off = 0.01, aligned_N = 0.2, delay = 0.05, period = 0.05 }"),
     ("paper", "paper = { N = 0.355, M = 1.115 }"),
 ];
 

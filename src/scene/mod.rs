@@ -102,15 +102,15 @@ pub use {
 pub use {
     crate::math::{BoxConfig, NumberOrArray, table::ColumnName},
     crate::plan::{
-        Align, CheckPlan, ControlChange, ControlPlan, ControlTarget, FramesPlan, MotorQuantity, Plan, Reference, Score,
-        StatisticKind, StatisticPlan,
+        Align, CheckPlan, ControlChange, ControlPlan, ControlTarget, FramesPlan, MotorQuantity, Plan, Reference,
+        ResponseReference, Score, StatisticKind, StatisticPlan,
     },
     crate::probe::{GaugeConfig, GaugeSurface, PatchConfig, PointRowConfig, PointsConfig, ProbePlan, SectionConfig},
     build::SceneLayout,
     build::SizeEstimate,
     potential_flow::{PanelledBody, PanelledScene, WaterForPanels},
     resolve::ResolvedValue,
-    section::analysis::{CheckConfig, RaoConfig, StatisticConfig},
+    section::analysis::{CheckConfig, RaoConfig, ResponseConfig, StatisticConfig},
     section::domain::{GuardConfig, PeriodicConfig, SymmetryConfig},
     section::force_element::ForceFrame,
     section::joint::LimitsConfig,

@@ -144,6 +144,7 @@ pub(crate) fn rows_to_csv(rows: &[ResultRow], keys: &[String]) -> Result<Vec<u8>
         "mean_N",
         "aligned_N",
         "delay_s",
+        "period",
         "passed",
         "water",
         "wall_s",
@@ -160,10 +161,19 @@ pub(crate) fn rows_to_csv(rows: &[ResultRow], keys: &[String]) -> Result<Vec<u8>
         let value = |key: &String| row.varied.iter().find(|(k, _)| k == key).map_or(String::new(), |(_, v)| v.clone());
         cells.extend(keys.iter().map(value));
         cells.push(row.check.clone());
-        let ErrorMetrics { relative_l2, amplitude_ratio, peak, off } = row.metrics;
+        let ErrorMetrics { relative_l2, amplitude_ratio, peak, off, period } = row.metrics;
         cells.extend(
-            [relative_l2, amplitude_ratio, peak, off, row.mean_relative_l2, row.aligned_relative_l2, row.delay_s]
-                .map(number),
+            [
+                relative_l2,
+                amplitude_ratio,
+                peak,
+                off,
+                row.mean_relative_l2,
+                row.aligned_relative_l2,
+                row.delay_s,
+                period,
+            ]
+            .map(number),
         );
         cells.push(row.passed.map_or(String::new(), |kept| kept.to_string()));
         cells.push(row.water.map_or(String::new(), |n| n.to_string()));

@@ -9,7 +9,7 @@ use super::water::StillWaterLevel;
 use crate::{
     error::{Error, ErrorCode, Result, suggestion},
     math::{expression::Formula, table::ColumnName},
-    plan::{Align, CheckPlan, Reference, Score, StatisticKind, StatisticPlan},
+    plan::{Align, CheckPlan, Reference, ResponseReference, Score, StatisticKind, StatisticPlan},
     probe::ProbeConfig,
     scene::{
         context::{Context, Defaults, quoted_list, set_keys},
@@ -39,6 +39,8 @@ pub struct CheckConfig {
     pub offset: Option<f64>,
     /// The reference as a formula in the run's time t (s), in place of a table.
     pub formula: Option<String>,
+    /// The reference as a response to a regular wave, in place of a table.
+    pub response: Option<ResponseConfig>,
     /// First time of the run that counts, s.
     pub from: Option<f64>,
     /// Last time of the run that counts, s.
@@ -53,6 +55,25 @@ pub struct CheckConfig {
     pub paper: Option<Score>,
     /// The scores that the run must reach.
     pub bound: Option<Score>,
+}
+
+/// What the fundamental of a series is to that of another series of the run; means and drifts do not count.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[non_exhaustive]
+pub struct ResponseConfig {
+    /// The other series, as `gauge.eta_m`.
+    pub to: String,
+    /// Period of the wave, s.
+    pub period: f64,
+    /// Amplitude over that of the other series, in the units of both.
+    pub ratio: f64,
+    /// Lag behind the other series, in periods.
+    pub lag: Option<f64>,
+    /// First time of the other series that counts, s.
+    pub from: Option<f64>,
+    /// Last time of the other series that counts, s.
+    pub until: Option<f64>,
 }
 
 /// One `[[statistic]]`: exactly one of waves, reflection and rao. A series is `probe.column`; the name of a probe alone
@@ -111,6 +132,15 @@ impl ProbeSeries<'_> {
         })
     }
 
+    /// Refuses a `word` that is not a column of a probe.
+    fn require_column(&self, ctx: &Context, key: &str, word: &str) -> Result<()> {
+        let Some((name, _)) = word.split_once('.') else {
+            return Err(ctx.error_at(key, "a series is a probe and its column, with a point between"));
+        };
+        let i = self.probe(ctx, key, name)?;
+        if self.probes[i].contacts.is_some() { Err(list_has_no_series(ctx, key, name)) } else { Ok(()) }
+    }
+
     /// The series that `word` names.
     fn find(&self, ctx: &Context, key: &str, word: &str) -> Result<Vec<SeriesAtPlace>> {
         let (name, column) = word.split_once('.').map_or((word, None), |(name, column)| (name, Some(column)));
@@ -134,22 +164,19 @@ impl ProbeSeries<'_> {
 impl CheckConfig {
     /// Refuses a check of an unknown series, without a reference, or with impossible times or bounds.
     pub(crate) fn verify(&self, ctx: &Context, key: &str, series: &ProbeSeries) -> Result<()> {
-        let Some((name, _)) = self.series.split_once('.') else {
-            let what = "a series is a probe and its column, with a point between";
-            return Err(ctx.error_at(&format!("{key}.series"), what));
-        };
-        let i = series.probe(ctx, &format!("{key}.series"), name)?;
-        if series.probes[i].contacts.is_some() {
-            return Err(list_has_no_series(ctx, &format!("{key}.series"), name));
-        }
+        series.require_column(ctx, &format!("{key}.series"), &self.series)?;
         self.verify_reference(ctx, key)?;
+        if let Some(response) = &self.response {
+            series.require_column(ctx, &format!("{key}.response.to"), &response.to)?;
+            response.verify(ctx, &format!("{key}.response"))?;
+        }
         self.verify_times(ctx, key)?;
         self.verify_figures(ctx, key)
     }
 
     /// Fills in the defaults.
     pub(crate) fn fill(&mut self, defaults: &mut Defaults, key: &str) {
-        if self.formula.is_none() {
+        if self.formula.is_none() && self.response.is_none() {
             defaults.fill(format!("{key}.time"), &mut self.time, "t_s".into(), "the name our own tables have");
             defaults.fill(format!("{key}.scale"), &mut self.scale, 1.0, "as in the table");
             defaults.fill(format!("{key}.time_factor"), &mut self.time_factor, 1.0, "as in the table");
@@ -157,7 +184,7 @@ impl CheckConfig {
         }
     }
 
-    /// Refuses a reference that is not either a table or a formula.
+    /// Refuses a reference that is not exactly one of a table, a formula and a response.
     fn verify_reference(&self, ctx: &Context, key: &str) -> Result<()> {
         let of_table = [
             ("reference", self.reference.is_some()),
@@ -167,17 +194,25 @@ impl CheckConfig {
             ("time_factor", self.time_factor.is_some()),
             ("offset", self.offset.is_some()),
         ];
-        match &self.formula {
-            Some(text) => {
-                if let Some((word, _)) = of_table.iter().find(|(_, given)| *given) {
-                    let what = format!("a check by a formula has no {word}: that is of a table");
-                    let help = "give either formula, or reference and column";
-                    return Err(ctx.error_with_help(&format!("{key}.{word}"), what, help));
-                }
+        let kind = if self.response.is_some() { "response" } else { "formula" };
+        if let Some((word, _)) =
+            of_table.iter().find(|(_, given)| *given && (self.formula.is_some() || kind == "response"))
+        {
+            let what = format!("a check by a {kind} has no {word}: that is of a table");
+            let help = format!("give either {kind}, or reference and column");
+            return Err(ctx.error_with_help(&format!("{key}.{word}"), what, help));
+        }
+        match (&self.formula, &self.response) {
+            (Some(_), Some(_)) => {
+                let what = "a check has one reference, and this one has a formula and a response";
+                Err(ctx.error_with_help(&format!("{key}.response"), what, "remove one of them"))
+            }
+            (Some(text), None) => {
                 let place = |e: Error| ctx.with_location(e, &format!("{key}.formula"));
                 Formula::parse(text).map(|_| ()).map_err(place)
             }
-            None => match of_table[..2].iter().find(|(_, given)| !given) {
+            (None, Some(_)) => self.verify_response_alone(ctx, key),
+            (None, None) => match of_table[..2].iter().find(|(_, given)| !given) {
                 Some((word, _)) => {
                     let what = format!("\"{word}\" is missing: a check needs something to be held against");
                     Err(ctx.error_at(&format!("{key}.{word}"), what))
@@ -185,6 +220,15 @@ impl CheckConfig {
                 None => record::verify_scaling(ctx, key, [self.scale, self.time_factor, self.offset]),
             },
         }
+    }
+
+    /// Refuses keys beside a response that it does not use.
+    fn verify_response_alone(&self, ctx: &Context, key: &str) -> Result<()> {
+        let unused =
+            set_keys([("zero", self.zero.is_some()), ("mean", self.mean.is_some()), ("align", self.align.is_some())]);
+        let Some(word) = unused.first() else { return Ok(()) };
+        let what = format!("a check by a response has no {word}: means do not count, and its lag gives the delay");
+        Err(ctx.error_with_help(&format!("{key}.{word}"), what, "remove it"))
     }
 
     /// Refuses times out of range.
@@ -216,13 +260,25 @@ impl CheckConfig {
             ("off", bound.off),
             ("aligned_N", bound.aligned_relative_l2),
             ("delay", bound.delay),
+            ("period", bound.period),
         ];
         if let Some((word, figure)) = figures.iter().find(|(_, figure)| figure.is_some_and(|x| x < 0.0)) {
             let what = format!("{word} is the largest that passes, and {} is below 0", figure.unwrap_or_default());
             return Err(ctx.error_at(&format!("{key}.bound.{word}"), what));
         }
-        if matches!(self.align, None | Some(Align::Start(_)))
-            && let Some((word, _)) = figures[4..].iter().find(|(_, figure)| figure.is_some())
+        if bound.period.is_some() && self.response.is_none() {
+            let what = "the bound names period, which only a response has";
+            return Err(ctx.error_with_help(&format!("{key}.bound.period"), what, "remove it"));
+        }
+        let aligned = figures[4..6].iter().find(|(_, figure)| figure.is_some());
+        if let (Some(ResponseConfig { lag: None, .. }), Some((word, _))) = (&self.response, aligned) {
+            let what = format!("the bound names {word}, but the response has no lag");
+            let help = "write  lag = 0.25, in periods, in the response";
+            return Err(ctx.error_with_help(&format!("{key}.bound.{word}"), what, help));
+        }
+        if self.response.is_none()
+            && matches!(self.align, None | Some(Align::Start(_)))
+            && let Some((word, _)) = aligned
         {
             let what = format!("the bound names {word}, but nothing is aligned");
             return Err(ctx.error_with_help(
@@ -237,9 +293,10 @@ impl CheckConfig {
     /// The check of the run; opens its table to see that the columns are there.
     pub(crate) fn build(&self, ctx: &Context, key: &str) -> Result<CheckPlan> {
         let place = |e: Error| ctx.with_location(files::with_line_in_message(e), &format!("{key}.reference"));
-        let reference = match &self.formula {
-            Some(text) => Reference::Formula(text.clone()),
-            None => {
+        let reference = match (&self.formula, &self.response) {
+            (Some(text), _) => Reference::Formula(text.clone()),
+            (None, Some(response)) => Reference::Response(response.plan()),
+            (None, None) => {
                 let file = self.reference.clone().unwrap_or_default();
                 let time = self.time.clone().unwrap_or_else(|| "t_s".into());
                 let column = self.column.clone().unwrap_or_default();
@@ -262,6 +319,29 @@ impl CheckConfig {
             paper: self.paper,
             bound: self.bound,
         })
+    }
+}
+
+impl ResponseConfig {
+    /// Refuses numbers out of range.
+    fn verify(&self, ctx: &Context, key: &str) -> Result<()> {
+        ctx.require_positive(&format!("{key}.period"), Some(self.period))?;
+        ctx.require_positive(&format!("{key}.ratio"), Some(self.ratio))?;
+        if let Some(lag) = self.lag.filter(|lag| !lag.is_finite()) {
+            return Err(ctx.error_at(&format!("{key}.lag"), format!("a lag is a number of periods, and {lag} is none")));
+        }
+        ctx.require_interval(key, self.from, self.until, "until is the later time, in the run's own time")
+    }
+
+    fn plan(&self) -> ResponseReference {
+        ResponseReference {
+            to: self.to.clone(),
+            period: self.period,
+            ratio: self.ratio,
+            lag: self.lag,
+            from: self.from,
+            until: self.until,
+        }
     }
 }
 

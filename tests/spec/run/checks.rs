@@ -1,11 +1,11 @@
 //! Checks against references: metrics computed by hand, and verdicts.
 
-use std::{fs, path::Path};
+use std::{f64::consts::TAU, fs, path::Path};
 
 use pontoon::{
     analysis::{
-        Align, CheckPlan, Reference, ReferenceCheck, Score, Verdict, amplitude_ratio, first_peak_error,
-        format_verdicts, max_abs, relative_l2,
+        Align, CheckPlan, Reference, ReferenceCheck, ResponseReference, Score, Verdict, amplitude_ratio,
+        first_peak_error, format_verdicts, max_abs, relative_l2,
     },
     error::{ErrorKind, Result},
     math::time_series::{SampleScaling, TimeSeries},
@@ -244,6 +244,93 @@ fn the_delay_of_a_late_run_is_found_from_its_crossing_and_from_the_best_fit() ->
     Ok(())
 }
 
+/// A folder with a wave of 20 mm and 1.2 s over 12 s, and a body that drifts in it.
+fn folder_with_drifting_body(name: &str) -> std::io::Result<TestFolder> {
+    let folder = TestFolder::new(&format!("checks-{name}"));
+    let table = |column: &str, x: &dyn Fn(f64) -> f64| {
+        let row = |i: usize| format!("{:?},{:?}\n", 0.01 * i as f64, x(0.01 * i as f64));
+        std::iter::once(format!("t_s,{column}\n")).chain((0..=1200).map(row)).collect::<String>()
+    };
+    fs::write(folder.join("gauge.csv"), table("eta_m", &|t| 0.02 * (TAU * t / 1.2).cos()))?;
+    fs::write(folder.join("box.csv"), table("surge_m", &|t| 5.0 + 0.02 * t + 0.018 * (TAU * (t / 1.22 - 0.25)).cos()))?;
+    Ok(folder)
+}
+
+#[test]
+fn a_response_is_judged_without_its_drift_and_by_the_period_that_it_meets() -> std::io::Result<()> {
+    let folder = folder_with_drifting_body("response")?;
+    let limits = Score { amplitude_ratio: Some(0.001), period: Some(0.02), ..Score::default() };
+    let response = |ratio, lag| ResponseReference {
+        to: "gauge.eta_m".into(),
+        period: 1.2,
+        ratio,
+        lag,
+        from: Some(0.0),
+        until: Some(6.0),
+    };
+    let plan = check("box.surge_m", Reference::Response(response(0.9, None)), Some(limits)).from(2.0).until(11.76);
+    let verdict = judge(&plan, &folder);
+    // 0.018/0.02 = 0.9, by construction; 1.22 s is 1.67 % above 1.2 s. The drift alone is 13 times the amplitude.
+    assert_eq!((verdict.passed, verdict.series.as_str()), (Some(true), "box.surge_m, over gauge.eta_m"), "{verdict:?}");
+    assert!(verdict.metrics.period.is_some_and(|x| (x - 0.02 / 1.2).abs() < 1e-6), "{verdict:?}");
+    let strict = plan.clone().bound(Score { period: Some(0.01), ..Score::default() });
+    assert_eq!(judge(&strict, &folder).passed, Some(false));
+    let small = check("box.surge_m", Reference::Response(response(0.8, None)), Some(limits)).from(2.0).until(11.76);
+    assert_eq!(judge(&small, &folder).passed, Some(false), "12.5 % too much");
+    let curves = ReferenceCheck::new(&small, &folder).and_then(|check| check.curves(&folder));
+    let curves = curves.unwrap_or_else(|e| panic!("{e}"));
+    let [swing, run] = [&curves.reference, &curves.sim].map(|x| x.value_at(2.135) - x.value_at(2.745));
+    // From trough to crest both drift by 12.2 mm; the run swings by 36 mm, the reference by 32 mm. Values between samples
+    // are linear, which changes 4 parts in ten thousand.
+    assert!(curves.exact && (swing / run - 44.2 / 48.2).abs() < 1e-3, "{swing} of {run}");
+    Ok(())
+}
+
+#[test]
+fn the_lag_of_a_response_is_that_in_the_middle_of_its_time() -> std::io::Result<()> {
+    let folder = folder_with_drifting_body("lag")?;
+    let at = |middle: f64, lag: f64| {
+        let response = ResponseReference {
+            to: "gauge.eta_m".into(),
+            period: 1.2,
+            ratio: 0.9,
+            lag: Some(lag),
+            from: None,
+            until: None,
+        };
+        let limit = Some(Score { delay: Some(0.01), ..Score::default() });
+        let plan = check("box.surge_m", Reference::Response(response), limit).from(middle - 3.0).until(middle + 3.0);
+        judge(&plan, &folder)
+    };
+    // The wave is ahead by a quarter period at 0 s, and by t (1/1.2 − 1/1.22) more later.
+    let lag = 0.25 + 6.0 * (1.0 / 1.2 - 1.0 / 1.22);
+    assert_eq!(at(6.0, lag).passed, Some(true), "{:?}", at(6.0, lag));
+    let late = at(6.0, lag - 0.1);
+    assert!(late.passed == Some(false) && late.aligned.is_some_and(|a| (a.delay - 0.122).abs() < 1e-4), "{late:?}");
+    Ok(())
+}
+
+#[test]
+fn a_run_that_is_too_short_for_a_response_is_not_judged_and_one_at_rest_misses_its_bound() -> std::io::Result<()> {
+    let folder = folder_with_drifting_body("short")?;
+    let response = ResponseReference {
+        to: "gauge.eta_m".into(),
+        period: 1.2,
+        ratio: 0.9,
+        lag: None,
+        from: Some(0.0),
+        until: Some(6.0),
+    };
+    let limit = Some(Score { amplitude_ratio: Some(0.05), ..Score::default() });
+    let plan = |response, until| check("box.surge_m", Reference::Response(response), limit).from(10.0).until(until);
+    let short = judge(&plan(response.clone(), 20.0), &folder);
+    assert!(short.passed.is_none() && short.note.is_some_and(|note| note.contains("does not swing")));
+    fs::write(folder.join("still.csv"), "t_s,eta_m\n0.0,0.0\n12.0,0.0\n")?;
+    let still = judge(&plan(ResponseReference { to: "still.eta_m".into(), ..response }, 12.0), &folder);
+    assert_eq!(still.passed, Some(false), "{still:?}");
+    Ok(())
+}
+
 #[test]
 fn a_reference_with_its_own_clock_starts_at_the_crossing_of_the_run() -> std::io::Result<()> {
     // The run is at rest for a second and then rises at 2 m/s. The reference begins at the crossing of 1 m.
@@ -282,6 +369,9 @@ fn the_table_of_checks_contains_only_the_columns_in_use() -> std::io::Result<()>
     Ok(())
 }
 
+/// A response, as a scene has it.
+const RESPONSE: &str = "response = { to = \"energy.water_kinetic_J_per_m\", period = 1.2, ratio = 0.9 }";
+
 /// The error message of a scene with these keys in its check.
 fn error_message(keys: &str) -> String {
     let text = format!(
@@ -309,6 +399,14 @@ fn invalid_check_keys_are_refused_with_a_remedy() {
             ["unknown key \"of\"; did you mean \"off\"?", "write  off  in place of  of"],
         ),
         ("formula = \"0\"\nbound = { off = -0.1 }", ["the largest that passes", "check.0.bound.off"]),
+        ("formula = \"0\"\nbound = { period = 0.1 }", ["only a response has", "remove it"]),
+        (&format!("formula = \"0\"\n{RESPONSE}"), ["has a formula and a response", "remove one of them"]),
+        (&format!("column = \"x\"\n{RESPONSE}"), ["a check by a response has no column", "give either response"]),
+        (&format!("{RESPONSE}\nmean = 0.1"), ["has no mean", "remove it"]),
+        (&format!("{RESPONSE}\nbound = {{ delay = 0.1 }}"), ["the response has no lag", "write  lag = 0.25"]),
+        (&RESPONSE.replace("period = 1.2", "period = 0.0"), ["period must be a positive number", "period = 1.2"]),
+        (&RESPONSE.replace("energy.", "enegry."), ["no probe is called \"enegry\"", "did you mean \"energy\""]),
+        (&RESPONSE.replace("ratio", "ration"), ["unknown key \"ration\"", "did you mean \"ratio\""]),
     ] {
         let message = error_message(keys);
         assert!(parts.iter().all(|part| message.contains(part)), "{keys}: {message}");
@@ -320,7 +418,9 @@ fn a_scene_with_checks_survives_writing_and_reading() -> Result<()> {
     let text = "dimension = 2\ndp = 0.1\nuntil = 1.0\nwater = [{ fill = { box = { min = [0.0, 0.0], max = [1.0, 0.5] } } }]\n\
         probe = [{ energy = true }]\n[[check]]\nseries = \"energy.total_J_per_m\"\nformula = \"t\"\nfrom = 0.1\nuntil = 0.9\n\
         mean = 0.01\nalign = { crossing = 5.0 }\nbound = { off = 0.1, peak = 0.2, aligned_N = 0.3, delay = 0.4 }\n\
-        [[check]]\nseries = \"energy.total_J_per_m\"\nformula = \"t\"\nalign = \"best\"\n";
+        [[check]]\nseries = \"energy.total_J_per_m\"\nformula = \"t\"\nalign = \"best\"\n\
+        [[check]]\nseries = \"energy.total_J_per_m\"\nbound = { M = 0.05, period = 0.05, delay = 0.1 }\n\
+        response = { to = \"energy.total_J_per_m\", period = 0.1, ratio = 2.0, lag = 0.5, from = 0.2, until = 0.8 }\n";
     let scene = Scene::parse(text, Path::new("."), &[])?;
     assert_eq!(Scene::parse(&scene.to_toml()?, Path::new("."), &[])?, scene);
     let lines: Vec<String> = scene.resolve()?.iter().map(|v| v.to_string()).collect();
