@@ -5,7 +5,7 @@
 //! the step's end under itself alone, so that it bounds nothing.
 //!
 //! Real water takes what swings in it as sound, of the critical damping ρ₀ c₀ A/(2 m ω). Particles carry none of ω h/c₀ > 2, and what
-//! they take from a body later than it goes would feed such a swing: while an end is wet it has a hundredth of the critical damping.
+//! they take from a body later than it goes would feed such a swing: while an end is wet it has 3 % of the critical damping.
 
 use serde::{Deserialize, Serialize};
 
