@@ -297,6 +297,10 @@ const LONG: usize = 100;
 
 /// Returns the entry of `known` nearest to `word`, if it is near enough to be the intended name.
 pub fn nearest_name<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let known: Vec<&str> = known.into_iter().collect();
+    if let Some(same) = known.iter().find(|k| k.to_lowercase() == word.to_lowercase()) {
+        return Some(same);
+    }
     known
         .into_iter()
         .filter(|k| word.len().max(k.len()) <= LONG)

@@ -15,13 +15,13 @@ use super::time_series::TimeSeries;
 use crate::error::{Error, ErrorCode, Result, suggestion};
 pub use column_name::ColumnName;
 use layout::Layout;
-pub(crate) use unit::{is_degree, si_factor};
+pub(crate) use unit::{is_angle, is_degree, is_without_size, si_factor};
 
 /// The name of the column of times in the tables of a run.
 const OWN_TIME: &str = "t_s";
 
 /// Other names of a column of times, in lower case and without unit.
-const TIMES: [&str; 7] = ["t", "time", "times", "time_s", "time_ms", "t_ms", "zeit"];
+const TIMES: [&str; 8] = ["t", "t_s", "time", "times", "time_s", "time_ms", "t_ms", "zeit"];
 
 /// Most columns that a remark lists.
 const LISTED: usize = 8;
@@ -82,11 +82,23 @@ impl TableReader {
     /// The unit of a column, from the row of units or from its name; `None` if there is none.
     ///
     /// # Errors
-    /// As [`TableReader::columns`], if there is no such column.
+    /// As [`TableReader::columns`], if there is no such column; `Scene` if it has two units that contradict each other.
     pub fn unit(&self, column: impl Into<ColumnName>) -> Result<Option<String>> {
         let i = self.index(&column.into())?;
         let name = self.layout.names.get(i).map_or("", String::as_str);
-        Ok(unit::of_column(name, self.layout.units.get(i).map(String::as_str)))
+        let row = self.layout.units.get(i).map(String::as_str);
+        match unit::contradiction(name, row) {
+            Some([one, other]) => {
+                let what = format!("column \"{name}\" of {} has two units, {one} and {other}", self.file);
+                Err(Error::scene(what).help("keep the one in which its values are"))
+            }
+            None => Ok(unit::of_column(name, row)),
+        }
+    }
+
+    /// Whether two names mean one column.
+    pub(crate) fn is_one_column(&self, one: &ColumnName, other: &ColumnName) -> bool {
+        matches!((self.index(one), self.index(other)), (Ok(one), Ok(other)) if one == other)
     }
 
     /// The columns `names`. Rows without a value in one of them are skipped.
@@ -245,6 +257,10 @@ impl TableReader {
                 Err(missing(what).help(format!("give the number of the column, from 1 to {count}, as in  column = 2")))
             }
             [] => {
+                if let Some(wrong) = self.layout.unknown_unit_below(name) {
+                    return Err(Error::scene(format!("{} has an unknown unit, {wrong}", self.file))
+                        .help("write a known one, such as m, mm, N, kN, rad, deg, s, or remove the line"));
+                }
                 let guess = suggestion(name, names.iter().map(String::as_str));
                 let help = format!("its columns: {}", names.join(", "));
                 Err(missing(format!("has no column \"{name}\"{guess}")).help(help))

@@ -32,7 +32,10 @@ pub(crate) const PREVIOUS: &str = "checkpoint.previous.bin";
 pub(crate) const PART: &str = "checkpoint.bin.part";
 
 const MAGIC: &[u8; 8] = b"PONTOON\n";
-const FORMAT: u32 = 11;
+const FORMAT: u32 = 12;
+
+/// The format before, without [`Checkpoint::files`].
+const FORMAT_WITHOUT_FILES: u32 = 11;
 
 /// Length of what precedes the packed data: magic word, format, two lengths and the hash.
 const HEADER: usize = 8 + 4 + 16 + 8;
@@ -80,14 +83,17 @@ pub struct Checkpoint {
     pub particle_steps: u64,
     /// Wall time of stepping alone, s.
     pub stepping_seconds: f64,
+    /// Names and FNV-1a hashes of the files that the scene names; `None` in checkpoints of the format before.
+    #[serde(skip)]
+    pub files: Option<Vec<(String, u64)>>,
     /// The bytes of the simulation; the file stores them unchanged after the other data.
     #[serde(skip)]
     pub state: Vec<u8>,
 }
 
 impl Checkpoint {
-    /// Returns the checkpoint data before the first step of the `scene`, with the changed keys `sets`.
-    pub(crate) fn initial(scene: &str, sets: &[(String, String)]) -> Self {
+    /// Returns the checkpoint data before the first step of the `scene`, with the changed keys `sets` and the `files` that it names.
+    pub(crate) fn initial(scene: &str, sets: &[(String, String)], files: Vec<(String, u64)>) -> Self {
         Self {
             version: env!("CARGO_PKG_VERSION").into(),
             scene_hash: fnv1a(scene.as_bytes()),
@@ -99,6 +105,7 @@ impl Checkpoint {
             cpu_seconds: 0.0,
             particle_steps: 0,
             stepping_seconds: 0.0,
+            files: Some(files),
             state: vec![],
         }
     }
@@ -139,7 +146,7 @@ impl Checkpoint {
         file: &mut W,
         state: impl FnOnce(&mut dyn Write) -> io::Result<()>,
     ) -> io::Result<()> {
-        let known = postcard::to_stdvec(self).map_err(io::Error::other)?;
+        let known = postcard::to_stdvec(&(self, &self.files)).map_err(io::Error::other)?;
         file.write_all(&[0; HEADER])?;
         // Higher compression levels take longer, and hardly reduce the size of flow data.
         let encoder = zstd::Encoder::new(Hashed::new(file), 1)?;
@@ -199,7 +206,7 @@ impl Checkpoint {
         };
         let (format, rest) = rest.split_first_chunk::<4>().ok_or_else(short)?;
         let format = u32::from_le_bytes(*format);
-        if format != FORMAT {
+        if ![FORMAT, FORMAT_WITHOUT_FILES].contains(&format) {
             let what = format!("the checkpoint has format {format}; this program reads {FORMAT}");
             return Err(restart_error(ErrorCode::OtherVersion, &what, OTHER));
         }
@@ -221,7 +228,10 @@ impl Checkpoint {
         if read.is_err() || payload.len() as u64 != unfolded {
             return Err(damaged());
         }
-        let (mut found, state) = postcard::take_from_bytes::<Self>(&payload).map_err(|_| damaged())?;
+        let (mut found, mut state) = postcard::take_from_bytes::<Self>(&payload).map_err(|_| damaged())?;
+        if format == FORMAT {
+            (found.files, state) = postcard::take_from_bytes(state).map_err(|_| damaged())?;
+        }
         let known = payload.len() - state.len();
         if found.version != env!("CARGO_PKG_VERSION") {
             let what = format!("written by pontoon {}, this is {}", found.version, env!("CARGO_PKG_VERSION"));

@@ -307,7 +307,9 @@ impl<const D: usize> PreflightContext<'_, D> {
             [own] => (own.clone(), "s", "its"),
             all => (all.join(" with "), "", "their"),
         };
-        if statics.assembly_of(number).next() == Some(number) {
+        // A body in the air that lies on another does not float.
+        let is_carried = touches && body.displaced_kg <= 0.0;
+        if statics.assembly_of(number).next() == Some(number) && !is_carried {
             let least = afloat.tilts.iter().map(|t| t.gm_m).fold(f64::INFINITY, f64::min);
             if least < 0.0 {
                 let what = format!("{name} will turn over: {its} metacentric height is {} m", three_digits(least));

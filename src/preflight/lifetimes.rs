@@ -15,6 +15,17 @@ pub(super) fn check<const D: usize>(context: &PreflightContext<'_, D>, findings:
         ("solid", name, Lifetime::default().until(removal.at))
     });
     let end = context.end_time();
+    for statistic in &context.plan.statistics {
+        if let Some(from) = statistic.from.filter(|from| *from >= end) {
+            let what = format!(
+                "statistic \"{}\" begins at {} s, and the run ends at {} s: it has no samples",
+                statistic.name,
+                three_digits(from),
+                three_digits(end)
+            );
+            findings.push(Finding::warning("event_after_end", what, "begin earlier, or run longer".into()));
+        }
+    }
     for (kind, name, lifetime) in joints.chain(springs).chain(ropes).chain(forces).chain(removed) {
         let run = format!("the run ends at {} s", three_digits(end));
         if lifetime.since >= end {

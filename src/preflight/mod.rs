@@ -12,6 +12,7 @@ mod open_boundaries;
 mod periodic_sides;
 mod floating_bodies;
 mod hollows;
+mod initial_water;
 mod surface_samples;
 mod gaps;
 mod wavemaker_checks;
@@ -209,6 +210,7 @@ pub fn preflight<const D: usize>(
     let hollow =
         |(solid, enclosure): (&Solid<D>, Option<_>)| Some(SolidHollows::new(enclosure?, solid, system.fluid().r));
     let hollows = system.solids().iter().zip(initial.enclosures).map(hollow).collect();
+    let boxes = initial.boxes;
     let look = PreflightContext { system, plan, still_water: initial.still, g, surface_samples: samples, hollows };
     let mut findings = Vec::new();
     let sound = look.sound_speed(&mut findings);
@@ -221,6 +223,7 @@ pub fn preflight<const D: usize>(
     look.check_thickness(&mut findings);
     thin_parts::check_parts(&look, &mut findings);
     periodic_sides::check(&look, &mut findings);
+    initial_water::check(&look, &boxes, &mut findings);
     open_boundaries::check(&look, &mut findings);
     look.check_probes(&sound, &mut findings);
     lifetimes::check(&look, &mut findings);

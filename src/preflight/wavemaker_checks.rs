@@ -7,7 +7,10 @@ use super::{
     wavemaker_site::{WavemakerSite, is_wall},
 };
 use crate::{
-    math::format::{three_digits, two_digits_down, two_digits_up},
+    math::{
+        Vector,
+        format::{three_digits, two_digits_down, two_digits_up},
+    },
     plan::StatisticKind,
     scene::world_bounds,
     solid::{PrescribedMotion, Solid},
@@ -25,6 +28,8 @@ const RAMP: f64 = 0.5;
 
 /// How far the depth that a wave is made for may be above that of the water, and a period beside that of the paddle.
 const DEEPER: f64 = 0.01;
+/// How far it may be below that of the water, besides a dp: the bed before a paddle may be uneven.
+const SHALLOWER: f64 = 0.05;
 const BESIDE: f64 = 0.05;
 
 impl<const D: usize> PreflightContext<'_, D> {
@@ -55,7 +60,9 @@ impl<const D: usize> PreflightContext<'_, D> {
             ));
         }
         let Some(way) = wave_direction(motion, &(0.5 * (bounds.min + bounds.max))) else { return };
-        let Some(depth) = self.depth_at(&WavemakerSite::new(&bounds, way, level)) else { return };
+        let site = WavemakerSite::new(&bounds, way, level);
+        findings.extend(self.dry_gap(solid, &site));
+        let Some(depth) = self.depth_at(&site) else { return };
         let under = bottom - (level - depth);
         if law.paddle() == Paddle::Piston && under > self.dp() * (1.0 + 1e-6) {
             let what = format!(
@@ -67,7 +74,7 @@ impl<const D: usize> PreflightContext<'_, D> {
             let bed = 1e-6 * (1e6 * (level - depth)).round();
             findings.push(Finding::warning("lifted_paddle", what, format!("bottom = {}", three_digits(bed))));
         }
-        if law.depth() > depth * (1.0 + DEEPER) {
+        if law.depth() > depth * (1.0 + DEEPER) || law.depth() < depth * (1.0 - SHALLOWER) - self.dp() {
             let what = format!(
                 "the wave of \"{name}\" is made for {} m of water, and there are {} m before it",
                 three_digits(law.depth()),
@@ -75,6 +82,27 @@ impl<const D: usize> PreflightContext<'_, D> {
             );
             findings.push(Finding::warning("wrong_depth", what, format!("wave.depth = {}", three_digits(depth))));
         }
+    }
+
+    /// A paddle before whose face the water begins further off than half a dp, and a dp for a face between two rows.
+    fn dry_gap(&self, paddle: &Solid<D>, site: &WavemakerSite<D>) -> Option<Finding> {
+        let (dp, r) = (self.dp(), self.system.fluid().r);
+        let ahead = |x: &Vector<D>| site.distance_ahead(x).filter(|ahead| *ahead > 0.0);
+        let nearest = r.iter().filter_map(ahead).fold(f64::INFINITY, f64::min);
+        let off = |x: &Vector<D>| paddle.spec.shape.signed_distance(&paddle.kinematics.pose.local(x));
+        let near = r.iter().filter(|x| ahead(x).is_some_and(|ahead| ahead < 4.0 * dp));
+        let nearest = near.map(off).reduce(f64::min).unwrap_or(nearest);
+        let gap = nearest - 0.5 * dp;
+        (nearest.is_finite() && gap > 0.99 * dp).then(|| {
+            let what = format!(
+                "the water begins {} m, {} dp, before the face of \"{}\": the paddle has to cross the gap before it makes waves",
+                three_digits(gap),
+                three_digits(gap / dp),
+                paddle.spec.name
+            );
+            let mend = format!("let the water begin at its face, or move the paddle by {} m", three_digits(gap));
+            Finding::warning("dry_paddle", what, mend)
+        })
     }
 
     /// About how high (m) the crests of a wave reach at the paddle.

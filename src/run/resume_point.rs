@@ -87,13 +87,22 @@ pub(crate) fn has_checkpoint(folder: &Path) -> bool {
 
 /// The checkpoint `name` in `folder`, if the scene and the tables there are those that it was made with.
 fn load_matching(folder: &Path, name: &str) -> Result<(Checkpoint, Scene)> {
-    let checkpoint = Checkpoint::read(&folder.join(name))?;
+    let mut checkpoint = Checkpoint::read(&folder.join(name))?;
     let scene = Scene::read(&folder.join(run_folder::SCENE), &checkpoint.overrides)?;
     if checkpoint::fnv1a(scene.to_toml()?.as_bytes()) != checkpoint.scene_hash {
         let what = format!("the scene in {} is not the one that this run began with", folder.display());
         return Err(Error::new(ErrorKind::Restart, what)
             .with_code(ErrorCode::OtherSetup)
             .help("undo the change there, or start afresh with `pontoon run`"));
+    }
+    let beside = folder.join("scene");
+    let files = run_folder::file_hashes(&scene, &beside)?;
+    let known = checkpoint.files.get_or_insert_with(|| files.clone());
+    if let Some((changed, _)) = known.iter().find(|file| !files.contains(file)) {
+        let what = format!("{} is not the file that this run began with", beside.join(changed).display());
+        return Err(Error::new(ErrorKind::Restart, what)
+            .with_code(ErrorCode::OtherSetup)
+            .help("put the file back as it was, or start afresh with `pontoon run`"));
     }
     let plan = scene.plan()?;
     let series = plan.probes.iter().map(|probe| series_folder(folder).join(format!("{}.csv", probe.name)));

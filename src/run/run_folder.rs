@@ -8,7 +8,7 @@ use std::{
 use crate::{
     error::{Error, ErrorKind, Result},
     output::checkpoint,
-    scene::files,
+    scene::{Scene, files},
 };
 
 /// The kept scene, in the run's folder.
@@ -115,6 +115,18 @@ pub(crate) fn referenced_files(words: &str) -> Vec<String> {
     let inside = |part: Component| matches!(part, Component::Normal(_) | Component::CurDir);
     names.retain(|name| !name.is_empty() && Path::new(name).components().all(inside));
     names
+}
+
+/// Names and hashes of the files in `folder` that a run of `scene` reads. References of checks are read after it.
+pub(super) fn file_hashes(scene: &Scene, folder: &Path) -> Result<Vec<(String, u64)>> {
+    let mut read = scene.clone();
+    (read.title, read.check) = (None, Vec::new());
+    let words = read.to_toml()?;
+    let mut names = referenced_files(&words);
+    names.sort();
+    names.dedup();
+    let hashed = |name: String| fs::read(folder.join(&name)).ok().map(|bytes| (name, checkpoint::fnv1a(&bytes)));
+    Ok(names.into_iter().filter_map(hashed).collect())
 }
 
 /// All strings in a TOML value.

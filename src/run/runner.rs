@@ -85,7 +85,8 @@ where
                 let folder = run_folder::create_run_folder(file, out)?;
                 let lock = Lock::acquire(&folder)?;
                 run_folder::copy_scene(file, text, &in_force, &folder)?;
-                (folder, Checkpoint::initial(&in_force, overrides), false, None, Some(lock))
+                let files = run_folder::file_hashes(scene, &folder.join("scene"))?;
+                (folder, Checkpoint::initial(&in_force, overrides, files), false, None, Some(lock))
             }
             RunOrigin::Resumed { folder, checkpoint, warning, lock } => {
                 (folder.to_owned(), *checkpoint, true, warning, lock)

@@ -3,7 +3,7 @@
 use super::{
     Scene,
     constraints::build_constraints,
-    context::Context,
+    context::{Context, FileNote},
     section::{
         solid::SolidConfig,
         water::{StillWater, WaterBody},
@@ -11,7 +11,7 @@ use super::{
     world_bounds,
 };
 use crate::{
-    error::Result,
+    error::{Error, Result},
     geometry::{
         fill::EnclosedSpace,
         hollow::{Enclosure, Hollow, may_enclose},
@@ -57,9 +57,62 @@ pub(super) fn placed_solids<const D: usize>(
         placed.enclosures.push(found);
     }
     if scene.solid.iter().any(|config| config.is_afloat()) {
+        note_gravity(ctx);
         float_bodies(scene, ctx, &mut placed, water, &pool)?;
     }
+    if all {
+        note_other_levels(scene, ctx, &placed.specs, water, &pool);
+    }
     Ok(placed)
+}
+
+/// Adds the warning that bodies start at the equilibrium under a gravity that does not point downwards.
+fn note_gravity(ctx: &Context) {
+    let Some(gravity) = ctx.gravity.as_ref().filter(|gravity| gravity.strongest > 0.0) else { return };
+    let strength = gravity.initial.iter().map(|g| g * g).sum::<f64>().sqrt();
+    if gravity.initial.last().is_some_and(|g| -g > 0.9 * strength) {
+        return;
+    }
+    ctx.add_note(FileNote::warning(
+        "gravity_direction",
+        format!(
+            "gravity is {:?} m/s² at the start, and draft = \"equilibrium\" is that of a gravity downwards",
+            gravity.initial
+        ),
+        "point it along the last axis, downwards, or give the heights of the bodies".into(),
+    ));
+}
+
+/// Adds a warning for each free body whose draft is measured from the highest level, and whose own basin has a lower one.
+fn note_other_levels<const D: usize>(
+    scene: &Scene,
+    ctx: &Context,
+    specs: &[SolidSpec<D>],
+    water: &[WaterBody<D>],
+    pool: &StillWater<D>,
+) {
+    for (config, spec) in scene.solid.iter().zip(specs) {
+        if config.free.is_none() || config.at.as_ref().is_none_or(|at| at.draft.is_none()) {
+            continue;
+        }
+        let own = world_bounds(&spec.shape, &spec.pose);
+        let around = |body: &&WaterBody<D>| {
+            let bounds = body.bounds();
+            (0..D - 1).all(|axis| bounds.min[axis] < own.max[axis] && bounds.max[axis] > own.min[axis])
+        };
+        let open = water.iter().filter(|body| body.inside.is_none());
+        let level = open.filter(around).map(|body| body.level).reduce(f64::max);
+        if let Some(level) = level.filter(|level| *level < pool.still.level - 0.5 * scene.dp) {
+            ctx.add_note(FileNote::warning(
+                "other_level",
+                format!(
+                    "the draft of \"{}\" is measured from the highest water, at {} m, and its own water stands at {level} m",
+                    spec.name, pool.still.level
+                ),
+                "give its height instead of a draft, as in  at = { x = 1.5, bottom = 0.2 }".into(),
+            ));
+        }
+    }
 }
 
 /// Lifts the bodies that start at their equilibrium. They carry the ties as they are at the start: bodies at given
@@ -93,10 +146,19 @@ fn float_bodies<const D: usize>(
         g,
     };
     let loads = TieLoads::at_start(&state, &constraints);
-    let rise = |i: usize, mass: f64| {
+    let rise = |i: usize, mass: f64, others: &[usize]| {
+        let alone = |e: Error| match others.iter().find(|other| **other != i) {
+            Some(other) => {
+                let what =
+                    format!("{}; \"{}\", to which it is tied, does not change that", e.message, specs[*other].name);
+                let help = "each body of an assembly finds its equilibrium alone first; give the heights of this one";
+                Error { message: what, ..e }.help(help)
+            }
+            None => e,
+        };
         placed
             .rise_to_equilibrium(i, mass, rho0, level, water)
-            .map_err(|e| ctx.with_location(loads.explain(i, e), &format!("solid.{i}.at.draft")))
+            .map_err(|e| ctx.with_location(alone(loads.explain(i, e)), &format!("solid.{i}.at.draft")))
     };
     let mut rises = vec![0.0; specs.len()];
     for group in loads.groups() {
@@ -105,7 +167,7 @@ fn float_bodies<const D: usize>(
             let Some(body) = specs[i].initial_body() else { continue };
             // One body carries all; several carry their own loads first, and what is left together.
             let carried = if own.len() == 1 { loads.of_group(i) } else { 0.0 } + loads.on(i);
-            rises[i] = rise(i, body.mass + carried)?;
+            rises[i] = rise(i, body.mass + carried, &own)?;
         }
         let left = own.first().map_or(0.0, |i| loads.of_group(*i));
         if own.len() > 1 && left != 0.0 {

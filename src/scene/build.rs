@@ -26,7 +26,7 @@ use crate::{
     math::{Bounds, Pose, Vector},
     model::{Model, TimeScheme},
     plan::{ControlPlan, FramesPlan, Plan},
-    simulation::{Driving, OpenBoundary, Setup},
+    simulation::{Driving, OpenBoundary, Setup, TowedFrame},
     solid::{Constraints, Role, SolidSpec, TimeFunction},
     system::{Periodic, buffer_length, check_open_boundary, periodic},
 };
@@ -56,6 +56,8 @@ pub struct InitialWater<const D: usize> {
     pub removed_by_water: usize,
     /// The space that each solid encloses in its place.
     pub(crate) enclosures: Vec<Option<Enclosure<D>>>,
+    /// The box around each body of water that no solid encloses, up to its level.
+    pub(crate) boxes: Vec<Bounds<D>>,
 }
 
 /// All parts of a simulation except for the particles.
@@ -341,6 +343,14 @@ impl<const D: usize> SceneParts<D> {
             current: scene.current.as_ref().map(CurrentConfig::build),
             towed: scene.towed.as_ref().map(|towed| towed.build(ctx)).transpose()?,
         };
+        let open = water.iter().filter(|body| body.inside.is_none());
+        let boxes: Vec<Bounds<D>> = open
+            .map(|body| {
+                let mut own = body.bounds();
+                own.max[D - 1] = body.level;
+                own
+            })
+            .collect();
         let first_buffer = water.len();
         let (open_boundaries, buffers) = scene.open_boundaries(ctx, &water, &model)?;
         water.extend(buffers);
@@ -381,7 +391,11 @@ impl<const D: usize> SceneParts<D> {
         let flow =
             |(x, body): (&Vector<D>, &Option<&WaterBody<D>>)| body.map_or((Vector::zeros(), 0.0), |b| b.flow.at(x));
         let moves = scene.water.iter().any(|water| water.velocity.is_some() || water.pressure.is_some());
-        let (velocity, pressure) = filled.r.iter().zip(&origins).filter(|_| moves).map(flow).unzip();
+        let (velocity, pressure): (Vec<Vector<D>>, Vec<f64>) =
+            filled.r.iter().zip(&origins).filter(|_| moves).map(flow).unzip();
+        if let Some(towed) = &driving.towed {
+            note_start_of_tow(ctx, towed, &velocity);
+        }
         if let Some(part) = scene.jitter {
             jitter(&mut filled.r, part * scene.dp);
         }
@@ -421,9 +435,27 @@ impl<const D: usize> SceneParts<D> {
                 removed_by_solids: filled.removed_in_solids,
                 removed_by_water: filled.removed_in_regions,
                 enclosures: placed.enclosures,
+                boxes,
             },
             file_notes: ctx.file_notes.take(),
         })
+    }
+}
+
+/// Adds the note that a carriage moves at the start and the water, with this `velocity` in the scene, goes along.
+fn note_start_of_tow<const D: usize>(ctx: &Context, towed: &TowedFrame, velocity: &[Vector<D>]) {
+    let speed = towed.velocity.value_and_rate(0.0).0;
+    let mean = velocity.iter().map(|v| v[towed.axis]).sum::<f64>() / velocity.len().max(1) as f64;
+    if (mean + speed).abs() > 0.01 * speed.abs() {
+        let what = format!(
+            "the carriage starts at {speed} m/s and the water at {mean} m/s in its frame, which is {} m/s over the ground",
+            mean + speed
+        );
+        let mend = format!(
+            "water at rest over the ground has a [[water]] velocity of {} along the way, or let the carriage start from rest",
+            -speed
+        );
+        ctx.add_note(FileNote::note("towed_start", what, mend));
     }
 }
 

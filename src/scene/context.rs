@@ -30,14 +30,14 @@ pub(crate) struct Context<'a> {
     pub(super) file_notes: RefCell<Vec<FileNote>>,
 }
 
-/// A property of a file that the scene names: an assumption of its reading, or a probable fault.
+/// A property of the scene or of a file that it names: an assumption of its reading, or a probable fault.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FileNote {
     /// Whether the results are affected.
     pub is_warning: bool,
     /// Identifier of its kind, for programs.
     pub topic: &'static str,
-    /// Description, as one sentence that begins with the name of the file.
+    /// Description, as one sentence.
     pub what: String,
     /// The remedy.
     pub remedy: String,
@@ -123,10 +123,24 @@ impl Context<'_> {
     pub(crate) fn require_positive(&self, key: &str, x: Option<f64>) -> Result<()> {
         match x {
             Some(x) if !(x > 0.0 && x.is_finite()) => {
-                Err(self.out_of_range(key, format!("{} must be a positive number, not {x}", last_part(key))))
+                let word = last_part(key);
+                let error = self.out_of_range(key, format!("{word} must be a positive number, not {x}"));
+                let has_help = error.help.is_some();
+                Err(if has_help { error } else { error.help(format!("give  {word}  a number above 0, or remove it")) })
             }
             _ => Ok(()),
         }
+    }
+
+    /// Refuses a constant of a law that is negative or not finite.
+    pub(crate) fn require_not_negative(&self, key: &str, x: f64) -> Result<()> {
+        if x >= 0.0 && x.is_finite() {
+            return Ok(());
+        }
+        let word = last_part(key);
+        let what = format!("{word} is {x}: below 0 the law would feed the water with energy, or it has no value");
+        let help = format!("give  {word}  a number of 0 or more, or remove it for its default");
+        Err(self.error_with_help(key, what, help).with_code(ErrorCode::OutOfRange))
     }
 
     /// Refuses a number that is present and not from 0 to `most`.

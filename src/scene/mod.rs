@@ -17,6 +17,7 @@ mod diagnostics;
 mod file_content;
 mod file_units;
 pub(crate) mod files;
+mod finite_law;
 mod mesh;
 #[cfg(any(feature = "cli", test))]
 pub(crate) mod moordyn;
@@ -404,7 +405,7 @@ impl Scene {
     fn from_toml(text: &str, file: &str, folder: &Path, sets: &[(String, String)]) -> Result<Self> {
         let (mut scene, origin): (Self, SceneSource) = toml_source::read(text, file, folder, sets)?;
         scene.origin = origin;
-        Ok(scene)
+        scene.require_known_dimension().map(|()| scene)
     }
 
     /// Returns the name of the device that computes the water, or `None` for the processor.

@@ -20,7 +20,8 @@ const MUCH_LONGER: f64 = 20.0;
 const UNEVEN: f64 = 0.01;
 
 /// Units of time, which do not occur in columns of values. `v_ms` is a speed.
-const TIME_UNITS: [&str; 5] = ["ms", "msec", "us", "µs", "min"];
+const TIME_UNITS: [&str; 15] =
+    ["ms", "msec", "us", "µs", "min", "minute", "minutes", "h", "hr", "hrs", "hour", "hours", "d", "day", "days"];
 
 /// The law outside the span of its record.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -91,11 +92,25 @@ impl Record<'_> {
         if self.scaling.time_factor == 1.0 {
             let factor = unit.as_deref().filter(|unit| TIME_UNITS.contains(unit)).and_then(table::si_factor);
             self.note_unit(&time, unit.as_deref(), factor, "time_factor");
+            self.note_unknown_unit(&time, unit.as_deref(), "time_factor");
         }
         let unit = self.table.unit(self.column.clone())?;
         if self.scaling.scale == 1.0 {
-            let factor = unit.as_deref().filter(|unit| !TIME_UNITS.contains(unit)).and_then(table::si_factor);
-            self.note_unit(&self.column, unit.as_deref(), factor, "scale");
+            let value = unit.as_deref().filter(|unit| !TIME_UNITS.contains(unit) && !table::is_angle(unit));
+            self.note_unit(&self.column, value, value.and_then(table::si_factor), "scale");
+            self.note_unknown_unit(&self.column, value, "scale");
+        }
+        if self.table.is_one_column(&time, &self.column) {
+            self.ctx.add_note(FileNote::note(
+                "record_unit",
+                format!(
+                    "column \"{}\" of {} ({}) is the column of times: the value at each time is the time itself",
+                    self.column,
+                    self.file,
+                    self.ctx.shown_key(self.key)
+                ),
+                "name the column of values with  column = ..".into(),
+            ));
         }
         Ok(series)
     }
@@ -108,14 +123,16 @@ impl Record<'_> {
     pub(super) fn angle_factor(&self, law: CoordinateUnit) -> Result<f64> {
         let unit = self.table.unit(self.column.clone())?;
         let degrees = unit.as_deref().is_some_and(table::is_degree);
-        let contradicts = match law {
-            CoordinateUnit::Degrees => unit.as_deref() == Some("rad"),
-            CoordinateUnit::Si => degrees,
-            CoordinateUnit::Radians => false,
+        let angle = unit.as_deref().filter(|unit| table::is_angle(unit));
+        let in_radians = angle.map(|unit| table::si_factor(unit).unwrap_or(1.0));
+        let factor = match law {
+            CoordinateUnit::Degrees if degrees => None,
+            CoordinateUnit::Degrees => in_radians.map(f64::to_degrees),
+            CoordinateUnit::Radians if degrees => None,
+            CoordinateUnit::Radians | CoordinateUnit::Si => in_radians.filter(|factor| *factor != 1.0),
         };
-        if contradicts && self.scaling.scale == 1.0 {
-            let factor = if degrees { 1f64.to_radians() } else { 1f64.to_degrees() };
-            self.note_unit(&self.column, unit.as_deref(), Some(factor), "scale");
+        if self.scaling.scale == 1.0 {
+            self.note_unit(&self.column, angle, factor, "scale");
         }
         let turned = law == CoordinateUnit::Degrees || (law == CoordinateUnit::Radians && degrees);
         Ok(if turned { 1f64.to_radians() } else { 1.0 })
@@ -135,6 +152,20 @@ impl Record<'_> {
                 remedy: format!("write  {key} = {factor}  beside the column"),
             });
         }
+    }
+
+    /// Adds the note that a column is in a `unit` whose size is not known.
+    fn note_unknown_unit(&self, column: &ColumnName, unit: Option<&str>, key: &str) {
+        let Some(unit) = unit.filter(|unit| table::is_without_size(unit)) else { return };
+        let (file, shown) = (self.file, self.ctx.shown_key(self.key));
+        self.ctx.add_note(FileNote::note(
+            "record_unit",
+            format!(
+                "column \"{column}\" of {file} ({shown}) is in \"{unit}\", which has no one meaning as a unit; its \
+                     values are taken as those of the SI"
+            ),
+            format!("write the size of the unit, as in  {key} = 0.001,  beside the column"),
+        ));
     }
 
     /// Adds a note if the samples of `series` are not evenly spaced, of a record that is read at even times.

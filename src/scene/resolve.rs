@@ -62,12 +62,18 @@ impl Scene {
         ctx
     }
 
+    /// Refuses dimensions other than 2 and 3.
+    pub(super) fn require_known_dimension(&self) -> Result<()> {
+        match self.dimension {
+            2 | 3 => Ok(()),
+            other => Err(self.context().error_at("dimension", format!("dimension is 2 or 3, not {other}"))),
+        }
+    }
+
     /// Refuses an invalid scene without opening files.
     fn verify(&self) -> Result<()> {
         let ctx = &self.context();
-        if !(2..=3).contains(&self.dimension) {
-            return Err(ctx.error_at("dimension", format!("dimension is 2 or 3, not {}", self.dimension)));
-        }
+        self.require_known_dimension()?;
         ctx.require_positive("dp", Some(self.dp))?;
         ctx.require_positive("until", Some(self.until))?;
         if let Some(gravity) = &self.gravity {

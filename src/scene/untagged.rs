@@ -13,7 +13,7 @@ use serde::{
 
 use super::{
     context::{Context, Defaults, quoted_list, set_keys},
-    files, record,
+    files, finite_law, record,
     section::shape::AxisName,
 };
 use crate::{
@@ -326,7 +326,30 @@ impl TimeFunctionConfig {
     }
 
     /// The law, with the values in SI units.
+    ///
+    /// # Errors
+    /// `Scene` if it cannot be read, or its formula is not finite during the run.
     pub(crate) fn build(&self, ctx: &Context, key: &str, unit: CoordinateUnit) -> error::Result<TimeFunction> {
+        self.build_during(ctx, key, unit, [0.0, ctx.until])
+    }
+
+    /// The law as in [`TimeFunctionConfig::build`], of a part that exists from the first to the second of these times (s).
+    pub(crate) fn build_during(
+        &self,
+        ctx: &Context,
+        key: &str,
+        unit: CoordinateUnit,
+        span: [f64; 2],
+    ) -> error::Result<TimeFunction> {
+        let law = self.read(ctx, key, unit)?;
+        if let (Some(text), TimeFunction::Formula(formula)) = (&self.formula, &law) {
+            finite_law::require_finite(ctx, &format!("{key}.formula"), text, formula, span)?;
+        }
+        Ok(law)
+    }
+
+    /// The law, whether its formula is finite or not.
+    pub(crate) fn read(&self, ctx: &Context, key: &str, unit: CoordinateUnit) -> error::Result<TimeFunction> {
         let place = |word: &str, e: error::Error| ctx.with_location(e, &format!("{key}.{word}"));
         if let Some(text) = &self.formula {
             let formula = Formula::parse(text).map_err(|e| place("formula", e))?;

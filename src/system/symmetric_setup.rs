@@ -9,7 +9,7 @@ use crate::{
     error::{Error, ErrorCode, Result},
     geometry::cells::PointCells,
     math::{Bounds, Vector},
-    solid::{Kinematics, Role, SolidSpec, TimeFunction},
+    solid::{ForceSpec, Kinematics, LineEnd, Role, SolidSpec, TimeFunction},
 };
 
 /// Largest distance of the rows next to a plane from their place half a dp before it, dp.
@@ -44,6 +44,13 @@ impl Named {
     /// Distance (m) of `x` (m) from the plane, positive on the computed side.
     fn depth<const D: usize>(&self, x: &Vector<D>) -> f64 {
         self.plane.depth(x[self.axis])
+    }
+
+    /// The mirror image of `x` (m).
+    fn image<const D: usize>(&self, x: &Vector<D>) -> Vector<D> {
+        let mut image = *x;
+        image[self.axis] = 2.0 * self.plane.at - x[self.axis];
+        image
     }
 
     /// The least and the greatest depth (m) of a box.
@@ -249,6 +256,8 @@ impl<const D: usize> Setup<D> {
                 format!("mooring {:?} acts on the water, and {title} mirrors the water, but not the line", line.name);
             return Err(Error::scene(what).help("write  acts_on_water = false, or compute both sides of the plane"));
         }
+        self.check_lines(plane, &cut)?;
+        self.check_moments(plane, &cut)?;
         let links = self.constraints.joints.iter().map(|joint| (&joint.name, joint.between));
         let springs = self.constraints.springs.iter().map(|spring| (&spring.name, spring.ends.map(|end| end.solid)));
         let ropes = self.constraints.ropes.iter().map(|rope| (&rope.name, rope.ends.map(|end| end.solid)));
@@ -275,6 +284,101 @@ impl<const D: usize> Setup<D> {
             }
         }
         Ok(())
+    }
+
+    /// Refuses a line that pulls a free body which the plane cuts to one side, unless its mirror image is there.
+    fn check_lines(&self, plane: &Named, cut: &[bool]) -> Result<()> {
+        let springs = self.constraints.springs.iter().map(|s| {
+            let numbers =
+                vec![s.stiffness, s.damping, s.rest_length.unwrap_or(-1.0), f64::from(u8::from(s.tension_only))];
+            ("spring", &s.name, s.ends, numbers, s.lifetime)
+        });
+        let ropes = self
+            .constraints
+            .ropes
+            .iter()
+            .map(|r| ("rope", &r.name, r.ends, vec![r.max_length.unwrap_or(-1.0)], r.lifetime));
+        let moorings = self.constraints.moorings.iter().map(|m| {
+            (
+                "mooring",
+                &m.name,
+                m.ends,
+                vec![m.length, m.line.diameter, m.line.mass_per_length, m.line.stiffness],
+                m.lifetime,
+            )
+        });
+        let lines: Vec<_> = springs.chain(ropes).chain(moorings).collect();
+        let is_held = |end: &LineEnd<D>| {
+            end.solid.is_some_and(|solid| cut[solid] && matches!(self.solids[solid].role, Role::Free(_)))
+        };
+        for (kind, name, ends, numbers, lifetime) in &lines {
+            let on_plane = ends.iter().all(|end| self.is_on(plane, &end.at));
+            if on_plane || !ends.iter().any(is_held) {
+                continue;
+            }
+            let images = ends.map(|end| LineEnd { at: plane.image(&end.at), ..end });
+            let is_image = |other: &[LineEnd<D>; 2]| {
+                let meets = |(a, b): (&LineEnd<D>, &LineEnd<D>)| {
+                    a.solid == b.solid && (a.at - b.at).norm() <= TOLERANCE * self.model.dp
+                };
+                other.iter().zip(&images).all(meets) || other.iter().rev().zip(&images).all(meets)
+            };
+            let has_image = lines.iter().any(|(other, _, ends, values, life)| {
+                other == kind && values == numbers && life == lifetime && is_image(ends)
+            });
+            if !has_image {
+                let what = format!("{kind} {name:?} pulls a body that {} cuts to one side", plane.title());
+                return Err(Error::scene(what).help(format!(
+                    "give its mirror image too, alike and from {:?} to {:?}, or compute both sides",
+                    images[0].at.as_slice(),
+                    images[1].at.as_slice()
+                )));
+            }
+        }
+        Ok(())
+    }
+
+    /// Refuses forces and torques that turn a body which the plane cuts, unless the mirror image of the force is there.
+    fn check_moments(&self, plane: &Named, cut: &[bool]) -> Result<()> {
+        let values = |laws: &[TimeFunction]| -> Vec<Vec<f64>> {
+            times().map(|t| laws.iter().map(|law| law.value_and_rate(t).0).collect()).collect()
+        };
+        let acts = |law: &TimeFunction| times().any(|t| law.value_and_rate(t).0 != 0.0);
+        let forces = &self.constraints.forces;
+        for force in forces.iter().filter(|force| cut[force.solid]) {
+            let body = &self.solids[force.solid].name;
+            let turns = force.torque.iter().enumerate().filter(|(i, _)| D == 2 || *i != plane.axis);
+            if turns.map(|(_, law)| law).any(acts) {
+                let what = format!("force {:?} turns {body:?} out of {}", force.name, plane.title());
+                return Err(Error::scene(what).help("leave out its torque, or compute both sides"));
+            }
+            let Some(at) = force.at.filter(|at| !self.is_on(plane, at) && force.force.iter().any(acts)) else {
+                continue;
+            };
+            let image = plane.image(&at);
+            let is_image = |other: &&ForceSpec<D>| {
+                let there = other.at.is_some_and(|at| (at - image).norm() <= TOLERANCE * self.model.dp);
+                there
+                    && other.solid == force.solid
+                    && other.lifetime == force.lifetime
+                    && values(&other.force) == values(&force.force)
+            };
+            if !forces.iter().any(|other| is_image(&other)) {
+                let what = format!(
+                    "force {:?} acts on {body:?} beside {}, which cuts the body: it would turn it",
+                    force.name,
+                    plane.title()
+                );
+                return Err(Error::scene(what)
+                    .help(format!("give its mirror image at {:?} too, or compute both sides", image.as_slice())));
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether `x` (m) lies on the plane.
+    fn is_on(&self, plane: &Named, x: &Vector<D>) -> bool {
+        plane.depth(x).abs() <= TOLERANCE * self.model.dp
     }
 
     /// Leaves the water on the computed side only, whose rows must begin half a dp before the plane.

@@ -69,6 +69,11 @@ pub(super) fn error(cell: &str, decimal: Decimal) -> Error {
         return Error::scene(format!("\"{cell}\" has a point, and other cells have decimal commas"))
             .help("write decimal points in all cells");
     }
+    let mark = ["#", "!", "//"].into_iter().find_map(|mark| cell.find(mark));
+    if mark.is_some_and(|at| number(cell[..at].trim(), decimal).is_some()) {
+        return Error::scene(format!("\"{cell}\" is a number with a comment behind it"))
+            .help("put the comment on a line of its own");
+    }
     let end = cell.rfind(digits).map_or(0, |i| i + 1);
     let (value, unit) = cell.split_at(end);
     if number(value, decimal).is_some() && !unit.trim().is_empty() {

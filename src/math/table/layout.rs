@@ -88,6 +88,8 @@ pub(super) struct Layout {
     pub(super) unfit: Option<usize>,
     /// Cells of a row of units; empty if there is none.
     pub(super) units: Vec<String>,
+    /// Line and cells of the row above the names, if the row of names has units in it.
+    above_units: Option<(usize, Vec<String>)>,
     /// Line of the first row of numbers, from 1.
     pub(super) first: usize,
     /// Differences from a table with commas, decimal points and names in its first line.
@@ -133,6 +135,7 @@ impl Layout {
             names: Vec::new(),
             unfit: None,
             units: Vec::new(),
+            above_units: None,
             first: content.get(rows.first).map_or(usize::MAX, |line| line.number),
             remarks: Vec::new(),
         };
@@ -163,6 +166,15 @@ impl Layout {
         cells
     }
 
+    /// Returns the unknown units in the row below the one with the column `name`, if the row was taken for the names.
+    pub(super) fn unknown_unit_below(&self, name: &str) -> Option<String> {
+        let (line, above) = self.above_units.as_ref()?;
+        above.iter().find(|above| *above == name)?;
+        let unknown = self.names.iter().filter(|unit| !unit.is_empty() && !unit::is_unit(unit));
+        let unknown: Vec<String> = unknown.map(|unit| format!("\"{unit}\"")).collect();
+        (!unknown.is_empty()).then(|| format!("{} in line {line}", unknown.join(", ")))
+    }
+
     /// Takes names and units from the lines above the first row of numbers.
     fn read_names(&mut self, content: &[Line], rows: &Rows) {
         let above = &content[..rows.first.min(content.len())];
@@ -175,7 +187,11 @@ impl Layout {
                 self.remarks.push(format!("row of units in line {line}"));
                 (self.names, self.units, end) = (names, units, upper);
             }
-            (Some((line, names)), _) => (self.names, end) = (names, line),
+            (Some((line, names)), upper) => {
+                let has_unit = names.iter().any(|name| unit::is_known(name));
+                self.above_units = upper.filter(|_| has_unit).map(|(_, above)| (line, above));
+                (self.names, end) = (names, line);
+            }
             (None, _) if self.separator != Separator::Blanks => {
                 let cells = above.last().map_or(0, |line| self.separator.split(line.text).len());
                 self.unfit = Some(cells).filter(|cells| *cells > 1);

@@ -332,8 +332,11 @@ impl ForceConfig {
         solids: &[SolidConfig],
     ) -> Result<ForceSpec<D>> {
         let solid = solids.iter().position(|solid| solid.name == self.on).unwrap_or_default();
+        let lifetime = self.lifetime().build(tied(solids, std::slice::from_ref(&self.on)));
+        let span = [lifetime.since, lifetime.until];
         let laws = |word: &str, values: &[TimeValueConfig]| -> Result<Vec<TimeFunction>> {
-            values.iter().map(|value| value.0.build(ctx, &format!("{key}.{word}"), CoordinateUnit::Si)).collect()
+            let key = format!("{key}.{word}");
+            values.iter().map(|value| value.0.build_during(ctx, &key, CoordinateUnit::Si, span)).collect()
         };
         Ok(ForceSpec {
             name: self.name.clone(),
@@ -342,7 +345,7 @@ impl ForceConfig {
             force: laws("force", self.force.as_ref().map_or(&[], |values| values.components()))?,
             torque: laws("torque", self.torque.as_ref().map_or(&[], |values| values.components()))?,
             rotates_with_solid: self.frame == Some(ForceFrame::Body),
-            lifetime: self.lifetime().build(tied(solids, std::slice::from_ref(&self.on))),
+            lifetime,
         })
     }
 }

@@ -364,7 +364,8 @@ impl JointConfig {
         joint.limits = stop(None);
         let number = |mode: &MotionMode| Some(FreeMode { mode: mode.index(D)?, limits: stop(Some(mode)) });
         joint.free_modes = self.free.iter().flatten().filter_map(number).collect();
-        joint.motor = self.motor.as_ref().map(|motor| motor.build(ctx, &format!("{key}.motor"))).transpose()?;
+        let span = [joint.lifetime.since, joint.lifetime.until];
+        joint.motor = self.motor.as_ref().map(|motor| motor.build(ctx, &format!("{key}.motor"), span)).transpose()?;
         Ok(joint)
     }
 }
@@ -434,7 +435,8 @@ impl MotorConfig {
         Ok(())
     }
 
-    fn build(&self, ctx: &Context, key: &str) -> Result<Motor> {
+    /// The motor of a joint that exists during `span` (s).
+    fn build(&self, ctx: &Context, key: &str, span: [f64; 2]) -> Result<Motor> {
         let mut motor = Motor { max_force: self.strongest.unwrap_or(f64::INFINITY), ..Motor::default() };
         for (word, value) in self.time_values() {
             let unit = match word {
@@ -442,7 +444,7 @@ impl MotorConfig {
                 "position" | "velocity" => CoordinateUnit::Radians,
                 _ => CoordinateUnit::Si,
             };
-            let law = value.0.build(ctx, &format!("{key}.{word}"), unit)?;
+            let law = value.0.build_during(ctx, &format!("{key}.{word}"), unit, span)?;
             if matches!(word, "stiffness" | "damping")
                 && let TimeFunction::Table(series) = &law
                 && let Some(x) = series.values().iter().find(|x| **x < 0.0)

@@ -91,6 +91,32 @@ impl ModelConfig {
             ("model.gamma", self.gamma),
         ];
         numbers.into_iter().try_for_each(|(key, x)| ctx.require_positive(key, x))?;
+        let (viscosity, diffusion, shifting) = (self.viscosity, self.diffusion, self.shifting);
+        let constants = match viscosity {
+            Some(Viscosity::Artificial(law)) => vec![("viscosity.artificial.alpha", law.alpha)],
+            Some(Viscosity::Riemann(law)) => vec![("viscosity.riemann.eta", law.eta)],
+            Some(Viscosity::Laminar(law)) => vec![("viscosity.laminar.nu0", law.nu0)],
+            Some(Viscosity::Sps(law)) => vec![
+                ("viscosity.sps.nu0", law.nu0),
+                ("viscosity.sps.smagorinsky", law.smagorinsky),
+                ("viscosity.sps.isotropic", law.isotropic),
+            ],
+            None | Some(Viscosity::None) => vec![],
+        };
+        let delta = match diffusion {
+            Some(Diffusion::Molteni(law)) => Some(("diffusion.molteni.delta", law.delta)),
+            Some(Diffusion::Fourtakas(law)) => Some(("diffusion.fourtakas.delta", law.delta)),
+            None | Some(Diffusion::None) => None,
+        };
+        let a = match shifting {
+            Some(Shifting::AwayFromSolids(law)) => Some(("shifting.away_from_solids.a", law.a)),
+            Some(Shifting::AwayFromFixed(law)) => Some(("shifting.away_from_fixed.a", law.a)),
+            Some(Shifting::Everywhere(law)) => Some(("shifting.everywhere.a", law.a)),
+            None | Some(Shifting::None) => None,
+        };
+        for (key, x) in constants.into_iter().chain(delta).chain(a) {
+            ctx.require_not_negative(&format!("model.{key}"), x)?;
+        }
         let both = |a: &str, b: &str, help: &str| {
             Err(ctx.error_with_help(&format!("model.{b}"), format!("{a} and {b} say the same thing twice"), help))
         };

@@ -447,7 +447,8 @@ impl MooringConfig {
         made.points = points;
         made.lifetime = self.lifetime().build(tied(scope.solids, &self.between));
         if let Some(law) = &self.paid_out {
-            made.paid_out = Some(law.build(ctx, &format!("{key}.paid_out"), CoordinateUnit::Si)?);
+            let span = [made.lifetime.since, made.lifetime.until];
+            made.paid_out = Some(law.build_during(ctx, &format!("{key}.paid_out"), CoordinateUnit::Si, span)?);
         }
         made.winch = self.winch.map(|winch| winch.build(self.length));
         made.acts_on_water = self.acts_on_water.unwrap_or_default();

@@ -149,26 +149,27 @@ impl DrivenConfig {
         laws.iter().try_for_each(|(word, law)| law.verify(ctx, &format!("{key}.{word}")))
     }
 
-    /// The motion, if it makes no wave.
-    pub(crate) fn build<const D: usize>(&self, ctx: &Context, key: &str) -> Result<PrescribedMotion<D>> {
+    /// The motion of a solid that exists until `until` (s), if it makes no wave.
+    pub(crate) fn build<const D: usize>(&self, ctx: &Context, key: &str, until: f64) -> Result<PrescribedMotion<D>> {
         if let Some(motions) = &self.motions {
-            let made = motions.iter().enumerate().map(|(i, motion)| motion.build(ctx, &format!("{key}.motions.{i}")));
+            let made =
+                motions.iter().enumerate().map(|(i, motion)| motion.build(ctx, &format!("{key}.motions.{i}"), until));
             return Ok(PrescribedMotion::chain(made.collect::<Result<Vec<_>>>()?));
         }
+        let law = |law: &TimeFunctionConfig, word: &str, unit| {
+            law.build_during(ctx, &format!("{key}.{word}"), unit, [0.0, until])
+        };
         let unit = |x: &[f64]| vector::<D>(x).normalize();
         if let (Some(along), Some(distance)) = (&self.along, &self.distance) {
-            return Ok(PrescribedMotion::slide(
-                unit(along),
-                distance.build(ctx, &format!("{key}.distance"), CoordinateUnit::Si)?,
-            ));
+            return Ok(PrescribedMotion::slide(unit(along), law(distance, "distance", CoordinateUnit::Si)?));
         }
         let centre = vector(self.hinge.as_deref().unwrap_or(&[]));
         let axis = self.axis.as_ref().map_or_else(|| vec![1.0], |axis| unit(axis).iter().copied().collect());
-        let law = match (&self.angle, &self.angle_deg) {
-            (Some(law), _) => law.build(ctx, &format!("{key}.angle"), CoordinateUnit::Radians)?,
-            (None, Some(law)) => law.build(ctx, &format!("{key}.angle_deg"), CoordinateUnit::Degrees)?,
+        let angle = match (&self.angle, &self.angle_deg) {
+            (Some(angle), _) => law(angle, "angle", CoordinateUnit::Radians)?,
+            (None, Some(angle)) => law(angle, "angle_deg", CoordinateUnit::Degrees)?,
             (None, None) => return Err(ctx.error_at(key, "this does not say one motion")),
         };
-        Ok(PrescribedMotion::hinge(centre, &axis, law))
+        Ok(PrescribedMotion::hinge(centre, &axis, angle))
     }
 }

@@ -279,7 +279,7 @@ impl SolidConfig {
                 let key = format!("{key}.driven");
                 Role::Driven(match &config.wave {
                     Some(wave) => wavemaker::build(ctx, &key, config, wave, (&shape, &pose), pool)?,
-                    None => config.build(ctx, &key)?,
+                    None => config.build(ctx, &key, self.until.unwrap_or(f64::INFINITY))?,
                 })
             }
             (None, Some(config)) => {

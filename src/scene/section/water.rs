@@ -89,6 +89,12 @@ impl WaterConfig {
         let bounds = world_bounds(&shape, &pose);
         let (bottom, top) = (bounds.min[D - 1], bounds.max[D - 1]);
         let level = self.level.unwrap_or(f64::INFINITY).min(top);
+        let top = self.fill.corners.as_ref().and_then(|corners| corners.max.last().copied()).unwrap_or(top);
+        if let Some(given) = self.level.filter(|level| *level > top + 1e-9 * (top - bottom).abs()) {
+            let what = format!("a level of {given} m lies above {top} m, the top of the region that this water fills");
+            let help = "level lowers the surface of a region; make the region higher, or remove the level";
+            return Err(ctx.error_with_help(&format!("{key}.level"), what, help));
+        }
         if level <= bottom {
             let what = format!("the level is not above {bottom} m, the bottom of this water");
             return Err(ctx.error_at(&format!("{key}.level"), what));

@@ -18,7 +18,7 @@ use crate::{
         time_series::{SampleScaling, TimeSeries},
     },
     scene::{
-        context::Context,
+        context::{Context, FileNote},
         files,
         record::{self, Outside, Record},
     },
@@ -97,6 +97,7 @@ fn piston_motion<const D: usize>(
         return Err(ctx.error_with_help(&key, what, help));
     }
     let site = AbsorberSite::of(own, along, pool.still.level);
+    note_distance(ctx, &key, wave, ahead);
     with_absorption(ctx, &key, wave, maker, &site, PrescribedMotion::slide(along, TimeFunction::Wave(Box::new(law))))
 }
 
@@ -131,6 +132,7 @@ fn flap_motion<const D: usize>(
     let (key, maker) = (format!("{key}.wave"), Wavemaker { paddle: Paddle::Flap { arm }, ..*maker });
     let law = wave_from_config(ctx, &key, wave, &maker)?;
     let site = AbsorberSite::of(own, way.normalize() * sense, pool.still.level);
+    note_distance(ctx, &key, wave, support(&pool.bounds, &site.way) - site.face.dot(&site.way));
     with_absorption(
         ctx,
         &key,
@@ -179,6 +181,18 @@ fn absorbing<const D: usize>(
     Ok(motion.with_absorber(absorber, gauge, site.way))
 }
 
+/// Adds a warning for a record that was measured behind the paddle, or further ahead (m) than the water reaches.
+fn note_distance(ctx: &Context, key: &str, wave: &WaveConfig, ahead: f64) {
+    let Some(distance) = wave.elevation.as_ref().and_then(|config| config.distance) else { return };
+    if (0.0..=ahead).contains(&distance) {
+        return;
+    }
+    let shown = ctx.shown_key(&format!("{key}.elevation.distance"));
+    let what = format!("{shown} = {distance}: the water reaches from the paddle to {ahead:.3} m before it");
+    let mend = "it is the distance of the gauge from the paddle's face, in the direction of the waves, m".into();
+    ctx.add_note(FileNote::warning("gauge_distance", what, mend));
+}
+
 /// The still paddle's own wave: none, before those that it absorbs.
 fn zero_wave(ctx: &Context, key: &str, config: Option<AbsorptionConfig>, maker: &Wavemaker) -> Result<PaddleMotion> {
     match config.and_then(|config| config.period) {
@@ -213,6 +227,18 @@ fn wave_from_config(ctx: &Context, key: &str, config: &WaveConfig, maker: &Wavem
         }
         WaveConfig { focused: Some(config), .. } => {
             let spectrum = WaveSpectrum::jonswap(config.peak_period, gamma(config.gamma));
+            if config.time > ctx.until {
+                ctx.add_note(FileNote::warning(
+                    "focus_after_end",
+                    format!(
+                        "the crest of {} comes at {} s, and the run ends at {} s",
+                        ctx.shown_key(key),
+                        config.time,
+                        ctx.until
+                    ),
+                    format!("run to  until = {}, or let it come earlier", config.time),
+                ));
+            }
             let count = config.components.unwrap_or_default();
             let made = maker.focused(config.crest, &spectrum, config.distance, config.time, count);
             made.map_err(place("focused.crest"))?
@@ -244,7 +270,12 @@ fn read_components(ctx: &Context, key: &str, config: &WaveComponentsConfig) -> R
     let mut table = files::open_table(ctx.folder(), &config.file)?;
     let (file, names) = (table.file().to_string(), table.header().to_vec());
     let either = |one: &'static str, other: &'static str| {
-        let given = [(one, true), (other, false)].into_iter().find(|(column, _)| names.iter().any(|n| n == column));
+        let has = |column: &str| names.iter().any(|n| n == column);
+        if has(one) && has(other) {
+            let what = format!("{file} has a column \"{one}\" and a column \"{other}\", and both give one number");
+            return Err(Error::scene(what).help("keep one of the two"));
+        }
+        let given = [(one, true), (other, false)].into_iter().find(|(column, _)| has(column));
         given.ok_or_else(|| {
             let what = format!("{file} has neither a column \"{one}\" nor \"{other}\"");
             Error::scene(what).help(format!("components need one of the two; its columns: {}", names.join(", ")))
@@ -255,6 +286,9 @@ fn read_components(ctx: &Context, key: &str, config: &WaveComponentsConfig) -> R
     let [amplitudes, times, phases] =
         table.columns(["amplitude_m", time, phase]).map_err(files::with_line_in_message)?;
     record::note_layout(ctx, key, &config.file, &table);
+    for column in ["amplitude_m", time, phase] {
+        table.unit(column)?;
+    }
     let component = |i: usize| {
         let (x, phase) = (times[i], phases[i]);
         if x <= 0.0 {

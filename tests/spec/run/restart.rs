@@ -155,6 +155,32 @@ fn a_run_stopped_by_a_step_check_can_be_resumed_with_another_limit() -> Result<(
 }
 
 #[test]
+fn a_run_does_not_go_on_with_another_table() -> Result<()> {
+    let home = TestFolder::new("restart-table");
+    let table = "t_s,y_m\n0,0\n0.5,0.05\n";
+    fs::write(home.join("gate.csv"), table).unwrap();
+    let gate = "[[solid]]\nname = \"gate\"\nshape = { box = { size = [0.08, 0.2] } }\nat = { x = 1.0, bottom = 0.6 }\n\
+                driven = { along = [0.0, -1.0], distance = { file = \"gate.csv\", column = \"y_m\" } }\n";
+    fs::write(home.join("scene.toml"), crate_afloat(gate)).unwrap();
+    let out = home.join("out");
+    let options = RunOptions { out: Some(out.clone()), threads: Some(1), ..RunOptions::default() };
+    run::run(&home.join("scene.toml"), &options, &mut |now: &Progress| now.time < 0.02)?;
+    let kept = out.join("scene/gate.csv");
+    let resume = || run::resume(&out, &[], Some(1), &mut |now: &Progress| now.time < 0.04);
+    // The same name with other samples would move the gate at once.
+    for other in [Some("t_s,y_m\n0,0\n0.5,0.06\n"), None] {
+        match other {
+            Some(text) => fs::write(&kept, text).unwrap(),
+            None => fs::remove_file(&kept).unwrap(),
+        }
+        let refused = resume().expect_err("the table is another").to_string();
+        assert!(refused.contains("gate.csv"), "{refused}");
+    }
+    fs::write(&kept, table).unwrap();
+    resume().map(|_| ())
+}
+
+#[test]
 fn mooring_lines_survive_a_restart() -> Result<()> {
     let (home, sim) = survives_restart("moorings", [0.15, 0.35], |sim: &mut Simulation<2>| {
         sim.enable_load_breakdown();

@@ -7,3 +7,4 @@ mod preflight;
 mod records;
 mod reference;
 mod schema;
+mod silent_errors;

@@ -336,6 +336,20 @@ fn what_contradicts_the_symmetry_is_refused_with_a_remedy() {
         }
     };
     let plane = "symmetry = { x = 0.4 }";
+    let line = |from: [f64; 2], to: [f64; 2]| {
+        format!(
+            "{BOX}[[spring]]\nname = \"s{}\"\nbetween = [\"box\"]\nfrom = {from:?}\nto = {to:?}\nstiffness = 50.0\n",
+            (100.0 * from[0]) as i32
+        )
+    };
+    let force = |load: &str| format!("{BOX}[[force]]\nname = \"f\"\non = \"box\"\n{load}\n");
+    // With its mirror image a load keeps the symmetry.
+    let both = line([0.35, 0.3], [0.1, 0.3]) + &line([0.45, 0.3], [0.7, 0.3])[BOX.len()..];
+    let vertical = force("at = [0.4, 0.3]\nforce = [0.0, -1.0]");
+    for scene in [both, line([0.4, 0.3], [0.4, 0.0]), vertical] {
+        let scene = Scene::parse(&format!("{plane}\n{scene}"), Path::new(""), &[]).expect("a readable scene");
+        assert!(scene.build::<2>().is_ok(), "a symmetric load is accepted");
+    }
     for (keys, scene, expected) in [
         ("symmetry = { y = 0.2 }", BOX.into(), "gravity"),
         ("symmetry = { x = 0.605 }", COLUMN.into(), "symmetry.x = "),
@@ -345,6 +359,9 @@ fn what_contradicts_the_symmetry_is_refused_with_a_remedy() {
         (plane, BOX.replace("density = 500.0", "density = 500.0, velocity = [0.1, 0.0]"), "out of the symmetry"),
         (plane, BOX.replace("max = [0.8, 0.3]", "max = [0.7, 0.3]"), "the water is not symmetric"),
         (plane, format!("{BOX}[[force]]\nname = \"f\"\non = \"box\"\nforce = [1.0, 0.0]\n"), "leave out its component"),
+        (plane, line([0.35, 0.3], [0.1, 0.3]), "mirror image too"),
+        (plane, force("at = [0.45, 0.3]\nforce = [0.0, -1.0]"), "mirror image at"),
+        (plane, force("torque = [1.0]"), "leave out its torque"),
     ] {
         let message = refused(keys, &scene);
         assert!(message.contains(expected) && message.contains("symmetry"), "{message}");

@@ -19,6 +19,7 @@ fn example() -> Checkpoint {
         cpu_seconds: 2.5,
         particle_steps: 1200,
         stepping_seconds: 1.25,
+        files: Some(vec![("gate.csv".into(), 7)]),
         state: vec![1, 2, 3, 250],
     }
 }
@@ -58,6 +59,17 @@ fn a_checkpoint_survives_writing_and_every_damage_is_detected() -> io::Result<()
     assert_eq!(refusal(&[&good[..], b"x"].concat()), Some(ErrorKind::Restart), "a byte too many");
     let other = packed(&Checkpoint { version: "0.0.0".into(), ..example() })?;
     assert!(Checkpoint::from_bytes(&other).is_err_and(|e| e.message.contains("written by pontoon 0.0.0")));
+    Ok(())
+}
+
+#[test]
+fn a_checkpoint_of_the_format_before_is_read_without_the_hashes_of_files() -> Result<()> {
+    let known = postcard::to_stdvec(&example()).expect("it is serialised");
+    let payload = [&known[..], &example().state].concat();
+    let packed = zstd::encode_all(&payload[..], 1).expect("it is packed");
+    let mut old = forged(payload.len() as u64, &packed);
+    old[MAGIC.len()..MAGIC.len() + 4].copy_from_slice(&FORMAT_WITHOUT_FILES.to_le_bytes());
+    assert_eq!(Checkpoint::from_bytes(&old)?, Checkpoint { files: None, ..example() });
     Ok(())
 }
 

@@ -1,0 +1,128 @@
+//! Bodies of water that start as they can hardly be meant: off the lattice, in the air, on one another, or not as long as a period.
+
+use super::{Finding, PreflightContext};
+use crate::math::{
+    Bounds, Vector,
+    format::{coordinates, three_digits},
+};
+
+/// Largest difference between the level and the highest row of particles, dp: half a dp is that of a level between two rows.
+const OFF_LATTICE: f64 = 0.2;
+
+/// Depth below a particle of the lowest row within which something carries it, dp.
+const CARRIED: f64 = 1.5;
+
+/// Adds findings about the bodies of water in `boxes`, which reach up to their levels.
+pub(super) fn check<const D: usize>(context: &PreflightContext<D>, boxes: &[Bounds<D>], findings: &mut Vec<Finding>) {
+    check_periods(context, boxes, findings);
+    if context.g <= 0.0 {
+        return;
+    }
+    check_surface(context, findings);
+    for (i, own) in boxes.iter().enumerate() {
+        check_support(context, i, own, findings);
+        for (j, other) in boxes.iter().enumerate() {
+            check_stack(context, (i, own), (j, other), findings);
+        }
+    }
+}
+
+/// A level between two rows of particles.
+fn check_surface<const D: usize>(context: &PreflightContext<D>, findings: &mut Vec<Finding>) {
+    let (dp, level) = (context.dp(), context.still_water.level);
+    let highest = context.system.fluid().r.iter().map(|x| x[D - 1]).fold(f64::NEG_INFINITY, f64::max);
+    let off = highest + 0.5 * dp - level;
+    // Round regions are packed without rows.
+    if off.abs() <= OFF_LATTICE * dp || off.abs() > dp {
+        return;
+    }
+    let what = format!(
+        "the particles of the water reach {} m, and its level is {} m: the depth that they give is {} dp {}",
+        three_digits(highest + 0.5 * dp),
+        three_digits(level),
+        three_digits(off.abs() / dp),
+        if off > 0.0 { "more" } else { "less" }
+    );
+    let mend = "choose level and bottom a whole number of dp apart".to_string();
+    findings.push(Finding::note("surface_off_lattice", what, mend));
+}
+
+/// Water whose lowest row nothing carries.
+fn check_support<const D: usize>(
+    context: &PreflightContext<D>,
+    number: usize,
+    own: &Bounds<D>,
+    findings: &mut Vec<Finding>,
+) {
+    let dp = context.dp();
+    let fluid = context.system.fluid().r;
+    let lowest = fluid.iter().filter(|x| own.contains(x)).map(|x| x[D - 1]).fold(f64::INFINITY, f64::min);
+    let row: Vec<&Vector<D>> = fluid.iter().filter(|x| own.contains(x) && x[D - 1] < lowest + 0.5 * dp).collect();
+    let is_carried = |x: &&Vector<D>| {
+        let mut below = **x;
+        below[D - 1] -= CARRIED * dp;
+        let by_solid = context
+            .solids()
+            .iter()
+            .any(|solid| solid.spec.shape.signed_distance(&solid.kinematics.pose.local(&below)) < 0.5 * dp);
+        let mut by_water = false;
+        context.system.visit_fluid_near(x, &mut |_, y, _| by_water |= y[D - 1] < x[D - 1] - 0.5 * dp);
+        by_solid || by_water
+    };
+    if row.is_empty() || row.iter().any(is_carried) {
+        return;
+    }
+    let what = format!(
+        "water.{number} begins at {} m, and nothing is under it: it falls at the start",
+        three_digits(lowest - 0.5 * dp)
+    );
+    let mend = format!("let it begin on the floor, or put one under it, as at {}", coordinates(&own.min));
+    findings.push(Finding::note("water_in_air", what, mend));
+}
+
+/// Water above the level of other water that it touches.
+fn check_stack<const D: usize>(
+    context: &PreflightContext<D>,
+    (i, own): (usize, &Bounds<D>),
+    (j, other): (usize, &Bounds<D>),
+    findings: &mut Vec<Finding>,
+) {
+    let dp = context.dp();
+    let overlap = |axis: usize| own.max[axis].min(other.max[axis]) - own.min[axis].max(other.min[axis]);
+    let over = (0..D - 1).all(|axis| overlap(axis) > dp);
+    let (level, above) = (other.max[D - 1], own.max[D - 1]);
+    let touches = own.min[D - 1] <= level + 0.5 * dp && other.min[D - 1] <= own.min[D - 1];
+    if i == j || !over || above < level + dp || !touches {
+        return;
+    }
+    let what = format!(
+        "water.{i} stands to {} m on water.{j}, which starts with the pressure below its own level, {} m",
+        three_digits(above),
+        three_digits(level)
+    );
+    let mend = format!("make them one body of water, or write  level = {}  in both", three_digits(above));
+    findings.push(Finding::warning("stacked_water", what, mend));
+}
+
+/// Water that is not as long as a period.
+fn check_periods<const D: usize>(context: &PreflightContext<D>, boxes: &[Bounds<D>], findings: &mut Vec<Finding>) {
+    let Some(all) = boxes.iter().copied().reduce(|a, b| a.union(&b)) else { return };
+    for (axis, [from, to]) in
+        context.system.periodic().iter().enumerate().filter_map(|(axis, side)| Some((axis, (*side)?)))
+    {
+        let (name, period, length) = (["x", "y", "z"][axis], to - from, all.size()[axis]);
+        let ends = format!("from {name} = {} to {} m", three_digits(all.min[axis]), three_digits(all.max[axis]));
+        let mend =
+            format!("write  periodic.{name} = [{}, {}]", three_digits(all.min[axis]), three_digits(all.max[axis]));
+        let period = three_digits(period);
+        if length > to - from + 0.5 * context.dp() {
+            let what =
+                format!("the water is given {ends}, and the period is {period} m: it overlaps its periodic image");
+            findings.push(Finding::warning("longer_than_period", what, mend));
+        } else if length < to - from - 0.5 * context.dp() {
+            let what =
+                format!("the water is given {ends}, and the period is {period} m: it does not meet its periodic image");
+            findings.push(Finding::note("shorter_than_period", what, mend));
+        }
+    }
+}

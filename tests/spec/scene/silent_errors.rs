@@ -1,0 +1,332 @@
+//! Inputs that once gave wrong results without a word are refused at their key, or are findings.
+
+use std::fs;
+
+use pontoon::{
+    preflight::Severity,
+    run::{self, InspectOptions},
+};
+
+use crate::common::TestFolder;
+
+/// A valid scene of a free box, a gate above the water and a tank; it takes further sections.
+const GOOD: &str = "dimension = 2\ndp = 0.05\nuntil = 2.0\nframes = \"off\"\n\
+    [[water]]\nfill = { box = { min = [0.0, 0.0], max = [2.0, 0.5] } }\n\
+    [[solid]]\nname = \"tank\"\nfixed = true\nshape = { tank = { size = [2.0, 1.0] } }\n\
+    [[solid]]\nname = \"box\"\nshape = { box = { size = [0.5, 0.3] } }\nat = { x = 1.0, draft = \"equilibrium\" }\n\
+    free = { density = 500.0 }\n\
+    [[solid]]\nname = \"gate\"\nshape = { box = { size = [0.2, 0.2] } }\nat = { x = 1.0, bottom = 1.2 }\n\
+    driven = { along = [0.0, 1.0], distance = LAW }\n";
+
+/// A law that does nothing.
+const REST: &str = "{ formula = \"0*t\" }";
+
+/// The message of the scene with this text and these files beside it, or its findings.
+fn inspected(name: &str, scene: &str, files: &[(&str, &str)]) -> Result<Vec<(Severity, String)>, String> {
+    let folder = TestFolder::new(&format!("silent-{name}"));
+    fs::write(folder.join("scene.toml"), scene).unwrap();
+    files.iter().for_each(|(file, text)| fs::write(folder.join(file), text).unwrap());
+    let options = InspectOptions { threads: Some(1), ..InspectOptions::default() };
+    let inspected = run::inspect(&folder.join("scene.toml"), &options).map_err(|e| e.to_string())?;
+    let findings = inspected.report().unwrap().preflight.findings;
+    Ok(findings.into_iter().map(|f| (f.severity, format!("{}\n{}", f.what, f.mend))).collect())
+}
+
+/// Asserts that the scene is refused with a message of all these words.
+fn assert_refused(name: &str, scene: &str, files: &[(&str, &str)], words: &[&str]) {
+    let message = inspected(name, scene, files).expect_err(&format!("{name} is refused"));
+    words.iter().for_each(|word| assert!(message.contains(word), "{name}: {word} is not in\n{message}"));
+}
+
+/// Asserts that the scene has a finding of all these words.
+fn assert_found(name: &str, scene: &str, files: &[(&str, &str)], words: &[&str]) {
+    let findings = inspected(name, scene, files).unwrap_or_else(|e| panic!("{name}: {e}"));
+    let found = findings.iter().any(|(_, text)| words.iter().all(|word| text.contains(word)));
+    assert!(found, "{name}: {words:?} are not in one of {findings:#?}");
+}
+
+/// Asserts that no finding of the scene has this word.
+fn assert_not_found(name: &str, scene: &str, files: &[(&str, &str)], word: &str) {
+    let findings = inspected(name, scene, files).unwrap_or_else(|e| panic!("{name}: {e}"));
+    assert!(!findings.iter().any(|(_, text)| text.contains(word)), "{name}: {word} is in {findings:#?}");
+}
+
+/// The valid scene with this law of the gate and these sections.
+fn scene(law: &str, more: &str) -> String {
+    GOOD.replace("LAW", law) + more
+}
+
+#[test]
+fn a_formula_without_a_value_during_the_run_is_refused_with_its_time() {
+    let root = "sqrt(1-t)";
+    let of_gate = scene(&format!("{{ formula = \"{root}\" }}"), "");
+    assert_refused("driven", &of_gate, &[], &["scene.toml:20", "driven.distance", "t = 1 s", "max(0"]);
+    let chain = "[[line_type]]\nname = \"c\"\ndiameter = 0.01\nmass_per_length = 0.5\nstiffness = 1e4\n[[mooring]]\n\
+                 name = \"m\"\nbetween = [\"box\"]\nfrom = [1.0, 0.4]\nto = [0.2, 0.0]\nlength = 1.2\nline = \"c\"\n\
+                 paid_out = { formula = \"sqrt(1-t)-1\" }\n";
+    let slider =
+        "[[joint]]\nname = \"j\"\nkind = \"slider\"\nbetween = [\"box\"]\nalong = [0.0, 1.0]\nat = [1.0, 0.5]\n";
+    let force = "[[force]]\nname = \"f\"\non = \"box\"\nforce = [\"sqrt(1-t)\", 0.0]\n";
+    let motor = format!("{slider}motor = {{ force = \"sqrt(1-t)\" }}\n");
+    for (name, more, key) in [
+        ("moor", chain, "mooring.m.paid_out"),
+        ("force", force, "force.f.force"),
+        ("wind", "[[wind]]\non = [\"box\"]\nvelocity = [\"sqrt(1-t)\", 0.0]\n", "wind.0.velocity"),
+        ("joint", &motor, "joint.j.motor.force"),
+    ] {
+        assert_refused(name, &scene(REST, more), &[], &[key, "t = 1 s"]);
+    }
+    // A force that has ended, and a time that no step meets, need no value.
+    for (name, more) in [("ended", format!("{force}until = 1.0\n")), ("hole", force.replace(root, "(t-1)/(t-1)"))] {
+        assert_not_found(name, &scene(REST, &more), &[], "no value");
+    }
+}
+
+#[test]
+fn negative_constants_of_the_laws_are_refused_with_their_key() {
+    for (law, key) in [
+        ("viscosity = { riemann = { eta = -1.0 } }", "viscosity.riemann.eta"),
+        ("viscosity = { artificial = { alpha = -0.01 } }", "viscosity.artificial.alpha"),
+        ("viscosity = { laminar = { nu0 = -1e-6 } }", "viscosity.laminar.nu0"),
+        ("viscosity = { sps = { nu0 = 1e-6, smagorinsky = -0.1 } }", "viscosity.sps.smagorinsky"),
+        ("viscosity = { sps = { nu0 = 1e-6, isotropic = -0.1 } }", "viscosity.sps.isotropic"),
+        ("diffusion = { fourtakas = { delta = -0.1 } }", "diffusion.fourtakas.delta"),
+        ("diffusion = { molteni = { delta = -0.1 } }", "diffusion.molteni.delta"),
+        ("shifting = { everywhere = { a = -2.0 } }", "shifting.everywhere.a"),
+    ] {
+        assert_refused("model", &scene(REST, &format!("[model]\n{law}\n")), &[], &["scene.toml:22", key, "0 or more"]);
+    }
+    for (more, key) in [
+        ("[model]\ngamma = -1.0\n", "model.gamma"),
+        ("[model]\nrho0 = 0.0\n", "model.rho0"),
+        ("[time]\ndt_max = -1.0\n", "time.dt_max"),
+        ("[checkpoint]\nwall = -1.0\n", "checkpoint.wall"),
+        ("[[probe]]\nmotion = \"box\"\nevery = -1.0\n", "probe.0.every"),
+    ] {
+        assert_refused("positive", &scene(REST, more), &[], &["scene.toml:2", key, "above 0"]);
+    }
+    let four = scene(REST, "").replace("dimension = 2", "dimension = 4");
+    assert_refused("dimension", &four, &[], &["scene.toml:1", "2 or 3"]);
+}
+
+/// The record `x` (in the second column) of a force.
+fn with_force(table: &str, column: &str) -> (String, [(&'static str, String); 1]) {
+    let force =
+        format!("[[force]]\nname = \"f\"\non = \"box\"\nforce = [{{ file = \"w.csv\", column = {column} }}, 0.0]\n");
+    (scene(REST, &force), [("w.csv", table.into())])
+}
+
+#[test]
+fn a_unit_that_is_not_of_the_si_is_a_warning_with_its_factor() {
+    // Standard values: g = 9.80665 m/s², 1 lb = 0.45359237 kg, 1 ft = 0.3048 m.
+    for (column, factor) in [
+        ("F (kgf)", Some("9.80665")),
+        ("F (lbf)", Some("4.4482216152605")),
+        ("F (tf)", Some("9806.65")),
+        ("F (daN)", Some("scale = 10")),
+        ("F [mN]", Some("0.001")),
+        ("F kN", Some("1000")),
+        ("F (N.mm)", Some("0.001")),
+        ("F (lbf.ft)", Some("1.3558")),
+        ("F (knots)", Some("0.51444")),
+        ("F (m/min)", Some("0.016666")),
+        ("F (mrad)", Some("0.001")),
+        ("F (N)", None),
+        ("F (N·m)", None),
+        ("F (kg m/s^2)", None),
+    ] {
+        let (scene, [(file, table)]) = with_force(&format!("t_s,{column}\n0,0\n5,1\n"), "2");
+        match factor {
+            Some(factor) => assert_found("unit", &scene, &[(file, &table)], &["as if in another unit", factor]),
+            None => assert_not_found("unit", &scene, &[(file, &table)], "unit"),
+        }
+    }
+    for (time, factor) in [("t (h)", "3600"), ("t (hr)", "3600"), ("t (d)", "86400"), ("t (min)", "60")] {
+        let (scene, [(file, table)]) = with_force(&format!("{time},F\n0,0\n5,1\n"), "\"F\"");
+        assert_found("time", &scene, &[(file, &table)], &["another unit", &format!("time_factor = {factor}")]);
+    }
+    for unit in ["g", "kn", "furlong"] {
+        let (scene, [(file, table)]) = with_force(&format!("t_s,F ({unit})\n0,0\n5,1\n"), "2");
+        assert_found("unknown", &scene, &[(file, &table)], &[&format!("\"{unit}\""), "scale = "]);
+    }
+    let angle = scene(REST, "").replace(
+        "driven = { along = [0.0, 1.0], distance = { formula = \"0*t\" } }",
+        "driven = { hinge = [1.0, 1.3], angle = { file = \"w.csv\", column = \"a\" } }",
+    );
+    assert_found("rev", &angle, &[("w.csv", "t_s,a\ns,rev\n0,0\n5,0.1\n")], &["rev", "scale = 6.283185307"]);
+    assert_refused("grad", &angle, &[("w.csv", "t_s,a\ns,Grad\n0,0\n5,0.1\n")], &["unknown unit", "Grad", "line 2"]);
+}
+
+#[test]
+fn names_and_comments_of_records_are_told_apart() {
+    let (times, [(file, table)]) = with_force("0 0\n1 0.2\n2 0.2\n", "1");
+    assert_found("times", &times, &[(file, &table)], &["column of times"]);
+    let (comment, [(file, table)]) = with_force("t_s,y_m\n0,0\n1,0.2 # top\n2,0.2\n", "\"y_m\"");
+    assert_refused("comment", &comment, &[(file, &table)], &["comment behind it", "line 3"]);
+    let (case, [(file, table)]) = with_force("T_S,Y_M\n0,0\n2,0.2\n", "\"y_m\"");
+    assert_refused("case", &case, &[(file, &table)], &["did you mean \"Y_M\""]);
+    let (two, [(file, table)]) = with_force("t_s,y_mm (m)\n0,0\n2,0.2\n", "2");
+    assert_refused("two-units", &two, &[(file, &table)], &["two units, mm and m"]);
+}
+
+#[test]
+fn components_that_say_a_number_twice_are_refused() {
+    let paddle = scene(REST, "")
+        .replace("at = { x = 1.0, bottom = 1.2 }", "at = { x = -0.1, bottom = 0.0 }")
+        .replace("size = [0.2, 0.2]", "size = [0.2, 0.9]")
+        .replace("distance = { formula = \"0*t\" }", "wave = { components = { file = \"c.csv\" } }")
+        .replace("along = [0.0, 1.0]", "along = [1.0, 0.0]");
+    for (header, row, words) in [
+        ("amplitude_m,period_s,frequency_hz,phase_deg", "0.01,1.5,1.0,0", ["period_s", "frequency_hz"]),
+        ("amplitude_m,period_s,phase_deg,phase_rad", "0.01,1.5,90,0", ["phase_deg", "phase_rad"]),
+        ("amplitude_m (mm),period_s,phase_deg", "0.01,1.5,90", ["two units", "m and mm"]),
+    ] {
+        assert_refused("components", &paddle, &[("c.csv", &format!("{header}\n{row}\n"))], &words);
+    }
+    let good = "amplitude_m,period_s,phase_deg\n0.01,1.5,90\n";
+    assert_not_found("components", &paddle, &[("c.csv", good)], "two units");
+}
+
+#[test]
+fn the_valid_scene_has_no_warning() {
+    let findings = inspected("good", &scene(REST, ""), &[]).unwrap();
+    assert!(findings.iter().all(|(severity, _)| *severity != Severity::Warning), "{findings:#?}");
+}
+
+/// The valid scene with the words of each pair replaced.
+fn changed(pairs: &[(&str, &str)]) -> String {
+    pairs.iter().fold(scene(REST, ""), |text, (from, to)| {
+        assert!(text.contains(from), "{from} is not in the scene");
+        text.replace(from, to)
+    })
+}
+
+/// The region of the water of the valid scene.
+const REGION: &str = "min = [0.0, 0.0], max = [2.0, 0.5] } }";
+
+#[test]
+fn a_paddle_apart_from_the_water_is_found() {
+    let wave = "wave = { regular = { height = 0.1, period = 1.5 }, ramp = 0.5 }";
+    let paddle = |x: f64, wave: &str| {
+        let at = format!("at = {{ x = {x}, bottom = 0.0 }}");
+        changed(&[
+            ("at = { x = 1.0, bottom = 1.2 }", &at),
+            ("size = [0.2, 0.2]", "size = [0.2, 0.9]"),
+            ("along = [0.0, 1.0], distance = { formula = \"0*t\" }", &format!("along = [1.0, 0.0], {wave}")),
+            ("tank = { size = [2.0, 1.0] } }", "tank = { size = [4.0, 1.0] } }\nat = { x = 0.0 }"),
+        ])
+    };
+    // Its face is 0.1 m before its middle.
+    for x in [-1.0, -0.2, -0.15] {
+        assert_found("dry-paddle", &paddle(x, wave), &[], &["face of \"gate\"", "cross the gap"]);
+    }
+    assert_not_found("wet-paddle", &paddle(-0.1, wave), &[], "cross the gap");
+    let shallow = wave.replace("ramp = 0.5", "ramp = 0.5, depth = 0.2");
+    assert_found("shallow", &paddle(-0.1, &shallow), &[], &["made for 0.2 m", "wave.depth = 0.5"]);
+    assert_not_found("deep", &paddle(-0.1, wave), &[], "made for");
+    let focus = |time: f64| {
+        let wave =
+            format!("wave = {{ focused = {{ crest = 0.05, peak_period = 1.5, distance = 1.0, time = {time} }} }}");
+        paddle(-0.1, &wave)
+    };
+    assert_found("focus", &focus(50.0), &[], &["comes at 50 s", "until = 50"]);
+    let eta: String =
+        (0..40).map(|i| format!("{},{}\n", 0.1 * f64::from(i), 0.02 * (0.42 * f64::from(i)).sin())).collect();
+    let table = format!("t_s,eta_m\n{eta}");
+    for (distance, found) in [(-1.0, true), (100.0, true), (1.0, false)] {
+        let wave =
+            format!("wave = {{ elevation = {{ file = \"c.csv\", column = \"eta_m\", distance = {distance} }} }}");
+        let (scene, files) = (paddle(-0.1, &wave), [("c.csv", table.as_str())]);
+        match found {
+            true => assert_found("distance", &scene, &files, &["elevation.distance", "reaches"]),
+            false => assert_not_found("distance", &scene, &files, "elevation.distance"),
+        }
+    }
+}
+
+#[test]
+fn a_level_above_its_region_is_refused_and_one_between_two_rows_noted() {
+    let with_level = |level: &str| changed(&[(REGION, &format!("{REGION}\nlevel = {level}"))]);
+    assert_refused("high-level", &with_level("0.6"), &[], &["water.0.level", "0.6 m", "0.5 m"]);
+    assert_not_found("level", &with_level("0.4"), &[], "whole number of dp");
+    assert_found("between", &changed(&[("max = [2.0, 0.5]", "max = [2.0, 0.52]")]), &[], &["reach 0.5 m", "0.52 m"]);
+    let shape = "fill = { shape = { box = { size = [2.0, 0.6] } }, at = { x = 1.0, y = 0.3 } }\nlevel = 0.425";
+    let between = changed(&[(&format!("fill = {{ box = {{ {REGION}"), shape)]);
+    assert_found("between-shape", &between, &[], &["its level is 0.425 m"]);
+}
+
+#[test]
+fn water_that_nothing_carries_or_that_lies_on_other_water_is_found() {
+    let raised = changed(&[("min = [0.0, 0.0]", "min = [0.0, 0.1]")]);
+    assert_found("raised", &raised, &[], &["water.0 begins at 0.1 m", "it falls"]);
+    let stacked = format!("{REGION}\n[[water]]\nfill = {{ box = {{ min = [0.0, 0.1], max = [2.0, 0.6] }} }}");
+    assert_found("stacked", &changed(&[(REGION, &stacked)]), &[], &["water.1 stands to 0.6 m on water.0"]);
+    let beside =
+        "min = [0.0, 0.0], max = [1.0, 0.5] } }\n[[water]]\nfill = { box = { min = [1.0, 0.0], max = [2.0, 0.4] } }";
+    for word in ["falls", "stands to"] {
+        assert_not_found("beside", &changed(&[(REGION, beside)]), &[], word);
+    }
+}
+
+#[test]
+fn a_period_of_another_length_than_the_water_is_found() {
+    let periodic = |sides: &str| {
+        changed(&[
+            ("frames = \"off\"", &format!("frames = \"off\"\nperiodic = {{ x = {sides} }}")),
+            (
+                "shape = { tank = { size = [2.0, 1.0] } }",
+                "shape = { box = { size = [9.0, 0.3] } }\nat = { x = 1.0, y = -0.15 }",
+            ),
+        ])
+    };
+    assert_found("long", &periodic("[0.3, 1.8]"), &[], &["overlaps its periodic image", "periodic.x = [0, 2]"]);
+    assert_found("short", &periodic("[-0.5, 2.5]"), &[], &["does not meet its periodic image"]);
+    assert_not_found("period", &periodic("[0.0, 2.0]"), &[], "periodic image");
+}
+
+#[test]
+fn a_draft_from_another_level_or_under_another_gravity_is_found() {
+    let lock =
+        "min = [0.0, 0.0], max = [0.5, 0.8] } }\n[[water]]\nfill = { box = { min = [0.6, 0.0], max = [2.0, 0.5] } }";
+    let wall = "[[solid]]\nname = \"lock\"\nfixed = true\nshape = { box = { size = [0.1, 1.0] } }\nat = { x = 0.55, bottom = 0.0 }\n";
+    let scene = changed(&[(REGION, lock)]) + wall;
+    assert_found("lock", &scene, &[], &["draft of \"box\"", "0.8 m", "stands at 0.5 m"]);
+    let given = scene.replace("x = 1.0, draft = \"equilibrium\"", "x = 1.4, bottom = 0.35");
+    assert_not_found("given", &given, &[], "is measured from");
+    for (gravity, name) in [("[9.81, 0.0]", "sideways"), ("[0.0, 9.81]", "upwards")] {
+        let turned = changed(&[("frames = \"off\"", &format!("frames = \"off\"\ngravity = {gravity}"))]);
+        assert_found(name, &turned, &[], &["gravity is", "downwards"]);
+    }
+}
+
+#[test]
+fn a_carriage_that_starts_at_speed_with_the_water_is_noted() {
+    let towed = |water: &str| {
+        changed(&[
+            (
+                "frames = \"off\"",
+                "frames = \"off\"\ntowed = { along = \"x\", velocity = 0.3 }\nperiodic = { x = [0.0, 2.0] }",
+            ),
+            (REGION, &format!("{REGION}\n{water}")),
+            (
+                "shape = { tank = { size = [2.0, 1.0] } }",
+                "shape = { box = { size = [9.0, 0.3] } }\nat = { x = 1.0, y = -0.15 }",
+            ),
+        ])
+    };
+    assert_found("along", &towed(""), &[], &["carriage starts at 0.3 m/s", "velocity of -0.3"]);
+    assert_not_found("at-rest", &towed("velocity = [-0.3, 0.0]"), &[], "carriage starts");
+}
+
+#[test]
+fn a_statistic_after_the_run_is_found_and_a_crate_on_a_raft_does_not_capsize() {
+    let statistic = "[[probe]]\nmotion = \"box\"\n[[statistic]]\nwaves = \"box\"\nfrom = 20.0\n";
+    assert_found("statistic", &scene(REST, statistic), &[], &["statistic", "20 s", "ends at 2 s"]);
+    // The box floats with half its height of 0.3 m above the level of 0.5 m. A square crate of half the density of water
+    // has a negative metacentric height, but it stands on the box.
+    let on_top = "[[solid]]\nname = \"crate\"\nshape = { box = { size = [0.15, 0.15] } }\nat = { x = 1.0, bottom = 0.65 }\n\
+                  free = { density = 500.0 }\n";
+    assert_not_found("crate", &scene(REST, on_top), &[], "\"crate\" will turn over");
+    let afloat = on_top.replace("x = 1.0, bottom = 0.65", "x = 0.3, draft = \"equilibrium\"");
+    assert_found("afloat", &scene(REST, &afloat), &[], &["\"crate\" will turn over"]);
+}
