@@ -396,26 +396,21 @@ fn the_summary_lists_every_page() {
 }
 
 #[test]
-fn the_table_of_the_validation_equals_its_results() {
+fn the_list_of_the_validation_equals_its_results() {
     let results: toml::Table = toml::from_str(&read("docs/explanation/validation/results.toml")).unwrap();
-    let mut table = String::from("| case | reference | quantity | error | bound |\n|---|---|---|---|---|\n");
-    let mut previous: Vec<String> = Vec::new();
+    let (mut list, mut previous) = (String::new(), String::new());
     for result in results["result"].as_array().unwrap() {
-        let text = |key: &str| result[key].as_str().unwrap().to_string();
-        let mut cells: Vec<String> = ["case", "reference", "quantity", "error", "bound"].map(text).into();
-        if !result["pass"].as_bool().unwrap() {
-            cells[3] = format!("**{}**", cells[3]);
-        }
-        // A case with its reference stands in its first row only.
-        let case = cells[..2].to_vec();
-        if case == previous {
-            cells[..2].iter_mut().for_each(String::clear);
-        }
+        let text = |key: &str| result[key].as_str().unwrap();
+        let case = format!("- `{}`, {}", text("case"), text("reference"));
+        let error = if result["pass"].as_bool().unwrap() { text("error").into() } else { format!("**{}**", text("error")) };
+        let bound = if text("bound") == "–" { String::new() } else { format!(" ({})", text("bound")) };
+        // A case has its figures in one item.
+        let before = if case == previous { ";".into() } else { format!("\n{case}:") };
+        list += &format!("{before} {}: {error}{bound}", text("quantity"));
         previous = case;
-        table += &format!("| {} |\n", cells.join(" | "));
     }
     let page = read("docs/explanation/validation.md");
     let shown =
-        page.split("<!-- table: results.toml -->\n").nth(1).and_then(|rest| rest.split("<!-- end of table -->").next());
-    assert_eq!(shown.unwrap().trim(), table.trim(), "docs/explanation/validation.md");
+        page.split("<!-- list: results.toml -->\n").nth(1).and_then(|rest| rest.split("<!-- end of list -->").next());
+    assert_eq!(shown.unwrap().trim(), list.trim(), "docs/explanation/validation.md");
 }
