@@ -356,12 +356,13 @@ const MEASURED: [&str; 20] = [
     "budget = true",
 ];
 
-/// The name of a column in the reference: without the place, and without kind or unit where the page combines names.
+/// The name of a column in the reference: with the unit of 3-D, without the place, and without kind or unit where the page combines names.
 fn documented(table: &str, column: &str) -> String {
+    let column = column.strip_suffix("_per_m").unwrap_or(column);
     let unit = column.rsplit('_').next().unwrap();
     let column = column.split_once("_at_").map_or(column.to_string(), |(name, _)| format!("{name}_{unit}"));
     match table {
-        "energy" | "budget" => column.trim_end_matches("_J_per_m").to_string(),
+        "energy" | "budget" => column.trim_end_matches("_J").to_string(),
         _ if table.ends_with("_balance") && column != "t_s" => {
             column.split_once('_').map_or(column.clone(), |(_, load)| load.to_string())
         }
