@@ -402,7 +402,8 @@ fn the_list_of_the_validation_equals_its_results() {
     for result in results["result"].as_array().unwrap() {
         let text = |key: &str| result[key].as_str().unwrap();
         let case = format!("- `{}`, {}", text("case"), text("reference"));
-        let error = if result["pass"].as_bool().unwrap() { text("error").into() } else { format!("**{}**", text("error")) };
+        let error =
+            if result["pass"].as_bool().unwrap() { text("error").into() } else { format!("**{}**", text("error")) };
         let bound = if text("bound") == "–" { String::new() } else { format!(" ({})", text("bound")) };
         // A case has its figures in one item.
         let before = if case == previous { ";".into() } else { format!("\n{case}:") };
