@@ -33,7 +33,7 @@ pub struct Plot {
     /// The page that shows it, relative to `docs/`; by default how-to/choosing-parameters.md.
     #[serde(default = "choosing")]
     pub page: String,
-    /// The page that holds its figures, relative to `docs/`.
+    /// The page or table that holds its figures, relative to `docs/`.
     pub source: String,
     /// Titles of its axes.
     pub axes: [String; 2],

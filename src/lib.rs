@@ -109,8 +109,7 @@ pub use error::{Error, Result};
 #[path = "../tests/house.rs"]
 mod house;
 
-/// The programs of the documents, compiled and run as tests.
+/// The programs of a document, compiled and run as tests.
 #[cfg(doctest)]
 #[doc = include_str!("../docs/how-to/use-from-rust.md")]
-#[doc = include_str!("../docs/reference/scene.md")]
 pub struct DocumentedPrograms;

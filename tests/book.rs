@@ -153,17 +153,18 @@ fn parts(page: &str) -> Vec<Part> {
 }
 
 #[test]
-fn every_complete_scene_of_a_document_runs() {
+fn every_complete_scene_of_a_document_and_of_a_measurement_runs() {
     let folder = empty_folder("scenes");
     let mut count = 0;
-    for page in documents() {
-        for scene in scenes(&page) {
-            count += 1;
-            let file = folder.join(format!("scene-{count}.toml"));
-            fs::write(&file, scene).unwrap();
-            let out = format!("run-{count}");
-            pontoon(&["run", file.to_str().unwrap(), "--until", "0.02", "--out", &out, "--quiet"], &folder);
-        }
+    let files = fs::read_dir(root().join("docs/measurements")).unwrap().flatten().map(|entry| entry.path());
+    let measured = files.filter(|file| file.extension().is_some_and(|end| end == "toml"));
+    let measured = measured.map(|file| fs::read_to_string(file).unwrap());
+    for scene in documents().iter().flat_map(|page| scenes(page)).chain(measured) {
+        count += 1;
+        let file = folder.join(format!("scene-{count}.toml"));
+        fs::write(&file, scene).unwrap();
+        let out = format!("run-{count}");
+        pontoon(&["run", file.to_str().unwrap(), "--until", "0.02", "--out", &out, "--quiet"], &folder);
     }
     assert!(count >= 7, "{count} scenes were found");
     fs::remove_dir_all(folder).unwrap();
@@ -395,20 +396,22 @@ fn the_summary_lists_every_page() {
 }
 
 #[test]
-fn the_table_of_the_validation_equals_its_results() {
+fn the_list_of_the_validation_equals_its_results() {
     let results: toml::Table = toml::from_str(&read("docs/explanation/validation/results.toml")).unwrap();
-    let mut table = String::from(
-        "| case | reference | quantity | error | bound | pass | cost | commit |\n|---|---|---|---|---|---|---|---|\n",
-    );
+    let (mut list, mut previous) = (String::new(), String::new());
     for result in results["result"].as_array().unwrap() {
-        let text = |key: &str| result[key].as_str().unwrap().to_string();
-        let pass = if result["pass"].as_bool().unwrap() { "yes" } else { "**no**" };
-        let mut cells: Vec<String> = ["case", "reference", "quantity", "error", "bound"].map(text).into();
-        cells.extend([pass.into(), text("cost"), text("commit")]);
-        table += &format!("| {} |\n", cells.join(" | "));
+        let text = |key: &str| result[key].as_str().unwrap();
+        let case = format!("- `{}`, {}", text("case"), text("reference"));
+        let error =
+            if result["pass"].as_bool().unwrap() { text("error").into() } else { format!("**{}**", text("error")) };
+        let bound = if text("bound") == "–" { String::new() } else { format!(" ({})", text("bound")) };
+        // A case has its figures in one item.
+        let before = if case == previous { ";".into() } else { format!("\n{case}:") };
+        list += &format!("{before} {}: {error}{bound}", text("quantity"));
+        previous = case;
     }
     let page = read("docs/explanation/validation.md");
     let shown =
-        page.split("<!-- table: results.toml -->\n").nth(1).and_then(|rest| rest.split("<!-- end of table -->").next());
-    assert_eq!(shown.unwrap().trim(), table.trim(), "docs/explanation/validation.md");
+        page.split("<!-- list: results.toml -->\n").nth(1).and_then(|rest| rest.split("<!-- end of list -->").next());
+    assert_eq!(shown.unwrap().trim(), list.trim(), "docs/explanation/validation.md");
 }

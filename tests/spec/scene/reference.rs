@@ -28,11 +28,6 @@ pub fn code_names(text: &str) -> BTreeSet<&str> {
     code(text).flat_map(|code| code.split(|c: char| !c.is_alphanumeric() && c != '_')).collect()
 }
 
-/// The scene reference without its Rust program.
-fn scene_page() -> String {
-    page("scene.md").split("## From Rust").next().unwrap().to_string()
-}
-
 /// The names in a piece of code outside quotation marks.
 fn unquoted_names(code: &str) -> Vec<&str> {
     let open = code.split('"').step_by(2);
@@ -40,60 +35,73 @@ fn unquoted_names(code: &str) -> Vec<&str> {
     names.filter(|name| name.starts_with(|c: char| c.is_alphabetic())).collect()
 }
 
-/// A table row of the scene reference.
-struct Row {
+/// An item of the scene reference that describes keys: "- `key`, `key` (unit; default): meaning", or without the bracket.
+struct Item {
     /// Heading of its section.
     section: String,
     /// Its first key.
     key: String,
-    /// Its cells: keys, unit, default, meaning.
-    cells: Vec<String>,
+    /// All its keys.
+    names: Vec<String>,
+    /// Its unit and default: the text in the bracket.
+    default: String,
+    /// The whole item.
+    line: String,
 }
 
-/// The table rows that describe keys.
-fn rows() -> Vec<Row> {
-    let (mut rows, mut section) = (Vec::new(), String::new());
-    for line in scene_page().lines() {
+impl Item {
+    /// The item of a line, if it describes keys.
+    fn of(line: &str, section: &str) -> Option<Self> {
+        let item = line.trim_start().strip_prefix("- ")?;
+        let end = [" (", "`: "].iter().filter_map(|end| item.find(end)).min().map_or(item.len(), |end| end + 1);
+        let keys = item[..end].trim().strip_prefix('`')?.strip_suffix('`')?;
+        if !keys.split("`, `").all(|key| !key.contains(['`', ':'])) {
+            return None;
+        }
+        // Without a bracket the code may be a choice, as in `dry = true`.
+        let is_key = |key: &str| key.chars().all(|c| c.is_alphanumeric() || c == '_' || c == '.');
+        let bracket = item[end..].trim_start().strip_prefix('(');
+        if bracket.is_none() && !keys.split("`, `").all(is_key) {
+            return None;
+        }
+        let mut depth = 1;
+        let inside = |c: &char| {
+            depth += i32::from(*c == '(') - i32::from(*c == ')');
+            depth > 0
+        };
+        let first = keys.split(|c: char| !is_key(&c.to_string())).next()?;
+        Some(Self {
+            section: section.into(),
+            key: first.into(),
+            names: unquoted_names(&keys.replace('`', " ")).into_iter().map(String::from).collect(),
+            default: bracket.unwrap_or_default().chars().take_while(inside).collect(),
+            line: item.into(),
+        })
+    }
+}
+
+/// The items that describe keys.
+fn items() -> Vec<Item> {
+    let (mut items, mut section) = (Vec::new(), String::new());
+    for line in page("scene.md").lines() {
         if let Some(heading) = line.strip_prefix("## ") {
             section = heading.to_string();
         }
-        if line.starts_with("| `") {
-            let cells: Vec<String> = line.trim_matches('|').split('|').map(|cell| cell.trim().to_string()).collect();
-            let first = code(&cells[0]).next().unwrap();
-            let key = first.split(|c: char| !c.is_alphanumeric() && c != '_' && c != '.').next().unwrap().to_string();
-            rows.push(Row { section: section.clone(), key, cells });
-        }
+        items.extend(Item::of(line, &section));
     }
-    rows
-}
-
-/// The keys of the list items of the form "- `key`, `key` (unit; default): meaning".
-fn listed_keys() -> Vec<String> {
-    let page = scene_page();
-    let items =
-        page.lines().filter_map(|line| line.trim_start().strip_prefix("- `")?.split_once(" (").map(|(keys, _)| keys));
-    let are_keys = |keys: &&str| keys.split("`, `").all(|key| !key.trim_end_matches('`').contains(['`', ':']));
     items
-        .filter(are_keys)
-        .flat_map(|keys| unquoted_names(&keys.replace('`', " ")).into_iter().map(String::from).collect::<Vec<_>>())
-        .collect()
 }
 
 #[test]
 fn every_key_of_the_scene_reference_is_a_key_of_a_scene() {
     let mut keys = BTreeSet::new();
     collect_names(&schema(), &mut keys);
-    let rows = rows();
-    assert!(rows.len() > 120, "{} rows were found", rows.len());
-    for row in rows {
-        for name in code(&row.cells[0]).flat_map(unquoted_names) {
-            assert!(keys.contains(name), "{name}, in section {}, is not a key of a scene", row.section);
+    let items = items();
+    assert!(items.len() > 200, "{} items were found", items.len());
+    for item in items {
+        for name in item.names {
+            assert!(keys.contains(name.as_str()), "{name}, in section {}, is not a key of a scene", item.section);
         }
-    }
-    let listed = listed_keys();
-    assert!(listed.len() > 80, "{} listed keys were found", listed.len());
-    for key in listed {
-        assert!(keys.contains(key.as_str()), "{key}, in a list, is not a key of a scene");
     }
 }
 
@@ -135,7 +143,7 @@ motion = "buoy"
 /// A wave for `WAVE` in [`SCENE`].
 const REGULAR: &str = "regular = { height = 0.06, period = 1.2 }";
 
-/// Section of the page, prefix of its keys in the list of values, whether each of these keys needs a row.
+/// Section of the page, prefix of its keys in the list of values, whether each of these keys needs an item.
 const SECTIONS: [(&str, &str, bool); 8] = [
     ("`[model]`", "model.", true),
     ("`[time]`", "time.", true),
@@ -165,7 +173,7 @@ fn numbers(text: &str) -> Vec<f64> {
 
 #[test]
 fn every_default_of_the_scene_reference_is_the_default_of_a_scene() {
-    let (rows, mut count) = (rows(), 0);
+    let (items, mut count) = (items(), 0);
     for wave in [REGULAR, "jonswap = { height = 0.06, peak_period = 1.2 }", "solitary = { height = 0.06 }"] {
         let scene = Scene::parse(&SCENE.replace("WAVE", wave), Path::new(""), &[]).unwrap();
         for value in scene.resolve().unwrap() {
@@ -174,15 +182,15 @@ fn every_default_of_the_scene_reference_is_the_default_of_a_scene() {
             }
             for (section, prefix, complete) in SECTIONS {
                 let Some(key) = value.key.strip_prefix(prefix) else { continue };
-                let matches = |row: &&Row| {
-                    row.section.starts_with(section) && (row.key == key || key.starts_with(&format!("{}.", row.key)))
+                let matches = |item: &&Item| {
+                    let is_key = item.key == key || key.starts_with(&format!("{}.", item.key));
+                    item.section.starts_with(section) && is_key
                 };
-                let Some(row) = rows.iter().find(matches) else {
-                    assert!(!complete, "{} has no row in section {section}", value.key);
+                let Some(Item { line, default, .. }) = items.iter().find(matches) else {
+                    assert!(!complete, "{} has no item in section {section}", value.key);
                     continue;
                 };
                 count += 1;
-                let (line, default) = (row.cells.join(" | "), &row.cells[2]);
                 let given = numbers(default);
                 let same_numbers = numbers(&value.value).iter().all(|x| given.contains(x));
                 let same_names =
@@ -197,7 +205,7 @@ fn every_default_of_the_scene_reference_is_the_default_of_a_scene() {
 
 #[test]
 fn every_fragment_of_the_scene_reference_is_read() {
-    let page = scene_page();
+    let page = page("scene.md");
     let blocks = page.split("```toml\n").skip(1).map(|rest| rest.split("```").next().unwrap());
     // Each fragment begins with `driven` at the start of a line, or is a `free` of its own.
     let (free, driven): (Vec<&str>, Vec<&str>) = blocks.partition(|block| block.starts_with("free"));
@@ -348,12 +356,13 @@ const MEASURED: [&str; 20] = [
     "budget = true",
 ];
 
-/// The name of a column in the reference: without the place, and without kind or unit where the page combines names.
+/// The name of a column in the reference: with the unit of 3-D, without the place, and without kind or unit where the page combines names.
 fn documented(table: &str, column: &str) -> String {
+    let column = column.strip_suffix("_per_m").unwrap_or(column);
     let unit = column.rsplit('_').next().unwrap();
     let column = column.split_once("_at_").map_or(column.to_string(), |(name, _)| format!("{name}_{unit}"));
     match table {
-        "energy" | "budget" => column.trim_end_matches("_J_per_m").to_string(),
+        "energy" | "budget" => column.trim_end_matches("_J").to_string(),
         _ if table.ends_with("_balance") && column != "t_s" => {
             column.split_once('_').map_or(column.clone(), |(_, load)| load.to_string())
         }
