@@ -9,6 +9,8 @@ mod neighbours;
 mod open_boundaries;
 mod open_flows;
 mod periodic;
+mod refused_faces;
+mod seas_through_faces;
 mod simd;
 mod still_water;
 mod symmetry;
