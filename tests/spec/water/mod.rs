@@ -1,6 +1,7 @@
 //! The water: equations, pair loop, neighbours, time integration, and water at rest.
 
 mod beside_reference;
+mod faces_in_3d;
 mod gradient_correction;
 mod gravity;
 mod kernels;
