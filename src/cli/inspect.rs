@@ -218,8 +218,9 @@ fn face_wave_facts(wave: &FaceWave) -> [(&'static str, String); 3] {
         [wave.celerity_mps, wave.group_mps, wave.orbital_mps, wave.ramp_s].map(three_digits);
     let current = three_digits(wave.current_mps.abs());
     let sense = if wave.current_mps < 0.0 { "against them" } else { "with them" };
+    let kind = if wave.components == 1 { "" } else { "sea, significant and at the peak: " };
     [
-        ("waves", format!("{height} m high, {high} dp, period {period} s, {length} m long, {long} dp")),
+        ("waves", format!("{kind}{height} m high, {high} dp, period {period} s, {length} m long, {long} dp")),
         ("", format!("kd {kd}, {depth} m deep; crests {crests} m/s, energy {energy} m/s")),
         (
             "",

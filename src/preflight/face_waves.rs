@@ -5,21 +5,18 @@ use std::f64::consts::TAU;
 use serde::Serialize;
 
 use super::{Finding, PreflightContext, generated_waves::check_resolution};
-use crate::{
-    system::OpenBoundary,
-    wavemaker::{IncidentWaves, LinearWave},
-};
+use crate::wavemaker::period_of_length;
 
-/// A regular wave that enters through a face on a current.
+/// Waves that enter through a face on a current: a regular wave, or the one of the significant height and the peak period of a sea.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FaceWave {
     /// Name of the face.
     pub face: String,
-    /// Height, m.
+    /// Height, m; the significant one of an irregular sea.
     pub height_m: f64,
     /// The same height over dp.
     pub height_dp: f64,
-    /// Period at a fixed place, s.
+    /// Period at a fixed place, s; that of the peak of an irregular sea.
     pub period_s: f64,
     /// Length on the current, m.
     pub length_m: f64,
@@ -31,6 +28,8 @@ pub struct FaceWave {
     pub kd: f64,
     /// Current along the waves, m/s; negative against them.
     pub current_mps: f64,
+    /// Number of components: 1 of a regular wave.
+    pub components: usize,
     /// Greatest velocity of the water by the waves alone, m/s; below the current.
     pub orbital_mps: f64,
     /// Speed of the crests at a fixed place, m/s.
@@ -45,9 +44,8 @@ pub struct FaceWave {
 pub(super) fn face_waves<const D: usize>(context: &PreflightContext<D>, findings: &mut Vec<Finding>) -> Vec<FaceWave> {
     let dp = context.dp();
     let faces = context.system.open_boundaries().iter().filter_map(|face| Some((face, face.waves.as_ref()?)));
-    let waves = faces.flat_map(|(face, waves)| waves.regular_trains().map(move |train| (face, waves, train)));
-    let wave = |(face, waves, (height_m, omega, in_water)): (_, &IncidentWaves, (f64, f64, LinearWave))| {
-        let (face, current_mps): (&OpenBoundary<D>, f64) = (face, waves.current());
+    let waves = faces.map(|(face, waves)| {
+        let ((height_m, omega, in_water), current_mps) = (waves.main_train(), waves.current());
         FaceWave {
             face: face.name.clone(),
             height_m,
@@ -58,15 +56,18 @@ pub(super) fn face_waves<const D: usize>(context: &PreflightContext<D>, findings
             depth_m: in_water.depth,
             kd: in_water.kd(),
             current_mps,
+            components: waves.component_count(),
             orbital_mps: waves.orbital_speed(),
             celerity_mps: in_water.celerity() + current_mps,
             group_mps: in_water.group_velocity() + current_mps,
             ramp_s: waves.ramp(),
         }
-    };
-    let waves: Vec<FaceWave> = waves.map(wave).collect();
-    for FaceWave { face, height_m, height_dp, length_m, length_dp, .. } in &waves {
-        check_resolution((face, "lets in"), (*height_m, *height_dp), (*length_m, *length_dp), findings);
+    });
+    let waves: Vec<FaceWave> = waves.collect();
+    for wave in &waves {
+        let (height, length) = ((wave.height_m, wave.height_dp), (wave.length_m, wave.length_dp));
+        let period = |length: f64| period_of_length(length, wave.depth_m, wave.current_mps, context.g);
+        check_resolution((&wave.face, "lets in"), height, length, &period, findings);
     }
     waves
 }

@@ -9,7 +9,7 @@ use super::{
     wavemaker_site::{WavemakerSite, is_wall},
 };
 use crate::{
-    math::format::{three_digits, two_digits_down},
+    math::format::{three_digits, two_digits_down, two_digits_up},
     scene::world_bounds,
     solid::{PrescribedMotion, Role, Solid},
     wavemaker::{DepthRegime, LinearWave, Paddle, TheoryRegion},
@@ -74,19 +74,23 @@ pub struct GeneratedWave {
     pub back_s: f64,
 }
 
-/// Adds findings about waves that dp does not resolve: what `does` with them, their height and their length, each in m and over dp.
+/// Adds findings about waves that dp does not resolve: what `does` with them, their height and their length, each in m and over dp. The period
+/// of waves of a length (m) is part of the remedy, if the current along them lets them pass.
 pub(super) fn check_resolution(
     (name, does): (&str, &str),
     height: (f64, f64),
     length: (f64, f64),
+    period: &dyn Fn(f64) -> Option<f64>,
     findings: &mut Vec<Finding>,
 ) {
     let mut check = |topic, [about, sense, loss]: [&str; 3], (size, size_dp): (f64, f64), least: f64| {
         if size_dp < least {
-            let [size_m, size_dp] = [size, size_dp].map(three_digits);
-            let waves = format!("\"{name}\" {does} waves {about}{size_m} m {sense}, {size_dp} dp");
+            let size_m = three_digits(size);
+            let waves = format!("\"{name}\" {does} waves {about}{size_m} m {sense}, {} dp", three_digits(size_dp));
             let what = format!("{waves}; with less than {least} dp they {loss}");
-            findings.push(Finding::warning(topic, what, format!("dp = {}", two_digits_down(size / least))));
+            let period = (least == SHORTEST).then(|| period(least * size / size_dp)).flatten();
+            let other = period.map_or(String::new(), |period| format!(", or waves of {} s", two_digits_up(period)));
+            findings.push(Finding::warning(topic, what, format!("dp = {}{other}", two_digits_down(size / least))));
         }
     };
     check("low_waves", ["about ", "high", "lose height"], height, LEAST);
@@ -113,7 +117,7 @@ impl<const D: usize> PreflightContext<'_, D> {
             }
             let Some((wave, stand)) = self.generated_wave(solid, motion) else { continue };
             let (height, length) = ((wave.height_m, wave.height_dp), (wave.length_m, wave.length_dp));
-            check_resolution((&wave.solid, "makes"), height, length, findings);
+            check_resolution((&wave.solid, "makes"), height, length, &|_| None, findings);
             self.misplaced_zones(&wave, &stand, findings);
             if let Some(law) = motion.wave() {
                 self.check_wave(&wave, solid, law, findings);

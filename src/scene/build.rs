@@ -281,8 +281,9 @@ impl Scene {
         model: &Model,
     ) -> Result<(Vec<OpenBoundary<D>>, Vec<WaterBody<D>>)> {
         let length = buffer_length(model);
-        let build =
-            |(key, face, flow): (String, &OpenBoundaryConfig, FaceFlow)| face.build(ctx, (&key, flow), water, length);
+        let build = |(key, face, flow): (String, &OpenBoundaryConfig, FaceFlow)| {
+            face.build(ctx, (&key, flow), water, (length, self.until))
+        };
         Ok(self.open_faces().map(build).collect::<Result<Vec<_>>>()?.into_iter().unzip())
     }
 

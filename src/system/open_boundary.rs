@@ -17,18 +17,20 @@
 //! The second is the relation of velocity and pressure in a linear wave that moves out, at every depth @dean1991; for long waves it is
 //! that of @flather1976. Waves that enter add their velocity to U and their pressure to x_rest.
 
+mod check;
 mod water_beside;
+
+pub(crate) use check::check;
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::{Fluid, FluidDomain, Setup, System, periodic::WIDTH, reflected};
+use super::{Fluid, FluidDomain, System, periodic::WIDTH, reflected};
 use crate::{
-    error::{Error, ErrorCode, Result},
     math::{Bounds, Pose, Vector, expression::UnsteadyField},
     model::Model,
     particles::Particles,
-    solid::{Role, SolidSpec, TimeFunction},
+    solid::{Role, TimeFunction},
     wavemaker::{IncidentWaves, Orbit},
 };
 
@@ -40,15 +42,6 @@ const BESIDE: f64 = 0.05;
 
 /// Time in which the velocity of an absorbing face follows the water, over h/c: a wave of speed c moves by that part of h.
 const RESPONSE: f64 = 0.5;
-
-/// Greatest speed through a face over c₀: the density of water that stops there changes by two per cent.
-const FASTEST: f64 = 0.2;
-
-/// Speed through a face over the c₀ that a message proposes: the usual ratio in weakly compressible water @monaghan1994.
-const SOUND: f64 = 0.1;
-
-/// Number of parts of a run at whose ends the speed through a face is compared with that of sound.
-const SPEED_SAMPLES: u32 = 100;
 
 /// A vertical face that bounds the water, and the flow through it.
 ///
@@ -500,105 +493,4 @@ pub(crate) fn face_reached<'a, const D: usize>(
     }
     let (bounds, length) = (spec.shape.bounds_at(pose), buffer_length(&system.model));
     faces.iter().find(|face| face.has_end_in_buffer(&spec.role, &bounds, length, system.model.dp))
-}
-
-/// Refuses open boundary number `i` of a setup if it cannot be in a run until the time `until` (s).
-///
-/// # Errors
-/// `Scene` if the face is not vertical, lies across a periodic side or a symmetry plane, has no water on one of its sides, is too near
-/// to the end of a solid, or lets water pass faster than the valid range of the water allows.
-pub(crate) fn check<const D: usize>(setup: &Setup<D>, i: usize, until: f64) -> Result<()> {
-    let (face, length) = (&setup.open_boundaries[i], setup.buffer_length());
-    let (name, axis, at) = (&face.name, face.axis, face.at);
-    if axis + 1 >= D || !at.is_finite() || setup.open_boundaries.len() > usize::from(u8::MAX) {
-        let what = format!("open boundary {name:?} needs a finite coordinate along a horizontal axis");
-        return Err(Error::scene(what));
-    }
-    let along = ["x", "y"][axis];
-    if setup.periodic[axis].is_some() || setup.symmetry[axis].is_some() {
-        let what = format!("open boundary {name:?} lies across {along}, which is periodic or has a symmetry plane");
-        let help =
-            format!("leave  periodic.{along}  and  symmetry.{along}  out; [current] drives a flow along a period");
-        return Err(Error::scene(what).with_code(ErrorCode::ConflictingKeys).help(help));
-    }
-    let beyond: Vec<f64> = setup.water.iter().map(|r| face.beyond(r)).collect();
-    let farthest = beyond.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    if !(farthest > 0.0 && beyond.iter().any(|beyond| *beyond < 0.0)) {
-        let what = format!("open boundary {name:?} at {along} = {at} has no water on both of its sides");
-        let help = match solid_at_face(setup, face) {
-            Some(solid) => {
-                let bounds = solid.shape.bounds_at(&solid.initial_kinematics().pose);
-                let [from, to] = [bounds.min[axis], bounds.max[axis]];
-                format!("solid {:?} is there, from {along} = {from:.6} to {to:.6}: move the face out of it", solid.name)
-            }
-            None => "the water ends at the face, and neither it nor the buffer beyond it lies in a solid".into(),
-        };
-        return Err(Error::scene(what).help(help));
-    }
-    if farthest > length {
-        let end = at + face.outward() * farthest;
-        let what = format!("water reaches from open boundary {name:?} at {along} = {at} to {end:.6}");
-        let help = format!("the buffer beyond a face is {length:.6} m long: move the face, or end the water there");
-        return Err(Error::scene(what).help(help));
-    }
-    for solid in &setup.solids {
-        let bounds = solid.shape.bounds_at(&solid.initial_kinematics().pose);
-        if !face.has_end_in_buffer(&solid.role, &bounds, length, setup.model.dp) {
-            continue;
-        }
-        let end = at + face.outward() * length;
-        let what = format!("solid {:?} ends in the buffer of open boundary {name:?}", solid.name);
-        let help = match solid.role {
-            Role::Free(_) => format!("keep it on the water's side of {along} = {at}"),
-            _ => format!("let it reach to {along} = {end:.6} or further, or end at {along} = {at}"),
-        };
-        return Err(Error::scene(what).help(help));
-    }
-    let orbital = face.waves.as_ref().map_or(0.0, IncidentWaves::orbital_speed);
-    let most = FASTEST * setup.model.c0;
-    let in_buffer: Vec<_> = setup.water.iter().zip(&beyond).filter(|(_, beyond)| **beyond > 0.0).collect();
-    let samples = if face.steady_current().is_some() { 0 } else { SPEED_SAMPLES };
-    for t in (0..=samples).map(|k| until * f64::from(k) / f64::from(SPEED_SAMPLES)) {
-        let speeds = in_buffer.iter().filter_map(|(r, _)| face.outward_velocity(r, t)).map(f64::abs);
-        let fastest = speeds.fold(0.0, nan_max) + orbital;
-        if fastest.is_nan() || fastest > most {
-            let what = format!(
-                "water passes open boundary {name:?} at {fastest:.4} m/s at t = {t:.4} s; the speed of sound allows {most:.4}"
-            );
-            let help = format!("write  model.c0 = {:.3}  or more", fastest / SOUND);
-            return Err(Error::scene(what).with_code(ErrorCode::OutOfRange).help(help));
-        }
-    }
-    if let Some(waves) = &face.waves
-        && (face.steady_current() != Some(waves.current()) || face.level.is_none())
-    {
-        let what = format!("the waves of open boundary {name:?} are on a current of {} m/s", waves.current());
-        let help = "give the face that velocity into the water, the same everywhere at all times, and a level";
-        return Err(Error::scene(what).with_code(ErrorCode::ConflictingKeys).help(help));
-    }
-    match face.absorbed_speed {
-        Some(speed) if !(speed > 0.0 && speed.is_finite()) => {
-            Err(Error::scene(format!("open boundary {name:?} absorbs waves of a positive speed, not {speed}")))
-        }
-        _ => Ok(()),
-    }
-}
-
-/// The solid that takes the place of the water at `face`, half a dp to either side of it.
-fn solid_at_face<'a, const D: usize>(setup: &'a Setup<D>, face: &OpenBoundary<D>) -> Option<&'a SolidSpec<D>> {
-    let nearest = setup.water.iter().min_by(|a, b| face.beyond(a).abs().total_cmp(&face.beyond(b).abs()))?;
-    let beside = [-0.5, 0.5].map(|rows| {
-        let mut x = *nearest;
-        x[face.axis] = face.at + rows * setup.model.dp;
-        x
-    });
-    let holds = |solid: &&SolidSpec<D>, x: &Vector<D>| {
-        solid.shape.signed_distance(&solid.initial_kinematics().pose.local(x)) < 0.0
-    };
-    beside.iter().find_map(|x| setup.solids.iter().find(|solid| holds(solid, x)))
-}
-
-/// The greater of two numbers, or NaN if one is.
-fn nan_max(a: f64, b: f64) -> f64 {
-    if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) }
 }

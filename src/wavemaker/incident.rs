@@ -9,11 +9,27 @@
 
 use std::f64::consts::TAU;
 
-use super::{LinearWave, WaveComponent, smooth, wave_number};
-use crate::error::{Error, ErrorCode, Result};
+use super::{LinearWave, WaveComponent, WaveSpectrum, counted, irregular_components, smooth, wave_number};
+use crate::{
+    error::{Error, ErrorCode, Result},
+    math::format::{two_digits_down, two_digits_up},
+};
 
 /// Steps of the iteration for the place at rest: each reduces the error by the slope of the waves.
 const ITERATIONS: usize = 8;
+
+/// Change of the place at rest, over the depth, at which the iteration for irregular waves ends.
+const CLOSE: f64 = 1e-6;
+
+/// Samples of the motion of an irregular sea in the period of its shortest component.
+const SAMPLES: f64 = 16.0;
+
+/// Most components that are summed for all samples together, some seconds. A longer run has fewer samples in a period; 1000 waves
+/// of 40 components have all.
+const SUMMED_MAX: f64 = 4e7;
+
+/// Factor on the greatest sample: between samples, and beside the face, the water moves a little further and faster.
+const MARGIN: f64 = 1.05;
 
 /// Linear waves that move along an axis of their own, on a current along it.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,6 +38,27 @@ pub struct IncidentWaves {
     current: f64,
     ramp: f64,
     trains: Vec<Train>,
+    /// Height (significant of an irregular sea, m), frequency (of the peak, rad/s) and that wave in the frame of the current.
+    main: (f64, f64, LinearWave),
+    /// The greatest displacement along the axis, m.
+    excursion: f64,
+    /// The greatest velocity relative to the current, m/s.
+    orbital_speed: f64,
+}
+
+/// The water at a face through which a sea enters.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct WaterAtFace {
+    /// Depth, m.
+    pub depth: f64,
+    /// Current along the waves, m/s; negative against them.
+    pub current: f64,
+    /// Acceleration of gravity, m/s².
+    pub g: f64,
+    /// Duration of the rise to the full height, s; two periods of the peak if there is none.
+    pub ramp: Option<f64>,
+    /// End of the run, s: until then the water may not move against the current.
+    pub until: f64,
 }
 
 /// A component at a fixed place, and the same wave in the frame that moves with the current.
@@ -51,6 +88,17 @@ impl IncidentWaves {
     /// `Scene` if a number is no positive one, the current stops waves of this period, the waves would break, or water would move against
     /// the current.
     pub fn regular(height: f64, period: f64, phase: f64, depth: f64, current: f64, g: f64, ramp: f64) -> Result<Self> {
+        Self::unchecked(height, period, phase, (depth, current, g), ramp)?.along_current()
+    }
+
+    /// The same wave, which may move water against the current.
+    fn unchecked(
+        height: f64,
+        period: f64,
+        phase: f64,
+        (depth, current, g): (f64, f64, f64),
+        ramp: f64,
+    ) -> Result<Self> {
         let positive = |x: f64| x > 0.0 && x.is_finite();
         if !(positive(height) && positive(period) && positive(depth) && positive(g) && current.is_finite()) {
             let what = format!("waves {height} m high, of {period} s, in {depth} m of water");
@@ -61,23 +109,90 @@ impl IncidentWaves {
         let most = train.in_water.breaking_height();
         if height > most {
             let what = format!("a wave {height} m high breaks on this current");
-            return Err(Error::scene(what)
-                .with_code(ErrorCode::OutOfRange)
-                .help(format!("the highest that does not is {most:.3} m (Miche, McCowan)")));
-        }
-        let waves = Self { depth, current, ramp, trains: vec![train] };
-        let fastest = waves.orbital_speed();
-        if fastest >= current.abs() {
-            let what = format!(
-                "water moves to and fro through the face: the waves move it at {fastest:.4} m/s, the current at {current} m/s"
-            );
-            let help = format!(
-                "a face makes waves on a current above {fastest:.4} m/s, or waves below {:.4} m; without a current use a paddle",
-                height * current.abs() / fastest
-            );
+            let mut help = format!("the highest that does not is {most:.3} m (Miche, McCowan)");
+            if let Some(shortest) = shortest_unbroken(height, depth, current, g) {
+                help += &format!(", the shortest of this height has {} s", two_digits_up(shortest));
+            }
             return Err(Error::scene(what).with_code(ErrorCode::OutOfRange).help(help));
         }
-        Ok(waves)
+        let excursion = train.excursion();
+        let main = (height, component.omega, train.in_water);
+        let orbital_speed = excursion * train.in_water.omega;
+        Ok(Self { depth, current, ramp, trains: vec![train], main, excursion, orbital_speed })
+    }
+
+    /// A sea of significant `height` (m) with this `spectrum` at a fixed place, of `count` components with random phases from `seed`.
+    ///
+    /// # Errors
+    /// As of [`IncidentWaves::components`].
+    pub(crate) fn irregular(
+        height: f64,
+        spectrum: &WaveSpectrum,
+        (seed, count): (u64, usize),
+        water: &WaterAtFace,
+    ) -> Result<Self> {
+        let components = irregular_components(height, spectrum, seed, count)?;
+        Self::sum(&components, (height, spectrum.peak_period), water)
+    }
+
+    /// The waves η = Σ a cos(ω t + φ) at the origin of the axis.
+    ///
+    /// # Errors
+    /// `Scene` if there are no components or too many, the current stops one, a wave of the significant height and the period of the largest
+    /// would break, or water would move against the current before the end of the run.
+    pub(crate) fn components(components: &[WaveComponent], water: &WaterAtFace) -> Result<Self> {
+        counted(components.len())?;
+        let energy = |c: &WaveComponent| c.amplitude.powi(2);
+        let largest = components.iter().max_by(|a, b| energy(a).total_cmp(&energy(b)));
+        let height = match components {
+            [alone] => 2.0 * alone.amplitude.abs(),
+            _ => 4.0 * (0.5 * components.iter().map(energy).sum::<f64>()).sqrt(),
+        };
+        Self::sum(components, (height, largest.map_or(1.0, |c| TAU / c.omega)), water)
+    }
+
+    /// The sum of `components`, with the significant height (m) and the period (s) of its peak.
+    fn sum(components: &[WaveComponent], (height, period): (f64, f64), water: &WaterAtFace) -> Result<Self> {
+        let WaterAtFace { depth, current, g, ramp, until } = *water;
+        let ramp = ramp.unwrap_or(2.0 * period);
+        let shortest = components.iter().map(|c| c.omega).fold(0.0, f64::max);
+        let train = |component| Train::new(component, depth, current, g);
+        // The current stops the shortest first.
+        train(WaveComponent { amplitude: 0.0, omega: shortest, phase: 0.0 }).map_err(|mut e| {
+            let times = shortest * period / TAU;
+            e.message = format!("the sea has components of {:.4} s: {}", TAU / shortest, e.message);
+            e.help = e.help.map(|help| format!("{help}; the peak period is {times:.3} times that of the component"));
+            e
+        })?;
+        let at_origin = |c: &WaveComponent| train(WaveComponent { phase: -c.phase, ..*c });
+        let trains = components.iter().map(at_origin).collect::<Result<Vec<_>>>()?;
+        let peak = Self::unchecked(height, period, 0.0, (depth, current, g), ramp)?;
+        let mut waves = Self { trains, ..peak };
+        let step = (TAU / shortest / SAMPLES).max(until * components.len() as f64 / SUMMED_MAX);
+        let (mut excursion, mut speed) = (0.0f64, 0.0f64);
+        for k in 0..=(until / step).ceil() as u64 {
+            let orbit = waves.orbit_of([0.0, 0.0], k as f64 * step);
+            excursion = excursion.max(orbit.displacement[0].abs());
+            speed = speed.max(orbit.velocity[0].hypot(orbit.velocity[1]));
+        }
+        (waves.excursion, waves.orbital_speed) = (MARGIN * excursion, MARGIN * speed);
+        waves.along_current()
+    }
+
+    /// Refuses waves that move water against their current.
+    fn along_current(self) -> Result<Self> {
+        let (fastest, current, height) = (self.orbital_speed, self.current, self.main.0);
+        if fastest < current.abs() {
+            return Ok(self);
+        }
+        let what = format!(
+            "water moves to and fro through the face: the waves move it at {fastest:.4} m/s, the current at {current} m/s"
+        );
+        let help = format!(
+            "a face makes waves on a current above {fastest:.4} m/s, or waves below {:.4} m; without a current use a paddle",
+            height * current.abs() / fastest
+        );
+        Err(Error::scene(what).with_code(ErrorCode::OutOfRange).help(help))
     }
 
     /// The orbit at time `t` (s) of the particle that is at `x` (m) along the axis and `z` (m) above the surface at rest, and the height of
@@ -86,7 +201,12 @@ impl IncidentWaves {
         let (mut orbit, mut rest) = (Orbit::default(), [x, z]);
         for _ in 0..ITERATIONS {
             orbit = self.orbit_of(rest, t);
+            let before = rest;
             rest = [x - orbit.displacement[0], (z - orbit.displacement[1]).clamp(-self.depth, 0.0)];
+            // Of many components each step is dear.
+            if self.trains.len() > 1 && (rest[0] - before[0]).hypot(rest[1] - before[1]) < CLOSE * self.depth {
+                break;
+            }
         }
         (orbit, rest[1])
     }
@@ -113,9 +233,30 @@ impl IncidentWaves {
         self.current
     }
 
-    /// Height (m), frequency at a fixed place (rad/s) and wave in the frame that moves with the current, of each component.
-    pub(crate) fn regular_trains(&self) -> impl Iterator<Item = (f64, f64, LinearWave)> {
-        self.trains.iter().map(|train| (2.0 * train.component.amplitude, train.component.omega, train.in_water))
+    /// Height (m; significant of an irregular sea), frequency at a fixed place (rad/s; of the peak), and the wave of that frequency in the
+    /// frame that moves with the current.
+    pub(crate) fn main_train(&self) -> (f64, f64, LinearWave) {
+        self.main
+    }
+
+    /// The period of the wave or of the peak, s.
+    pub(crate) fn main_period(&self) -> f64 {
+        TAU / self.main.1
+    }
+
+    /// Number of components.
+    pub(crate) fn component_count(&self) -> usize {
+        self.trains.len()
+    }
+
+    /// The surface (m) above that at rest at the time `t` (s) and the fixed place `x` (m) along the axis.
+    pub fn elevation(&self, x: f64, t: f64) -> f64 {
+        let (mut orbit, mut rest) = (Orbit::default(), x);
+        for _ in 0..ITERATIONS {
+            orbit = self.orbit_of([rest, 0.0], t);
+            rest = x - orbit.displacement[0];
+        }
+        orbit.displacement[1]
     }
 
     /// Duration of the rise to the full height, s.
@@ -125,26 +266,26 @@ impl IncidentWaves {
 
     /// The greatest displacement along the axis, m.
     pub(crate) fn excursion(&self) -> f64 {
-        self.trains.iter().map(Train::excursion).sum()
+        self.excursion
     }
 
     /// The greatest velocity of the water relative to the current, m/s.
     pub(crate) fn orbital_speed(&self) -> f64 {
-        self.trains.iter().map(|train| train.excursion() * train.in_water.omega).sum()
+        self.orbital_speed
     }
 }
 
 impl Train {
     fn new(component: WaveComponent, depth: f64, current: f64, g: f64) -> Result<Self> {
         let Some(k) = wave_number_on_current(component.omega, depth, current, g) else {
-            let what = format!(
-                "no wave of {:.4} s moves against a current of {} m/s in {depth} m of water",
-                TAU / component.omega,
-                current.abs()
-            );
-            return Err(Error::scene(what)
-                .with_code(ErrorCode::OutOfRange)
-                .help("choose a longer period, or a slower current"));
+            let (period, speed) = (TAU / component.omega, current.abs());
+            let what = format!("no wave of {period:.4} s moves against a current of {speed} m/s in {depth} m of water");
+            return Err(Error::scene(what).with_code(ErrorCode::OutOfRange).help(against_current(
+                component.omega,
+                depth,
+                speed,
+                g,
+            )));
         };
         Ok(Self { component, in_water: LinearWave { depth, g, omega: component.omega - k * current, k } })
     }
@@ -184,6 +325,55 @@ pub(crate) fn wave_number_on_current(omega: f64, depth: f64, current: f64, g: f6
         most = bisect(1e-9 / depth, short, &advances);
     }
     (excess(most) >= 0.0).then(|| bisect(0.0, most, &|k| excess(k) < 0.0))
+}
+
+/// The remedy for waves of frequency `omega` (rad/s) that a current of `speed` (m/s) against them stops: the greatest current against which
+/// they move, and the shortest period that moves against this one. `depth` in m, `g` in m/s².
+pub(crate) fn against_current(omega: f64, depth: f64, speed: f64, g: f64) -> String {
+    let moves = |omega: f64, speed: f64| wave_number_on_current(omega, depth, -speed, g).is_some();
+    let limit = |mut good: f64, mut bad: f64, moves: &dyn Fn(f64) -> bool| {
+        for _ in 0..60 {
+            let middle = 0.5 * (good + bad);
+            if moves(middle) { good = middle } else { bad = middle }
+        }
+        good
+    };
+    let slowest = limit(0.0, speed, &|speed| moves(omega, speed));
+    let current = format!("a current of {} m/s at most", two_digits_down(slowest));
+    // No wave is faster than the longest.
+    if speed >= (g * depth).sqrt() {
+        return format!("{current}; against this one no wave moves");
+    }
+    let lowest = limit(1e-6 * omega, omega, &|omega| moves(omega, speed));
+    format!("{current}, or a period of {} s at least", two_digits_up(TAU / lowest))
+}
+
+/// The shortest period (s, at a fixed place) of a wave of this length (m) or more on a current (m/s) along it, if it moves against the
+/// current. `depth` in m, `g` in m/s².
+pub(crate) fn period_of_length(length: f64, depth: f64, current: f64, g: f64) -> Option<f64> {
+    let k = TAU / length;
+    let omega = (g * k * (k * depth).tanh()).sqrt();
+    let in_water = LinearWave { depth, g, omega, k };
+    (in_water.group_velocity() + current > 0.0).then(|| TAU / (omega + k * current))
+}
+
+/// The period (s, at a fixed place) of the shortest wave of this `height` (m) that does not break; `None` if all do.
+fn shortest_unbroken(height: f64, depth: f64, current: f64, g: f64) -> Option<f64> {
+    let breaks = |length: f64| {
+        let k = TAU / length;
+        LinearWave { depth, g, omega: (g * k * (k * depth).tanh()).sqrt(), k }.breaking_height() < height
+    };
+    // So long a wave breaks by its depth alone.
+    let mut long = 1e3 * depth;
+    if breaks(long) {
+        return None;
+    }
+    let mut short = 1e-3 * depth;
+    for _ in 0..60 {
+        let middle = 0.5 * (short + long);
+        if breaks(middle) { short = middle } else { long = middle }
+    }
+    period_of_length(long, depth, current, g)
 }
 
 #[cfg(test)]

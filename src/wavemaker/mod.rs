@@ -23,7 +23,7 @@ mod train;
 pub(crate) use absorption::{Absorber, AbsorptionSettings, AbsorptionState};
 pub(crate) use extent::LINEAR_SPEED_RATIO_MAX;
 pub use incident::IncidentWaves;
-pub(crate) use incident::{Orbit, wave_number_on_current};
+pub(crate) use incident::{Orbit, WaterAtFace, against_current, period_of_length, wave_number_on_current};
 pub(crate) use paddle::Paddle;
 pub use solitary::SolitaryTheory;
 pub(crate) use solitary::SolitaryWave;
@@ -250,12 +250,7 @@ impl Wavemaker {
     ) -> Result<PaddleMotion> {
         let train = self.train(spectrum.peak_period)?;
         self.unbroken("a wave of the significant height and the peak period", height, &train)?;
-        let omegas = counted(count).map(|()| spectrum.equal_energy_frequencies(count))?;
-        // m₀ = n a²/2 = (H/4)².
-        let amplitude = height / (8.0 * count as f64).sqrt();
-        let phases = spectrum::random_phases(seed);
-        let components: Vec<WaveComponent> =
-            omegas.into_iter().zip(phases).map(|(omega, phase)| WaveComponent { amplitude, omega, phase }).collect();
+        let components = irregular_components(height, spectrum, seed, count)?;
         Ok(self.wave("sea", height, 1, train, self.tones(&components)?))
     }
 
@@ -413,6 +408,16 @@ impl Wavemaker {
 /// Returns √Σ A², m: the amplitude of a single tone of equal energy.
 fn size(tones: &[WaveComponent]) -> f64 {
     tones.iter().map(|tone| tone.amplitude.powi(2)).sum::<f64>().sqrt()
+}
+
+/// Returns the `count` components of equal energy of a sea of significant `height` (m) and this spectrum, with random phases drawn from
+/// `seed`.
+fn irregular_components(height: f64, spectrum: &WaveSpectrum, seed: u64, count: usize) -> Result<Vec<WaveComponent>> {
+    let omegas = counted(count).map(|()| spectrum.equal_energy_frequencies(count))?;
+    // m₀ = n a²/2 = (H/4)².
+    let amplitude = height / (8.0 * count as f64).sqrt();
+    let phases = spectrum::random_phases(seed);
+    Ok(omegas.into_iter().zip(phases).map(|(omega, phase)| WaveComponent { amplitude, omega, phase }).collect())
 }
 
 fn counted(count: usize) -> Result<()> {

@@ -7,18 +7,19 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     water::{InitialFlow, WaterBody},
-    wave::{self, RegularWaveConfig},
+    wave::{self, IrregularWaveConfig, JONSWAP_GAMMA, RegularWaveConfig, WaveComponentsConfig},
+    wavemaker::read_components,
 };
 use crate::{
     error::{ErrorCode, Result},
     geometry::{Shape, WaterRegion},
     math::{Bounds, Pose, expression::UnsteadyField},
     scene::{
-        context::{Context, Defaults},
+        context::{Context, Defaults, quoted_list, set_keys},
         untagged::{CoordinateUnit, FieldFormulaConfig, TimeValueConfig},
     },
     simulation::OpenBoundary,
-    wavemaker::{IncidentWaves, wave_number_on_current},
+    wavemaker::{IncidentWaves, WaterAtFace, WaveSpectrum, against_current, wave_number_on_current},
 };
 
 /// One `[[inflow]]` or `[[outflow]]`.
@@ -48,13 +49,21 @@ pub struct OpenBoundaryConfig {
     pub wave: Option<FaceWaveConfig>,
 }
 
-/// A wave that enters through a face, along its normal.
+/// Waves that enter through a face, along its normal: exactly one kind.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, default)]
 #[non_exhaustive]
 pub struct FaceWaveConfig {
-    /// Its height and period, to first order.
-    pub regular: RegularWaveConfig,
+    /// One height and one period, to first order.
+    pub regular: Option<RegularWaveConfig>,
+    /// A sea of JONSWAP's spectrum.
+    pub jonswap: Option<IrregularWaveConfig>,
+    /// A sea of Bretschneider's spectrum.
+    pub bretschneider: Option<IrregularWaveConfig>,
+    /// A fully developed sea: the height determines the period.
+    pub pierson_moskowitz: Option<IrregularWaveConfig>,
+    /// A sum of components from a table.
+    pub components: Option<WaveComponentsConfig>,
     /// Duration of the rise to the full height, s.
     pub ramp: Option<f64>,
 }
@@ -261,25 +270,22 @@ impl OpenBoundaryConfig {
             (FaceFlow::Out, _) => "no velocity or no gravity is given",
         };
         defaults.fill(format!("{key}.absorb"), &mut self.absorb, absorbs, why);
-        if let Some(FaceWaveConfig { regular, ramp }) = &mut self.wave {
-            let wave = format!("{key}.wave");
-            defaults.fill(format!("{wave}.regular.order"), &mut regular.order, 1, "waves enter by linear theory");
-            defaults.fill(format!("{wave}.regular.phase_deg"), &mut regular.phase_deg, 0.0, "a crest at the start");
-            defaults.fill(format!("{wave}.ramp"), ramp, 2.0 * regular.period, "two periods");
-            if self.absorb == Some(true) {
+        if let Some(wave) = &mut self.wave {
+            let period = wave.fill(ctx, defaults, &format!("{key}.wave"));
+            if let Some(period) = period.filter(|_| self.absorb == Some(true)) {
                 let why = "of the wave that enters";
-                defaults.fill(format!("{key}.absorb_period"), &mut self.absorb_period, regular.period, why);
+                defaults.fill(format!("{key}.absorb_period"), &mut self.absorb_period, period, why);
             }
         }
     }
 
-    /// The face beside `water`, and the buffer of length `length` (m) that is to be filled beyond it.
+    /// The face beside `water` in a run until the time `until` (s), and the buffer of length `length` (m) that is to be filled beyond it.
     pub(crate) fn build<const D: usize>(
         &self,
         ctx: &Context,
         (key, flow): (&str, FaceFlow),
         water: &[WaterBody<D>],
-        length: f64,
+        (length, until): (f64, f64),
     ) -> Result<(OpenBoundary<D>, WaterBody<D>)> {
         let Some((axis, at)) = self.place() else { return Err(ctx.error_at(key, "where is the face?")) };
         let along = ["x", "y"][axis];
@@ -320,35 +326,30 @@ impl OpenBoundaryConfig {
         let face = OpenBoundary { is_lower, factor, ..face };
         let (g, depth) = (ctx.gravity_norm(), top - bounds.min[D - 1]);
         let middle = 0.5 * (bounds.min + bounds.max);
-        let speed = match self.absorb_period {
+        let waves = self.wave.as_ref().map(|wave| {
+            let current = face.steady_current().ok_or_else(|| {
+                let what = "waves enter on a current that is the same at every height and time";
+                ctx.error_with_help(key, what, "write  velocity = 0.3        # m/s, and leave factor out")
+            })?;
+            let water = WaterAtFace { depth, current, g, ramp: wave.ramp, until };
+            wave.build(ctx, &format!("{key}.wave"), &water)
+        });
+        let waves = waves.transpose()?;
+        let speed = match self.absorb_period.or(waves.as_ref().map(IncidentWaves::main_period)) {
             // Long waves.
             None => (g * depth).sqrt(),
             Some(period) => {
                 // Of the waves that leave, in the water, on the current that they meet.
                 let (omega, along) = (TAU / period, face.outward_velocity(&middle, 0.0).unwrap_or(0.0));
                 let k = wave_number_on_current(omega, depth, along, g).ok_or_else(|| {
-                    let what = format!("the current stops waves of {period} s that would leave");
-                    ctx.error_with_help(
-                        &format!("{key}.absorb_period"),
-                        &what,
-                        "write  absorb = false, or a longer period",
-                    )
+                    let what = format!("the current of {} m/s stops waves of {period} s that would leave", -along);
+                    let help = format!("write  absorb = false, or: {}", against_current(omega, depth, -along, g));
+                    ctx.error_with_help(&format!("{key}.absorb_period"), &what, &help)
                 })?;
                 omega / k - along
             }
         };
         let absorbed_speed = self.absorb.unwrap_or(false).then_some(speed);
-        let waves = self.wave.as_ref().map(|FaceWaveConfig { regular, ramp }| {
-            let RegularWaveConfig { height, period, phase_deg, .. } = *regular;
-            let current = face.steady_current().ok_or_else(|| {
-                let what = "waves enter on a current that is the same at every height and time";
-                ctx.error_with_help(key, what, "write  velocity = 0.3        # m/s, and leave factor out")
-            })?;
-            let phase = phase_deg.unwrap_or(0.0).to_radians();
-            IncidentWaves::regular(height, period, phase, depth, current, g, ramp.unwrap_or(0.0))
-                .map_err(|e| ctx.with_location(e, &format!("{key}.wave")))
-        });
-        let waves = waves.transpose()?;
         // Without velocity and level the pressure is that of the water.
         let level = if face.velocity.is_some() { Some(level) } else { self.level };
         let face = OpenBoundary { level, absorbed_speed, waves, ..face };
@@ -365,20 +366,108 @@ impl OpenBoundaryConfig {
     }
 }
 
+/// Components of a sea that enters through a face, if the scene does not say.
+const FACE_COMPONENTS: usize = 40;
+
+/// Acceleration of gravity of a scene that gives none, m/s².
+const EARTH: f64 = 9.81;
+
 impl FaceWaveConfig {
-    /// Refuses a wave that is no positive one of first order, and one without a constant gravity.
+    /// The sea, its name in the scene and its spectrum under the acceleration `g` (m/s²).
+    fn sea(&self, g: f64) -> Option<(&'static str, &IrregularWaveConfig, WaveSpectrum)> {
+        let peak = |sea: &IrregularWaveConfig| sea.peak_period.unwrap_or_default();
+        if let Some(sea) = &self.jonswap {
+            return Some(("jonswap", sea, WaveSpectrum::jonswap(peak(sea), sea.gamma.unwrap_or(JONSWAP_GAMMA))));
+        }
+        if let Some(sea) = &self.bretschneider {
+            return Some(("bretschneider", sea, WaveSpectrum::bretschneider(peak(sea))));
+        }
+        let sea = self.pierson_moskowitz.as_ref()?;
+        Some(("pierson_moskowitz", sea, WaveSpectrum::pierson_moskowitz(sea.height, g)))
+    }
+
+    /// Refuses waves of no kind or of several, of another order than the first, and without a constant gravity.
     fn verify(&self, ctx: &Context, key: &str) -> Result<()> {
+        let kinds = set_keys([
+            ("regular", self.regular.is_some()),
+            ("jonswap", self.jonswap.is_some()),
+            ("bretschneider", self.bretschneider.is_some()),
+            ("pierson_moskowitz", self.pierson_moskowitz.is_some()),
+            ("components", self.components.is_some()),
+        ]);
+        let [kind] = kinds[..] else {
+            let what = match kinds.len() {
+                0 => "which wave?".to_string(),
+                _ => format!("one kind of wave enters through a face; this one lets in {}", quoted_list(&kinds)),
+            };
+            return Err(ctx.error_with_help(key, &what, "write  wave = { regular = { height = 0.05, period = 1.3 } }"));
+        };
         wave::require_gravity(ctx)?;
-        let RegularWaveConfig { height, period, order, .. } = self.regular;
-        let numbers = [("regular.height", Some(height)), ("regular.period", Some(period)), ("ramp", self.ramp)];
+        ctx.require_positive(&format!("{key}.ramp"), self.ramp)?;
+        let key = &format!("{key}.{kind}");
+        let mut numbers = Vec::new();
+        if let Some(RegularWaveConfig { height, period, .. }) = self.regular {
+            numbers.extend([("height", Some(height)), ("period", Some(period))]);
+        }
+        if let Some((_, sea, _)) = self.sea(ctx.gravity_norm()) {
+            numbers.extend([("height", Some(sea.height)), ("peak_period", sea.peak_period), ("gamma", sea.gamma)]);
+            sea.verify(ctx, key)?;
+        }
         numbers.into_iter().try_for_each(|(word, x)| ctx.require_positive(&format!("{key}.{word}"), x))?;
-        match order.filter(|order| *order != 1) {
+        match self.regular.as_ref().and_then(|regular| regular.order).filter(|order| *order != 1) {
             Some(order) => {
                 let what = format!("waves enter through a face by theory of order 1, not {order}");
-                Err(ctx.error_with_help(&format!("{key}.regular.order"), what, "leave order out"))
+                Err(ctx.error_with_help(&format!("{key}.order"), what, "leave order out"))
             }
             None => Ok(()),
         }
+    }
+
+    /// Fills in the defaults, and returns the period of the wave or of the peak (s), unless a file gives it.
+    fn fill(&mut self, ctx: &Context, defaults: &mut Defaults, key: &str) -> Option<f64> {
+        if let Some(regular) = &mut self.regular {
+            defaults.fill(format!("{key}.regular.order"), &mut regular.order, 1, "waves enter by linear theory");
+            defaults.fill(format!("{key}.regular.phase_deg"), &mut regular.phase_deg, 0.0, "a crest at the start");
+        }
+        if let Some(sea) = &mut self.jonswap {
+            defaults.fill(format!("{key}.jonswap.gamma"), &mut sea.gamma, JONSWAP_GAMMA, "JONSWAP's mean");
+        }
+        let seas = [
+            ("jonswap", &mut self.jonswap),
+            ("bretschneider", &mut self.bretschneider),
+            ("pierson_moskowitz", &mut self.pierson_moskowitz),
+        ];
+        for (word, sea) in seas.into_iter().filter_map(|(word, sea)| Some((word, sea.as_mut()?))) {
+            defaults.fill(format!("{key}.{word}.seed"), &mut sea.seed, 1, "one of the seas of this spectrum");
+            let why = "each is summed for each particle of the buffer";
+            defaults.fill(format!("{key}.{word}.components"), &mut sea.components, FACE_COMPONENTS, why);
+        }
+        let g = if ctx.gravity.is_some() { ctx.gravity_norm() } else { EARTH };
+        let regular = self.regular.as_ref().map(|regular| regular.period);
+        let period = regular.or_else(|| Some(self.sea(g)?.2.peak_period))?;
+        defaults.fill(format!("{key}.ramp"), &mut self.ramp, 2.0 * period, "two periods");
+        Some(period)
+    }
+
+    /// The waves in this water.
+    fn build(&self, ctx: &Context, key: &str, water: &WaterAtFace) -> Result<IncidentWaves> {
+        if let Some(config) = &self.components {
+            let key = &format!("{key}.components");
+            let components = read_components(ctx, key, config);
+            let components = components.map_err(|e| ctx.with_location(e, &format!("{key}.file")))?;
+            return IncidentWaves::components(&components, water).map_err(|e| ctx.with_location(e, key));
+        }
+        let waves = if let Some((_, config, spectrum)) = self.sea(water.g) {
+            let phases = (config.seed.unwrap_or(1), config.components.unwrap_or(FACE_COMPONENTS));
+            IncidentWaves::irregular(config.height, &spectrum, phases, water)
+        } else {
+            let RegularWaveConfig { height, period, phase_deg, .. } = self.regular.clone().unwrap_or_default();
+            // At the face the surface is H/2 cos(ω t + phase), as at a paddle.
+            let phase = 0.0 - phase_deg.unwrap_or(0.0).to_radians();
+            let WaterAtFace { depth, current, g, ramp, .. } = *water;
+            IncidentWaves::regular(height, period, phase, depth, current, g, ramp.unwrap_or_default())
+        };
+        waves.map_err(|e| ctx.with_location(e, key))
     }
 }
 

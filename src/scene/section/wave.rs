@@ -18,6 +18,9 @@ use crate::{
     wavemaker::{COMPONENTS_DEFAULT, SolitaryTheory},
 };
 
+/// Peakedness of JONSWAP's spectrum, if the scene gives none.
+pub(super) const JONSWAP_GAMMA: f64 = 3.3;
+
 /// A wave by name: exactly one kind; none of a paddle that only absorbs.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
@@ -259,13 +262,13 @@ impl WaveConfig {
         for (word, sea) in self.spectra_mut() {
             let Some(sea) = sea else { continue };
             if word == "jonswap" {
-                defaults.fill(format!("{key}.{word}.gamma"), &mut sea.gamma, 3.3, peaked);
+                defaults.fill(format!("{key}.{word}.gamma"), &mut sea.gamma, JONSWAP_GAMMA, peaked);
             }
             defaults.fill(format!("{key}.{word}.seed"), &mut sea.seed, 1, "one of the seas of this spectrum");
             defaults.fill(format!("{key}.{word}.components"), &mut sea.components, COMPONENTS_DEFAULT, many);
         }
         if let Some(config) = &mut self.focused {
-            defaults.fill(format!("{key}.focused.gamma"), &mut config.gamma, 3.3, peaked);
+            defaults.fill(format!("{key}.focused.gamma"), &mut config.gamma, JONSWAP_GAMMA, peaked);
             defaults.fill(format!("{key}.focused.components"), &mut config.components, COMPONENTS_DEFAULT, many);
         }
         if let Some(config) = &mut self.solitary {
@@ -364,7 +367,7 @@ impl MeasuredElevationConfig {
 
 impl IrregularWaveConfig {
     /// Refuses keys that do not belong to the spectrum.
-    fn verify(&self, ctx: &Context, key: &str) -> Result<()> {
+    pub(super) fn verify(&self, ctx: &Context, key: &str) -> Result<()> {
         let grown = key.ends_with("pierson_moskowitz");
         let place = |word: &str| format!("{key}.{word}");
         if grown && self.peak_period.is_some() {

@@ -7,7 +7,8 @@ use super::{
     shape::{vector, world_bounds},
     water::StillWater,
     wave::{
-        AbsorbChoice, AbsorptionConfig, IrregularWaveConfig, MeasuredElevationConfig, WaveComponentsConfig, WaveConfig,
+        AbsorbChoice, AbsorptionConfig, IrregularWaveConfig, JONSWAP_GAMMA, MeasuredElevationConfig,
+        WaveComponentsConfig, WaveConfig,
     },
 };
 use crate::{
@@ -207,7 +208,7 @@ fn wave_from_config(ctx: &Context, key: &str, config: &WaveConfig, maker: &Wavem
         let key = format!("{key}.{word}");
         move |e: Error| ctx.with_location(e, &key)
     };
-    let gamma = |gamma: Option<f64>| gamma.unwrap_or(3.3);
+    let gamma = |gamma: Option<f64>| gamma.unwrap_or(JONSWAP_GAMMA);
     let wave = match config {
         WaveConfig { regular: Some(config), .. } => {
             let (order, phase) = (config.order.unwrap_or(2), config.phase_deg.unwrap_or(0.0).to_radians());
@@ -266,7 +267,7 @@ fn wave_from_config(ctx: &Context, key: &str, config: &WaveConfig, maker: &Wavem
 }
 
 /// The components of a table.
-fn read_components(ctx: &Context, key: &str, config: &WaveComponentsConfig) -> Result<Vec<WaveComponent>> {
+pub(super) fn read_components(ctx: &Context, key: &str, config: &WaveComponentsConfig) -> Result<Vec<WaveComponent>> {
     let mut table = files::open_table(ctx.folder(), &config.file)?;
     let (file, names) = (table.file().to_string(), table.header().to_vec());
     let either = |one: &'static str, other: &'static str| {

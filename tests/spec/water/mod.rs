@@ -1,6 +1,7 @@
 //! The water: equations, pair loop, neighbours, time integration, and water at rest.
 
 mod beside_reference;
+mod faces_in_3d;
 mod gradient_correction;
 mod gravity;
 mod kernels;
@@ -9,6 +10,8 @@ mod neighbours;
 mod open_boundaries;
 mod open_flows;
 mod periodic;
+mod refused_faces;
+mod seas_through_faces;
 mod simd;
 mod still_water;
 mod symmetry;

@@ -1,0 +1,58 @@
+//! Open boundaries in three dimensions, normal to x and to y.
+
+use pontoon::simulation::Simulation;
+
+use crate::common;
+
+const DP: f64 = 0.05;
+const LENGTH: f64 = 0.8;
+
+/// A channel along `axis`, 0.8 m long, 0.4 m wide between walls and 0.3 m deep, with a current of 1 m/s.
+fn channel(axis: &str) -> Simulation<3> {
+    let swap = |[along, across, up]: [f64; 3]| match axis {
+        "x" => format!("[{along}, {across}, {up}]"),
+        _ => format!("[{across}, {along}, {up}]"),
+    };
+    let wall = |name: &str, size: [f64; 3], at: [f64; 3]| {
+        format!(
+            "[[solid]]\nname = \"{name}\"\nfixed = true\nshape = {{ box = {{ size = {} }} }}\nat = {}\n",
+            swap(size),
+            swap(at)
+        )
+    };
+    let walls = [
+        wall("bed", [4.0, 1.0, 0.2], [0.4, 0.2, -0.1]),
+        wall("left", [4.0, 0.3, 0.5], [0.4, -0.15, 0.25]),
+        wall("right", [4.0, 0.3, 0.5], [0.4, 0.55, 0.25]),
+    ];
+    common::scene_simulation::<3>(&format!(
+        "dimension = 3\ndp = {DP}\nuntil = 2.0\n\
+         inflow = [{{ {axis} = 0.0, velocity = 1.0 }}]\noutflow = [{{ {axis} = {LENGTH}, velocity = 1.0 }}]\n\
+         [[water]]\nfill = {{ box = {{ min = [0.0, 0.0, 0.0], max = {} }} }}\nvelocity = {}\n{}\n",
+        swap([LENGTH, 0.4, 0.3]),
+        swap([1.0, 0.0, 0.0]),
+        walls.concat()
+    ))
+    .expect("a sound scene")
+}
+
+/// A uniform flow keeps its level and speed for two passages, and the water is what the start and the faces have given, along either axis.
+#[test]
+fn a_uniform_flow_passes_faces_normal_to_x_and_to_y() {
+    for (axis, name) in ["x", "y"].into_iter().enumerate() {
+        let mut sim = channel(name);
+        let start = sim.system().fluid().len();
+        assert_eq!(start, 16 * 8 * 6, "the water between the faces");
+        common::run_to(&mut sim, 2.0 * LENGTH).expect("a sound run");
+        let (fluid, exchange) = (sim.system().fluid(), sim.system().face_exchange());
+        let taken: i64 = exchange.iter().map(|face| face.entered as i64 - face.left as i64).sum();
+        assert_eq!(fluid.len() as i64, start as i64 + taken, "the books of the water");
+        // A column more or less between two rebuilds of the lists is 1/16 of the water, and 1/32 of what has entered.
+        let (level, entered) = (fluid.len() as f64 / start as f64, exchange[0].entered as f64 / (2 * start) as f64);
+        assert!((level - 1.0).abs() < 1.0 / 15.0, "{name}: the volume is {level} of that at the start");
+        assert!((entered - 1.0).abs() < 1.0 / 31.0, "{name}: {entered} of the water of two passages has entered");
+        let mean = |k: usize| fluid.v.iter().map(|v| v[k]).sum::<f64>() / fluid.len() as f64;
+        assert!((mean(axis) - 1.0).abs() < 0.02, "{name}: {} m/s", mean(axis));
+        assert!(mean(1 - axis).abs() < 0.01, "{name}: {} m/s across", mean(1 - axis));
+    }
+}
