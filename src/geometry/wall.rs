@@ -65,8 +65,8 @@ pub(crate) fn far_corners<const D: usize>(points: &[Vector<D>], thickness: f64) 
     };
     let mut corners: Vec<_> = points.iter().enumerate().map(corner).collect();
     if is_closed(points) {
-        let after = corners[0].split_off(corners[0].len() - 1);
-        corners[0] = after;
+        let rounding = corners[0].len() - 1;
+        corners[0].drain(..rounding);
     }
     corners
 }
