@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::{
     error::{Error, Result},
-    scene::moordyn::Deck,
+    scene::{file_content::decode, moordyn::Deck},
 };
 use clap::Args;
 
@@ -24,7 +24,8 @@ pub struct ImportMoordynArgs {
 
 /// Returns the sections.
 pub fn import(args: &ImportMoordynArgs) -> Result<String> {
-    let text = std::fs::read_to_string(&args.file).map_err(|why| Error::read(&args.file, &why))?;
+    let bytes = std::fs::read(&args.file).map_err(|why| Error::read(&args.file, &why))?;
+    let text = decode(&bytes).text;
     let folder = args.file.parent().unwrap_or(Path::new(""));
     Deck::parse(&text, &args.file.display().to_string(), folder)?.to_toml(&args.solid, args.level)
 }

@@ -2,7 +2,7 @@
 
 use super::{
     Shape,
-    wall::{far_side, is_closed},
+    wall::{far_corners, is_closed},
 };
 use crate::{
     error::{Error, Result},
@@ -81,10 +81,13 @@ fn polygon<const D: usize>(points: &[Vector<D>]) -> Result<()> {
 /// Checks a closed polyline. The far side of a wall inside the line encloses less space; it must enclose some.
 fn ring<const D: usize>(points: &[Vector<D>], thickness: f64) -> Result<()> {
     outline("polyline", &points[..points.len() - 1], 3, true)?;
-    let far = far_side(points, thickness);
-    let along = |(near, far): (&[Vector<D>], &[Vector<D>])| (near[1] - near[0]).normalize().dot(&(far[1] - far[0]));
+    let far = far_corners(points, thickness);
+    let along = |(near, far): (&[Vector<D>], &[Vec<Vector<D>>])| {
+        let [from, to] = [far[0].last(), far[1].first()].map(|corner| corner.copied().unwrap_or_else(Vector::zeros));
+        (near[1] - near[0]).normalize().dot(&(to - from))
+    };
     let length: f64 = points.windows(2).zip(far.windows(2)).map(along).sum();
-    if length > 0.0 && doubled_area(points) * doubled_area(&far) > 0.0 {
+    if length > 0.0 && doubled_area(points) * doubled_area(&far[1..].concat()) > 0.0 {
         return Ok(());
     }
     Err(Error::scene(format!("a closed polyline whose wall, {thickness} m thick, leaves no space inside"))

@@ -1,12 +1,17 @@
 //! A polyline wall, 2-D only: its side of the water, its far side with mitred corners, and distances to both.
 //!
+//! A corner that turns by more than 143° away from the far side is rounded there: the far side keeps its distance from the corner.
+//!
 //! A line whose last point equals its first is closed: the wall has no ends, and its first point is a corner.
 
 use super::distance::nearest_on_segment;
 use crate::math::Vector;
 
-/// Least 1 + cos of the angle by which a corner turns (143°). The far side of a sharper corner has a shorter mitre.
+/// Least 1 + cos of the angle by which a corner turns (143°) with a mitre outside.
 const SHARPEST: f64 = 0.2;
+
+/// Largest angle (rad) between the points of a rounded corner.
+const ROUNDING: f64 = 0.15;
 
 /// Returns whether the line returns to its first point.
 pub(crate) fn is_closed<const D: usize>(points: &[Vector<D>]) -> bool {
@@ -31,19 +36,45 @@ fn normals_at<const D: usize>(points: &[Vector<D>], i: usize) -> (Vector<D>, Vec
     }
 }
 
-/// Returns the far side of a wall: for each point of the line the corner at a distance of `thickness` (m) to the right.
-pub(crate) fn far_side<const D: usize>(points: &[Vector<D>], thickness: f64) -> Vec<Vector<D>> {
+/// Returns the far side of a wall at a distance of `thickness` (m) to the right: for each point of the line its corner, or the points
+/// of a rounded corner. The rounding of the first point of a closed line is at its last point.
+pub(crate) fn far_corners<const D: usize>(points: &[Vector<D>], thickness: f64) -> Vec<Vec<Vector<D>>> {
+    let edge = |i: usize| (points[i + 1] - points[i]).norm();
     let corner = |(i, p): (usize, &Vector<D>)| {
         let (a, b) = normals_at(points, i);
-        p + (a + b) * (thickness / (1.0 + a.dot(&b)).max(SHARPEST))
+        let (span, turn) = (1.0 + a.dot(&b), a[0] * b[1] - a[1] * b[0]);
+        let mitre = (a + b) * (thickness / span);
+        if span >= SHARPEST {
+            return vec![p + mitre];
+        }
+        if turn < 0.0 {
+            // The far sides of both edges meet inside the corner, unless an edge is too short.
+            let [before, after] = if i == 0 { [points.len() - 2, 0] } else { [i - 1, i % (points.len() - 1)] };
+            let way = thickness * ((1.0 - a.dot(&b)) / span).sqrt();
+            return vec![p + mitre * (edge(before).min(edge(after)) / way).min(1.0)];
+        }
+        let angle = turn.atan2(a.dot(&b)).rem_euclid(std::f64::consts::TAU);
+        let count = (angle / ROUNDING).ceil().max(1.0);
+        let at = |k: f64| {
+            let (sine, cosine) = (angle * k / count).sin_cos();
+            let mut n = Vector::<D>::zeros();
+            (n[0], n[1]) = (a[0] * cosine - a[1] * sine, a[0] * sine + a[1] * cosine);
+            p + n * thickness
+        };
+        (0..=count as usize).map(|k| at(k as f64)).collect()
     };
-    points.iter().enumerate().map(corner).collect()
+    let mut corners: Vec<_> = points.iter().enumerate().map(corner).collect();
+    if is_closed(points) {
+        let rounding = corners[0].len() - 1;
+        corners[0].drain(..rounding);
+    }
+    corners
 }
 
 /// Returns the outline of a wall, counter-clockwise: the line in reverse, then the far side. The outline of a closed
 /// wall is one ring after the other; it passes the cut between them once in each direction.
 pub(crate) fn wall_outline<const D: usize>(points: &[Vector<D>], thickness: f64) -> Vec<Vector<D>> {
-    points.iter().rev().copied().chain(far_side(points, thickness)).collect()
+    points.iter().rev().copied().chain(far_corners(points, thickness).into_iter().flatten()).collect()
 }
 
 /// Returns the closed lines around a wall, counter-clockwise around the solid: one around an open wall, two around a
@@ -53,14 +84,14 @@ pub(crate) fn wall_contours<const D: usize>(points: &[Vector<D>], thickness: f64
     if !is_closed(points) {
         return vec![wall_outline(points, thickness)];
     }
-    vec![points[1..].iter().rev().copied().collect(), far_side(points, thickness)[1..].to_vec()]
+    vec![points[1..].iter().rev().copied().collect(), far_corners(points, thickness)[1..].concat()]
 }
 
 /// Returns the length (m) of the outline of a wall.
 pub(super) fn wall_perimeter<const D: usize>(points: &[Vector<D>], thickness: f64) -> f64 {
     let length = |line: &[Vector<D>]| line.windows(2).map(|ab| (ab[1] - ab[0]).norm()).sum::<f64>();
     let ends = if is_closed(points) { 0.0 } else { 2.0 * thickness };
-    length(points) + length(&far_side(points, thickness)) + ends
+    length(points) + length(&far_corners(points, thickness).concat()) + ends
 }
 
 /// Position of a point relative to a line.

@@ -3,7 +3,11 @@
 use serde::Serialize;
 
 use super::{Finding, PreflightContext};
-use crate::{math::format::three_digits, simulation::Simulation, solid::WinchTarget};
+use crate::{
+    math::format::three_digits,
+    simulation::Simulation,
+    solid::{Role, WinchTarget},
+};
 
 /// A mooring line at rest that acts at the start.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -109,6 +113,8 @@ pub(super) fn summaries<const D: usize>(
             findings.push(Finding::warning("breaks_at_start", what, mend));
         }
     }
+    let buried = |(i, now): (usize, crate::solid::MooringReading<D>)| lies_in_solid(context, &specs[i], &now.nodes);
+    findings.extend(sim.mooring_readings().into_iter().enumerate().filter_map(buried));
     let surge = |(i, solid): (usize, &crate::solid::Solid<D>)| {
         let body = solid.body.as_ref()?;
         let moored = specs.iter().any(|spec| spec.ends.iter().any(|end| end.solid == Some(i)));
@@ -122,6 +128,35 @@ pub(super) fn summaries<const D: usize>(
     };
     let surges = context.solids().iter().enumerate().filter_map(surge).collect();
     (lines, surges)
+}
+
+/// A warning about a line with nodes deep in a fixed solid or behind it: deeper than a bed yields.
+fn lies_in_solid<const D: usize>(
+    context: &PreflightContext<'_, D>,
+    spec: &crate::solid::MooringSpec<D>,
+    nodes: &[crate::math::Vector<D>],
+) -> Option<Finding> {
+    let (dp, last) = (context.system.model().dp, nodes.len().checked_sub(1)?);
+    let depth = |x: &crate::math::Vector<D>| {
+        let solids = context.solids().iter().filter(|solid| matches!(solid.spec.role, Role::Fixed));
+        let depths = solids.map(|solid| {
+            let local = solid.kinematics.pose.local(x);
+            (-solid.spec.shape.signed_distance(&local), solid.spec.name.as_str())
+        });
+        depths.max_by(|a, b| a.0.total_cmp(&b.0))
+    };
+    // Between two nodes a line may go through a thin wall.
+    let steps = (0..last).flat_map(|s| [0.25, 0.5, 0.75, 1.0].map(|u| nodes[s] * (1.0 - u) + nodes[s + 1] * u));
+    let (deepest, name) =
+        std::iter::once(nodes[0]).chain(steps).filter_map(|x| depth(&x)).max_by(|a, b| a.0.total_cmp(&b.0))?;
+    (deepest > 0.5 * dp).then(|| {
+        let what = format!(
+            "mooring \"{}\" goes {} m deep into the fixed solid \"{name}\": no bed bears a line there",
+            spec.name,
+            three_digits(deepest)
+        );
+        Finding::warning("mooring_in_solid", what, "put its ends on the surface of the solid, or lead it around".into())
+    })
 }
 
 /// Steps of a line in a step of the water from which on a note names them.

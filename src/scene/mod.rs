@@ -14,7 +14,7 @@ mod bundled;
 mod constraints;
 mod context;
 mod diagnostics;
-mod file_content;
+pub(crate) mod file_content;
 mod file_units;
 pub(crate) mod files;
 mod finite_law;

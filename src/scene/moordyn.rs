@@ -19,6 +19,8 @@ enum Section {
     Options,
     /// A section that a scene has in another form, or whose rows are refused.
     Other(&'static str),
+    /// A section that is not known.
+    Unknown,
     /// What follows the end of the deck, or stands before its first section.
     None,
 }
@@ -56,6 +58,8 @@ struct DeckType {
     damping: f64,
     /// Cd, Ca, CdAx, CaAx.
     coefficients: [f64; 4],
+    /// Further columns, as those of vortex-induced vibrations.
+    more: Vec<String>,
 }
 
 /// Axial stiffness in a deck.
@@ -105,6 +109,21 @@ pub(crate) struct Deck {
     lines: Vec<DeckLine>,
     /// Value and name of each option.
     options: Vec<(String, String)>,
+    /// Heads of sections with rows that are not known.
+    unknown: Vec<String>,
+}
+
+/// Options that a scene has as keys of a line type.
+const BED_OPTIONS: [&str; 3] = ["kbot", "cbot", "FrictionCoefficient"];
+
+/// What may precede the number of a point, beside nothing.
+const POINT_WORDS: [&str; 4] = ["connection", "point", "con", "p"];
+
+/// The number that a word of a deck is, with the exponent of Fortran (1.0D6) too.
+fn number_of(word: &str) -> Option<f64> {
+    let digits = word.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c));
+    let word = if digits { word.replace(['d', 'D'], "e") } else { return None };
+    word.parse().ok().filter(|x: &f64| x.is_finite())
 }
 
 /// A row of a deck, with its place for errors.
@@ -128,9 +147,18 @@ impl Row<'_> {
     }
 
     fn number(&self, column: usize, name: &str) -> Result<f64> {
-        let word = self.word(column, name)?;
-        let number = word.parse().ok().filter(|x: &f64| x.is_finite());
-        number.ok_or_else(|| self.error(format!("{name} is \"{word}\", which is no number"), "write a number"))
+        self.read(self.word(column, name)?, name)
+    }
+
+    fn read(&self, word: &str, name: &str) -> Result<f64> {
+        let help = if word.contains(',') { "write a decimal point" } else { "write a number" };
+        number_of(word).ok_or_else(|| self.error(format!("{name} is \"{word}\", which is no number"), help))
+    }
+
+    fn positive(&self, column: usize, name: &str) -> Result<f64> {
+        let number = self.number(column, name)?;
+        let what = || self.error(format!("{name} is {number}"), "write a number greater than 0");
+        if number > 0.0 { Ok(number) } else { Err(what()) }
     }
 
     fn numbers<const N: usize>(&self, first: usize, names: [&str; N]) -> Result<[f64; N]> {
@@ -155,7 +183,8 @@ impl Deck {
             if line.starts_with("---") {
                 let upper = line.to_ascii_uppercase();
                 let found = SECTIONS.iter().find(|(word, _)| upper.contains(word));
-                section = found.map_or(Section::None, |(_, section)| *section);
+                let unknown = if section == Section::None { Section::None } else { Section::Unknown };
+                section = found.map_or(unknown, |(_, section)| *section);
                 title = line.trim_matches(|c: char| c == '-' || c.is_whitespace());
                 heads = if section == Section::Options { 0 } else { 2 };
                 continue;
@@ -170,11 +199,14 @@ impl Deck {
             let words = line.split_whitespace().collect();
             let row = Row { file, line: i + 1, section: title, words };
             match section {
-                Section::LineTypes => deck.types.push(line_type(&row, folder)?),
-                Section::Points => deck.points.push(point(&row)?),
+                Section::LineTypes => deck.add_type(&row, folder)?,
+                Section::Points => deck.add_point(&row)?,
                 Section::Lines => deck.add_line(&row)?,
                 Section::Options => {
                     let [value, name] = [row.word(0, "the value")?, row.word(1, "the name")?];
+                    if BED_OPTIONS.iter().any(|known| known.eq_ignore_ascii_case(name)) {
+                        row.read(value, name)?;
+                    }
                     deck.options.push((value.into(), name.into()));
                 }
                 Section::Other(what) => {
@@ -182,6 +214,8 @@ impl Deck {
                                 the section from the deck, and add them to the scene";
                     return Err(row.error(format!("{what} of a deck are not taken over"), help));
                 }
+                Section::Unknown if deck.unknown.iter().any(|head| head == title) => {}
+                Section::Unknown => deck.unknown.push(title.into()),
                 Section::None => {}
             }
         }
@@ -190,6 +224,24 @@ impl Deck {
             return Err(Error::scene(what).help("a deck of MoorDyn v2 has the sections LINE TYPES, POINTS and LINES"));
         }
         Ok(deck)
+    }
+
+    fn add_type(&mut self, row: &Row, folder: &Path) -> Result<()> {
+        let new = line_type(row, folder)?;
+        if self.types.iter().any(|known| file_name(&known.name) == file_name(&new.name)) {
+            return Err(row.error(format!("two line types are called \"{}\"", new.name), "give each its own name"));
+        }
+        self.types.push(new);
+        Ok(())
+    }
+
+    fn add_point(&mut self, row: &Row) -> Result<()> {
+        let new = point(row)?;
+        if self.points.iter().any(|known| known.id == new.id) {
+            return Err(row.error(format!("two points are called \"{}\"", new.id), "give each its own number"));
+        }
+        self.points.push(new);
+        Ok(())
     }
 
     fn add_line(&mut self, row: &Row) -> Result<()> {
@@ -202,25 +254,30 @@ impl Deck {
         }
         let end = |column: usize, name: &str| {
             let id = row.word(column, name)?;
-            self.points.iter().position(|point| point.id == id).ok_or_else(|| {
+            let lower = id.to_ascii_lowercase();
+            let bare = POINT_WORDS.iter().find_map(|word| lower.strip_prefix(word)).unwrap_or(id);
+            let called = |name: &str| self.points.iter().position(|point| point.id == name);
+            called(id).or_else(|| called(bare)).ok_or_else(|| {
                 let help = "lines end in points of the deck; ends on rods (R1A) are not taken over";
                 row.error(format!("there is no point \"{id}\""), help).with_code(ErrorCode::UnknownName)
             })
         };
         let points = [end(2, "AttachA")?, end(3, "AttachB")?];
-        let [length, segments] = row.numbers(4, ["UnstrLen", "NumSegs"])?;
+        let [length, segments] = [row.positive(4, "UnstrLen")?, row.number(5, "NumSegs")?];
         if !(segments >= 1.0 && segments.fract() == 0.0) {
             return Err(row.error(format!("NumSegs is {segments}"), "a whole number, 1 or more"));
         }
         let id = row.word(0, "ID")?.into();
+        if self.lines.iter().any(|known| known.id == id) {
+            return Err(row.error(format!("two lines are called \"{id}\""), "give each its own number"));
+        }
         self.lines.push(DeckLine { id, kind: kind.into(), points, length, segments: segments as usize });
         Ok(())
     }
 
-    /// The value of the first of the options called `names`, in any case of letters.
-    fn option(&self, names: &[&str]) -> Option<f64> {
-        let named = |name: &str| names.iter().any(|known| known.eq_ignore_ascii_case(name));
-        self.options.iter().find(|(_, name)| named(name)).and_then(|(value, _)| value.parse().ok())
+    /// The value of the last option called `known`, in any case of letters.
+    fn option(&self, known: &str) -> Option<f64> {
+        self.options.iter().rfind(|(_, name)| known.eq_ignore_ascii_case(name)).and_then(|(value, _)| number_of(value))
     }
 
     /// Number of lines that end in point number `p`.
@@ -235,9 +292,14 @@ impl Deck {
     /// `Scene` if a free point ends one line alone, or a line ends on fixed points alone.
     pub(crate) fn to_toml(&self, solid: &str, level: f64) -> Result<String> {
         let mut text = format!("# Mooring lines of a MoorDyn deck, with still water at the height {level:?} m.\n");
+        for head in &self.unknown {
+            let _ = writeln!(text, "# not taken over: the section {head}");
+        }
+        for DeckType { name, more, .. } in self.types.iter().filter(|kind| !kind.more.is_empty()) {
+            let _ = writeln!(text, "# not taken over: after CaAx of {name}: {}", more.join(" "));
+        }
         for (value, name) in &self.options {
-            let known = ["kbot", "cbot", "FrictionCoefficient"];
-            if !known.iter().any(|known| known.eq_ignore_ascii_case(name)) {
+            if !BED_OPTIONS.iter().any(|known| known.eq_ignore_ascii_case(name)) {
                 let _ = writeln!(text, "# not taken over: {name} = {value}");
             }
         }
@@ -300,7 +362,7 @@ impl Deck {
             damping => writeln!(text, "damping = {damping:?}"),
         };
         let bed = [("bed_stiffness", "kbot"), ("bed_damping", "cbot"), ("bed_friction", "FrictionCoefficient")];
-        let bed = bed.map(|(word, option)| (word, self.option(&[option])));
+        let bed = bed.map(|(word, option)| (word, self.option(option)));
         let own = [
             ("bending_stiffness", bending),
             ("drag", drag),
@@ -321,15 +383,16 @@ fn file_name(name: &str) -> String {
 }
 
 fn line_type(row: &Row, folder: &Path) -> Result<DeckType> {
-    let [diameter, mass] = row.numbers(1, ["Diam", "MassDen"])?;
+    let [diameter, mass] = [row.positive(1, "Diam")?, row.positive(2, "MassDen")?];
     let word = row.word(3, "EA")?;
     if word.contains('|') || row.word(4, "BA")?.contains('|') {
         let help = "write the static stiffness as EA, and one BA; viscoelastic ropes are not taken over";
         return Err(row.error(format!("EA is \"{word}\", a viscoelastic line"), help));
     }
-    let stiffness = match word.parse() {
-        Ok(stiffness) => Stiffness::Constant(stiffness),
-        Err(_) => Stiffness::Table(read_table(row, folder, word)?),
+    let is_number = number_of(word).is_some() || word.parse::<f64>().is_ok();
+    let stiffness = match is_number {
+        true => Stiffness::Constant(row.positive(3, "EA")?),
+        false => Stiffness::Table(read_table(row, folder, word)?),
     };
     Ok(DeckType {
         name: row.word(0, "Name")?.into(),
@@ -337,6 +400,7 @@ fn line_type(row: &Row, folder: &Path) -> Result<DeckType> {
         stiffness,
         damping: row.number(4, "BA/-zeta")?,
         coefficients: row.numbers(6, ["Cd", "Ca", "CdAx", "CaAx"])?,
+        more: row.words.iter().skip(10).map(|word| word.to_string()).collect(),
     })
 }
 
@@ -346,13 +410,35 @@ fn read_table(row: &Row, folder: &Path, name: &str) -> Result<Vec<[f64; 2]>> {
         let help = "EA is a number (N), or the name of a file of strain and tension beside the deck";
         row.error(format!("EA is \"{name}\", which is neither a number nor a file: {why}"), help)
     })?;
-    let numbers = |line: &str| {
-        let mut words = line.split_whitespace().map(str::parse);
-        Some([words.next()?.ok()?, words.next()?.ok()?])
+    let refuse = |line: usize, what: &str| {
+        let help = "after its heads a table has two numbers in each line, strain and tension (N), which both rise";
+        Err(row.error(format!("EA is the table \"{name}\", whose line {line} {what}"), help))
     };
-    let mut rows: Vec<[f64; 2]> = text.lines().filter_map(numbers).collect();
-    if rows.first().is_some_and(|first| *first != [0.0; 2]) {
-        rows.insert(0, [0.0; 2]);
+    let mut rows: Vec<[f64; 2]> = Vec::new();
+    for (i, line) in text.lines().enumerate() {
+        let words: Vec<&str> =
+            line.split(|c: char| c.is_whitespace() || ",;".contains(c)).filter(|w| !w.is_empty()).collect();
+        let numbers: Vec<f64> = words.iter().map_while(|word| number_of(word)).collect();
+        let is_comment = words.is_empty() || words[0].starts_with(['#', '!']);
+        match numbers[..] {
+            [strain, tension] if words.len() == 2 => {
+                if rows.last().is_some_and(|last| strain <= last[0] || tension < last[1]) {
+                    return refuse(i + 1, "does not rise");
+                }
+                rows.push([strain, tension]);
+            }
+            // Heads have no number.
+            [] if is_comment || rows.is_empty() => {}
+            _ => return refuse(i + 1, "has not two numbers"),
+        }
+    }
+    match rows.first() {
+        Some([strain, tension]) if *strain > 0.0 && *tension > 0.0 => rows.insert(0, [0.0; 2]),
+        Some([0.0, 0.0]) => {}
+        _ => return refuse(1, "begins without the strain 0 and the tension 0"),
+    }
+    if rows.len() < 2 {
+        return refuse(1, "is followed by no numbers");
     }
     Ok(rows)
 }

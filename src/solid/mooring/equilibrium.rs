@@ -4,12 +4,15 @@
 //! Newton's method with a search along each step finds its minimum from the elastic catenary. What the bed bears where the line
 //! leaves it depends on the tension too, which changes little in a step. Friction of the bed is not counted: the line lies as it
 //! was laid, without tension across it.
+//!
+//! What is around the nodes of a line that sinks is read in a few rounds. A line that floats, or has floats, comes to lie at the
+//! surface: there the buoyancy of a node falls as it rises, and what is around the nodes is read in each iteration.
 
 use nalgebra::DVector;
 
 use super::{
     catenary::{Catenary, CatenarySpan},
-    forces::{NodeSurroundings, bed_reaction, bending_forces, node_load},
+    forces::{BedPlane, NodeSurroundings, bed_reaction, bending_forces, node_load},
     line::MooringLine,
     segment::{SegmentPull, segment_pulls},
 };
@@ -18,8 +21,20 @@ use crate::math::{Matrix, Vector};
 /// Most iterations for given surroundings.
 const ITERATIONS: usize = 200;
 
+/// Most iterations in which the surroundings are read anew.
+const LIVE_ITERATIONS: usize = 500;
+
 /// Rounds in which the surroundings are read anew where the nodes have come to lie.
 const ROUNDS: usize = 4;
+
+/// Largest force that the rounds may leave on a node over its weight, –.
+const SETTLED: f64 = 1e-4;
+
+/// Depth to which a node may come below the bed that it had, in an iteration, over the length of a segment.
+const SINKING: f64 = 0.02;
+
+/// Half of the height over which the change of the wet share is measured, over the length of a segment.
+const DIFFERENCE: f64 = 0.01;
 
 /// Largest force on a node at rest over its weight, –.
 const TOLERANCE: f64 = 1e-9;
@@ -29,10 +44,15 @@ impl<const D: usize> MooringLine<D> {
     /// the largest force (N) that remains on a node over the weight of a node.
     pub(crate) fn find_rest(&mut self, around: &dyn Fn(&Vector<D>) -> NodeSurroundings<D>, gravity: &Vector<D>) -> f64 {
         self.hang(around, gravity);
-        let mut left = f64::INFINITY;
-        for _ in 0..ROUNDS {
-            let near: Vec<_> = self.state.x.iter().map(around).collect();
-            left = self.minimize(&near, gravity);
+        if !self.may_float() {
+            for _ in 0..ROUNDS {
+                let near: Vec<_> = self.state.x.iter().map(around).collect();
+                self.minimize(&Around::Frozen(near), gravity);
+            }
+        }
+        let mut left = self.force_left(around, gravity);
+        if left > if self.may_float() { TOLERANCE } else { SETTLED } {
+            left = self.minimize(&Around::Live(around), gravity);
         }
         self.state.v.iter_mut().for_each(|v| *v = Vector::zeros());
         let near: Vec<_> = self.state.x.iter().map(around).collect();
@@ -54,6 +74,25 @@ impl<const D: usize> MooringLine<D> {
         self.state.v = velocities;
     }
 
+    /// Whether the line, or a body on it, is lighter than water.
+    fn may_float(&self) -> bool {
+        let density = self.material.water_density;
+        self.material.mass < self.material.displaced() || self.bodies.iter().any(|b| b.mass < density * b.volume)
+    }
+
+    /// The largest force (N) on a node between the ends over the weight of a node.
+    fn force_left(&self, around: &dyn Fn(&Vector<D>) -> NodeSurroundings<D>, gravity: &Vector<D>) -> f64 {
+        let near: Vec<_> = self.state.x.iter().map(around).collect();
+        let last = self.segments();
+        let largest = self.forces(&near, gravity)[1..last].iter().map(|f| f.norm()).fold(0.0, f64::max);
+        largest / self.node_weight(gravity)
+    }
+
+    /// Weight of a node in air, N.
+    fn node_weight(&self, gravity: &Vector<D>) -> f64 {
+        self.material.mass * self.state.segment * gravity.norm().max(f64::MIN_POSITIVE)
+    }
+
     /// The elastic catenary between the ends, for the plane of both ends and of gravity, with the wet share and the bed of the lower.
     pub(crate) fn catenary(
         &self,
@@ -67,6 +106,18 @@ impl<const D: usize> MooringLine<D> {
         let bodies: f64 = self.bodies.iter().map(|b| b.mass - below.wet * material.water_density * b.volume).sum();
         let net =
             material.mass - below.wet * material.displaced() + bodies / (self.state.segment * self.segments() as f64);
+        self.catenary_of(net, &below, gravity)
+    }
+
+    /// The elastic catenary between the ends with the mass less displaced water `net` (kg/m); `below` is what is around the lower end.
+    fn catenary_of(
+        &self,
+        net: f64,
+        below: &NodeSurroundings<D>,
+        gravity: &Vector<D>,
+    ) -> Option<(Catenary, [Vector<D>; 2], bool)> {
+        let (first, last, material) = (*self.state.x.first()?, *self.state.x.last()?, &self.material);
+        let up = -gravity.try_normalize(f64::MIN_POSITIVE)?;
         // A line that floats up is the mirror image of one that hangs.
         let up = if net < 0.0 { -up } else { up };
         let rises = up.dot(&(last - first)) >= 0.0;
@@ -75,9 +126,7 @@ impl<const D: usize> MooringLine<D> {
         let level = high - low - up * z;
         let x = level.norm();
         let ahead = if x > 0.0 { level / x } else { Vector::zeros() };
-        let lies = |bed: &super::forces::BedPlane<D>| {
-            bed.normal.dot(&up) > 0.7 && bed.depth(&low).abs() < 2.0 * self.state.segment
-        };
+        let lies = |bed: &BedPlane<D>| bed.normal.dot(&up) > 0.7 && bed.depth(&low).abs() < 2.0 * self.state.segment;
         let weight = net.abs().max(1e-6 * material.mass) * gravity.norm();
         let length = self.state.segment * self.segments() as f64;
         let bed = below.bed.filter(|_| net > 0.0).filter(lies).map(|_| 0.0);
@@ -85,9 +134,26 @@ impl<const D: usize> MooringLine<D> {
         Some((span.solve(), [ahead, up], rises))
     }
 
-    /// Puts the nodes on the elastic catenary.
+    /// Puts the nodes on the elastic catenary. A line that would rise above the water by it, or that has floats and sinks, hangs as if
+    /// it sank by itself: it rises from there.
     fn hang(&mut self, around: &dyn Fn(&Vector<D>) -> NodeSurroundings<D>, gravity: &Vector<D>) {
-        let Some((shape, [ahead, up], rises)) = self.catenary(around, gravity) else { return };
+        let Some(shape) = self.catenary(around, gravity) else { return };
+        self.place_on(shape);
+        let is_wet = |x: &Vector<D>| around(x).wet == 1.0;
+        let inner = 1..self.segments();
+        if self.may_float() && !self.state.x[inner].iter().all(is_wet) {
+            let [first, last] = [0, self.segments()].map(|i| self.state.x[i]);
+            let low = if gravity.dot(&(last - first)) <= 0.0 { first } else { last };
+            let (material, below) = (&self.material, around(&low));
+            let net = (material.mass - below.wet * material.displaced()).abs().max(1e-3 * material.mass);
+            if let Some(shape) = self.catenary_of(net, &below, gravity) {
+                self.place_on(shape);
+            }
+        }
+    }
+
+    /// Puts the nodes between the ends on a catenary.
+    fn place_on(&mut self, (shape, [ahead, up], rises): (Catenary, [Vector<D>; 2], bool)) {
         let n = self.segments();
         let low = self.state.x[if rises { 0 } else { n }];
         for i in 1..n {
@@ -123,8 +189,14 @@ impl<const D: usize> MooringLine<D> {
         forces
     }
 
-    /// The stiffness (N/m) of the nodes between the ends, plus `least` on its diagonal.
-    fn stiffness(&self, around: &[NodeSurroundings<D>], gravity: &Vector<D>, least: f64) -> BandMatrix {
+    /// The stiffness (N/m) of the nodes between the ends, plus `least` on its diagonal; `float` is what their buoyancy adds along
+    /// gravity.
+    fn stiffness(
+        &self,
+        around: &[NodeSurroundings<D>],
+        gravity: &Vector<D>,
+        (least, float): (f64, &[f64]),
+    ) -> BandMatrix {
         let (n, material) = (self.segments(), &self.material);
         let mut made = BandMatrix::new((n - 1) * D, 3 * D - 1);
         let identity = Matrix::<D>::identity();
@@ -142,6 +214,10 @@ impl<const D: usize> MooringLine<D> {
                     add(i, j, &(block * sign));
                 }
             }
+        }
+        let vertical = gravity.try_normalize(f64::MIN_POSITIVE).map_or_else(Matrix::zeros, |g| g * g.transpose());
+        for (i, stiff) in float.iter().enumerate() {
+            add(i, i, &(vertical * *stiff));
         }
         for (i, here) in around.iter().enumerate() {
             add(i, i, &(identity * least));
@@ -165,42 +241,92 @@ impl<const D: usize> MooringLine<D> {
         made
     }
 
-    /// Finds the least potential energy with the surroundings of the nodes as they are. Returns the largest force that remains on a
-    /// node over the weight of a node.
-    fn minimize(&mut self, around: &[NodeSurroundings<D>], gravity: &Vector<D>) -> f64 {
+    /// What the buoyancy of each node loses as it rises, N/m, where it is partly wet.
+    fn float_stiffness(&self, around: &Around<'_, D>, near: &[NodeSurroundings<D>], gravity: &Vector<D>) -> Vec<f64> {
+        let (Around::Live(around), Some(down)) = (around, gravity.try_normalize(f64::MIN_POSITIVE)) else {
+            return Vec::new();
+        };
+        let way = DIFFERENCE * self.state.segment;
+        let stiffness = |(i, here): (usize, &NodeSurroundings<D>)| {
+            if here.wet == 0.0 || here.wet == 1.0 {
+                return 0.0;
+            }
+            let [above, below] = [-way, way].map(|way| around(&(self.state.x[i] + down * way)).wet);
+            let displaced =
+                self.material.displaced() * self.share(i) + self.material.water_density * self.bodies[i].volume;
+            displaced * gravity.norm() * (below - above).max(0.0) / (2.0 * way)
+        };
+        near.iter().enumerate().map(stiffness).collect()
+    }
+
+    /// Finds the least potential energy. Returns the largest force that remains on a node over the weight of a node.
+    fn minimize(&mut self, around: &Around<'_, D>, gravity: &Vector<D>) -> f64 {
         let n = self.segments();
         if n < 2 {
             return 0.0;
         }
-        let weight = self.material.mass * self.state.segment * gravity.norm().max(f64::MIN_POSITIVE);
+        let weight = self.node_weight(gravity);
         let least = 1e-6 * weight / self.state.segment;
         let inner = |forces: &[Vector<D>]| DVector::from_iterator((n - 1) * D, forces[1..n].iter().flatten().copied());
         let largest = |forces: &[Vector<D>]| forces[1..n].iter().map(|f| f.norm()).fold(0.0, f64::max) / weight;
-        let mut forces = self.forces(around, gravity);
-        for _ in 0..ITERATIONS {
+        let mut near = around.of(&self.state.x);
+        let mut forces = self.forces(&near, gravity);
+        let most = if matches!(around, Around::Live(_)) { LIVE_ITERATIONS } else { ITERATIONS };
+        for _ in 0..most {
             if largest(&forces) <= TOLERANCE {
                 break;
             }
             let mut step = inner(&forces);
             let uphill = step.clone();
-            self.stiffness(around, gravity, least).solve(step.as_mut_slice());
+            let float = self.float_stiffness(around, &near, gravity);
+            self.stiffness(&near, gravity, (least, &float)).solve(step.as_mut_slice());
             let start = self.state.x.clone();
             let downhill = uphill.dot(&step);
             let longest = step.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
             let mut part = (self.state.segment / longest).min(1.0);
+            let before = near.clone();
             for _ in 0..30 {
                 for i in 1..n {
                     self.state.x[i] = start[i] + Vector::from_fn(|k, _| part * step[(i - 1) * D + k]);
                 }
-                forces = self.forces(around, gravity);
+                near = around.of(&self.state.x);
+                forces = self.forces(&near, gravity);
                 // The energy is convex: beyond its least value along the step the forces point back.
-                if inner(&forces).dot(&step) > -0.5 * downhill {
+                if inner(&forces).dot(&step) > -0.5 * downhill && !self.sinks(around, &before, &start) {
                     break;
                 }
                 part *= 0.5;
             }
         }
         largest(&forces)
+    }
+
+    /// Whether a node has gone from `start` (m) through the bed that it had `before`, where the surroundings are read anew: behind a thin
+    /// wall there is none.
+    fn sinks(&self, around: &Around<'_, D>, before: &[NodeSurroundings<D>], start: &[Vector<D>]) -> bool {
+        let sinks = |((here, from), to): ((&NodeSurroundings<D>, &Vector<D>), &Vector<D>)| {
+            let allowed = |bed: &BedPlane<D>| self.material.depth(bed, from).max(0.0) + SINKING * self.state.segment;
+            here.bed.is_some_and(|bed| self.material.depth(&bed, to) > allowed(&bed))
+        };
+        matches!(around, Around::Live(_)) && before.iter().zip(start).zip(&self.state.x).any(sinks)
+    }
+}
+
+/// What is around the nodes as they move.
+enum Around<'a, const D: usize> {
+    /// The same.
+    Frozen(Vec<NodeSurroundings<D>>),
+    /// What is around a place (m).
+    Live(&'a dyn Fn(&Vector<D>) -> NodeSurroundings<D>),
+}
+
+impl<const D: usize> Around<'_, D> {
+    /// What is around nodes at these places (m).
+    fn of(&self, places: &[Vector<D>]) -> Vec<NodeSurroundings<D>> {
+        match self {
+            Self::Frozen(near) => near.clone(),
+            Self::Live(around) => places.iter().map(around).collect(),
+        }
     }
 }
 

@@ -13,6 +13,9 @@ use crate::{
 /// Step (m) of the difference that gives the normal of a surface, over the length of the shortest segment.
 const NORMAL_STEP: f64 = 1e-4;
 
+/// Depth below the surface at which a node is all wet, over the length of the shortest segment.
+const WET_DEPTH: f64 = 0.1;
+
 /// The force (N) on what holds each end of each line between `solids` where the ends start. What is below the surface is wet.
 pub(crate) fn forces_at_rest<const D: usize>(
     (moorings, points): (&[MooringSpec<D>], &[MooringPointSpec<D>]),
@@ -31,7 +34,7 @@ pub(crate) fn forces_at_rest<const D: usize>(
             let normal = solid.pose.rotation * solid.shape.outward_normal(&local, NORMAL_STEP * shortest);
             BedPlane { point: x - normal * distance(&solid), normal }
         });
-        let wet = if x[D - 1] < water.level { 1.0 } else { 0.0 };
+        let wet = ((water.level - x[D - 1]) / (WET_DEPTH * shortest)).clamp(0.0, 1.0);
         NodeSurroundings { water_velocity: Vector::zeros(), wet, bed }
     };
     let line = |spec: &MooringSpec<D>| {

@@ -75,3 +75,26 @@ fn a_ring_without_a_hollow_is_refused() {
     let crossed = wall(&[[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0], [0.0, 0.0]], 0.1);
     assert!(crossed.check().is_err());
 }
+
+#[test]
+fn the_legs_of_a_sharp_corner_keep_their_thickness() {
+    let (length, thickness) = (0.4, 0.06);
+    for degrees in [5.0_f64, 10.0, 20.0, 30.0, 36.0] {
+        // The far side is outside: two legs and a rounded tip.
+        let (sine, cosine) = degrees.to_radians().sin_cos();
+        let end = [length - length * cosine, length * sine];
+        let outside = wall(&[[0.0, 0.0], [length, 0.0], end], thickness);
+        let tip = 0.5 * thickness * thickness * (std::f64::consts::PI - degrees.to_radians());
+        let volume = outside.volume_properties().volume;
+        // The tip is a polygon of chords of 8.6°, which have 0.4 % less.
+        assert!((volume - 2.0 * length * thickness - tip).abs() < 0.005 * tip, "{degrees}°: {volume} m²");
+        near(outside.signed_distance(&v([length + 0.05, 0.0])), -0.01);
+        near(outside.signed_distance(&v([length + 0.07, 0.0])), 0.01);
+    }
+    // The far side is inside: both legs share what lies between them up to the mitre.
+    let (length, degrees) = (1.0, 30.0_f64);
+    let end = [length - length * degrees.to_radians().cos(), length * degrees.to_radians().sin()];
+    let inside = wall(&[end, [length, 0.0], [0.0, 0.0]], thickness);
+    let mitre = thickness * thickness / (0.5 * degrees.to_radians()).tan();
+    near(inside.volume_properties().volume, 2.0 * length * thickness - mitre);
+}

@@ -113,3 +113,49 @@ fn what_cannot_be_taken_over_is_refused() {
     assert!(parsed(&rods).err().unwrap().to_string().contains("rods"));
     assert!(parsed("no deck").err().unwrap().to_string().contains("no lines"));
 }
+
+/// Numbers as Fortran writes them are read; what a scene has no place for is told; what has no meaning is refused.
+#[test]
+fn no_part_of_a_deck_is_lost_without_a_word() {
+    let sections = |deck: &str| parsed(deck).and_then(|deck| deck.to_toml("float", 15.0));
+    let with = |more: &str| {
+        DECK.replacen("---------------------- OPTIONS", &format!("{more}\n---------------------- OPTIONS"), 1)
+    };
+    let fortran = DECK.replacen("1e5      kbot", "3.0D6    kbot", 1);
+    assert_ne!(fortran, DECK);
+    assert!(sections(&fortran).unwrap().contains("bed_stiffness = 3000000.0"));
+    let error = sections(&DECK.replacen("0.5      Friction", "0,5      Friction", 1)).unwrap_err();
+    assert!(error.to_string().contains("decimal point"), "{error}");
+    let told = sections(&with("------- SYNTHETIC ROPES ------\na\nb\nrope 1 2 3")).unwrap();
+    assert!(told.contains("# not taken over: the section SYNTHETIC ROPES"), "{told}");
+    assert!(sections(&DECK.replacen("1.674e6 ", "inf ", 1)).unwrap_err().to_string().contains("EA"));
+    let points = DECK.replacen("3   hawser    3", "3   hawser    Point3", 1);
+    assert_eq!(sections(&points), sections(DECK), "Point3 is point 3");
+}
+
+#[test]
+fn a_table_of_stiffness_is_read_whole_or_refused() {
+    let folder = std::env::temp_dir().join(format!("pontoon-moordyn-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let deck = DECK.replacen("1.674e6 ", "rope.dat", 1);
+    let read = |table: &str| {
+        std::fs::write(folder.join("rope.dat"), table).unwrap();
+        Deck::parse(&deck, "lines.txt", &folder).and_then(|deck| deck.to_toml("float", 15.0))
+    };
+    let rows = "stiffness = [[0.0, 0.0], [0.01, 1000000.0], [0.02, 3000000.0]]";
+    for table in
+        ["strain tension\n(-) (N)\n0 0\n1.0D-2 1e6\n0.02 3e6\n", "strain,tension\n0.0,0.0\n0.01,1e6\n0.02,3e6\n"]
+    {
+        let sections = read(table).unwrap();
+        assert!(sections.contains(rows), "{sections}");
+    }
+    for (table, line) in [
+        ("0 0\n0.01 x\n0.02 3e6\n", "line 2"),
+        ("0 0\n0.01 1e6\n0.005 2e6\n", "line 3"),
+        ("-0.01 0\n0 1e5\n", "line 1"),
+    ] {
+        let error = read(table).unwrap_err().to_string();
+        assert!(error.contains(line), "{error}");
+    }
+    std::fs::remove_dir_all(folder).unwrap();
+}

@@ -98,3 +98,43 @@ fn a_table_gives_the_tension() {
         assert!((length - (1.0 + strain)).abs() < 1e-4, "{weight} N: {length} m");
     }
 }
+
+/// Water 0.8 m deep over a floor as thick as a tank's, below which there is nothing. The wet share grows over 0.04 m.
+fn sea<const D: usize>(x: &Vector<D>) -> NodeSurroundings<D> {
+    let z = x[D - 1];
+    let near = (-0.12..0.15).contains(&z);
+    let wet = if z < -0.02 { 0.0 } else { ((0.8 - z) / 0.04 + 0.5).clamp(0.0, 1.0) };
+    NodeSurroundings { wet, bed: bed(x).bed.filter(|_| near), ..NodeSurroundings::air() }
+}
+
+#[test]
+fn a_float_in_the_middle_of_a_chain_rises_to_the_surface() {
+    let chain = LineMaterial { mass: 0.8, diameter: 0.01, stiffness: 1e4, ..sample::material() };
+    for segments in [20, 40] {
+        let mut line = MooringLine::<2>::straight(chain.clone(), 2.0, segments, [[2.3, 0.8].into(), [0.9, 0.0].into()]);
+        line.bodies[segments / 2].mass = 0.2;
+        line.bodies[segments / 2].volume = 2e-3;
+        assert!(line.find_rest(&sea, &down()) < 1e-6);
+        let lowest = line.state.x.iter().map(|x| x[1]).fold(f64::INFINITY, f64::min);
+        assert!(lowest > -1e-3, "a node at {lowest} m, below the floor");
+        // It bears 1.8 kg at most and has at most 2 m of chain of 0.72 kg/m to bear: it floats, partly out of the water.
+        let float = line.state.x[segments / 2][1];
+        assert!((0.77..0.83).contains(&float), "the float is at {float} m");
+        // Two halves of 1 m between the surface, the fairlead beside it and the anchor: the fairlead bears half of the 0.72 kg/m of the
+        // chain between it and the float.
+        let pull = line.state.end_forces[0];
+        assert!((pull[1] / (-0.5 * 0.7215 * GRAVITY) - 1.0).abs() < 0.1, "the fairlead bears {pull} N");
+    }
+}
+
+#[test]
+fn a_buoyant_line_that_reaches_the_surface_lies_on_it() {
+    let line = LineMaterial { mass: 0.8, diameter: 0.05, stiffness: 1e4, ..sample::material() };
+    let mut line = MooringLine::<2>::straight(line, 1.75, 20, [[2.3, 0.8].into(), [0.9, 0.0].into()]);
+    assert!(line.find_rest(&sea, &down()) < 1e-6);
+    let highest = line.state.x.iter().map(|x| x[1]).fold(0.0, f64::max);
+    assert!((0.78..0.83).contains(&highest), "a node at {highest} m, the surface is at 0.8 m");
+    // Buoyancy less weight, 1.163 kg/m g, over the depth of 0.8 m: so much more is the tension at the anchor.
+    let [fairlead, anchor] = line.state.end_forces.map(|force| force.norm());
+    assert!((anchor - fairlead - 9.13).abs() < 0.5, "fairlead {fairlead} N, anchor {anchor} N");
+}
