@@ -158,7 +158,7 @@ pub(crate) fn draw_colour_bar(
             on.fill_rect(strip, &solid_paint(colour, 255), Transform::identity(), None);
         }
     }
-    for x in tick_values(range[0], range[1], 6.0) {
+    for x in bar_values(range) {
         let at = bar.0 + wide * ((x - range[0]) / (range[1] - range[0])) as f32;
         ink.write(on, &tick_label(x), (at, bar.1 + bar.3 + 1.2 * em), 0.8 * em, Anchor::Middle, TITLE_COLOUR);
     }
@@ -170,6 +170,14 @@ fn tick_values(low: f64, high: f64, count: f64) -> Vec<f64> {
     let step = round_step(((high - low) / count).max(1e-300));
     let (first, last) = ((low / step - 1e-9).ceil() as i64, (high / step + 1e-9).floor() as i64);
     (first..=last).map(|i| i as f64 * step).collect()
+}
+
+/// Returns the values that a colour bar over `range` shows: both ends, and the round numbers that are at least half a step from them.
+fn bar_values([low, high]: [f64; 2]) -> Vec<f64> {
+    let round = tick_values(low, high, 6.0);
+    let apart = round.get(1).map_or(0.0, |next| 0.5 * (next - round[0]));
+    let inner = round.into_iter().filter(|x| (x - low).min(high - x) >= apart && *x > low && *x < high);
+    std::iter::once(low).chain(inner).chain([high]).collect()
 }
 
 /// Returns the label of a tick, without round-off from the multiple of the step.
@@ -186,5 +194,17 @@ mod tests {
         assert_eq!(tick_values(-0.1, 1.05, 6.0), [0.0, 0.2, 0.4, 0.6000000000000001, 0.8, 1.0]);
         assert_eq!(tick_label(tick_values(0.0, 1.0, 6.0)[3]), "0.6");
         assert_eq!(tick_values(0.0, 3000.0, 6.0).last(), Some(&3000.0));
+    }
+
+    #[test]
+    fn a_colour_bar_has_the_numbers_of_both_ends() {
+        let labels = |range| bar_values(range).into_iter().map(tick_label).collect::<Vec<_>>();
+        assert_eq!(labels([0.0, 0.41]), ["0", "0.1", "0.2", "0.3", "0.41"], "0.4 would lie on 0.41");
+        assert_eq!(labels([0.0, 0.36]), ["0", "0.1", "0.2", "0.3", "0.36"]);
+        assert_eq!(
+            labels([-600.0, 600.0]),
+            ["−600", "−400", "−200", "0", "200", "400", "600"],
+            "round ends stand once"
+        );
     }
 }

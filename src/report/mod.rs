@@ -20,6 +20,7 @@ mod outline;
 mod page;
 mod picture;
 mod placement;
+mod ties;
 pub(crate) mod plot;
 mod sections;
 mod mesh_edges;

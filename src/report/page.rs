@@ -13,6 +13,7 @@ use super::{
     outline::Outline,
     run_data::{RunData, SceneGeometry},
     sections, summary_tables,
+    ties::Tie,
 };
 use crate::error::Result;
 
@@ -77,6 +78,7 @@ struct PageScene<'a> {
     g: f64,
     ends: &'a [(usize, f64)],
     solids: Vec<PageSolid<'a>>,
+    ties: &'a [Tie],
     gauges: Vec<PageGauge<'a>>,
 }
 
@@ -98,8 +100,8 @@ impl<'a> From<&'a SceneGeometry> for PageScene<'a> {
     fn from(set: &'a SceneGeometry) -> Self {
         let solids = set.solids.iter().map(|s| PageSolid { name: &s.name, role: s.role, lines: &s.lines }).collect();
         let gauges = set.gauges().map(|(name, what, at)| PageGauge { name, what, at }).collect();
-        let SceneGeometry { dimension, dp, level, rho0, g, ref ends, .. } = *set;
-        Self { dimension, dp, level, rho0, g, ends, solids, gauges }
+        let SceneGeometry { dimension, dp, level, rho0, g, ref ends, ref ties, .. } = *set;
+        Self { dimension, dp, level, rho0, g, ends, solids, ties, gauges }
     }
 }
 

@@ -171,7 +171,7 @@ fn solid_points(film: &FrameSequence, number: usize, set: &SceneGeometry) -> Res
     Ok(own.map(|(on, depth)| (depth, on, None)).collect())
 }
 
-/// Returns the lines of all solids and the mooring lines in frame `number`.
+/// Returns the lines of all solids, and the springs, ropes and mooring lines in frame `number`.
 fn solid_lines(film: &FrameSequence, number: usize, set: &SceneGeometry, flat: bool) -> Result<Vec<SolidLines>> {
     let (first, now) = (film.solids(0)?, film.solids(number)?);
     let drawn = |(i, solid): (usize, &DrawnSolid)| {
@@ -183,13 +183,23 @@ fn solid_lines(film: &FrameSequence, number: usize, set: &SceneGeometry, flat: b
         SolidLines { lines, moves: !fixed }
     };
     let mut all: Vec<SolidLines> = set.solids.iter().enumerate().map(drawn).collect();
+    let t = film.times()[number];
+    let placed = |x: &[f64; 3], solid: Option<usize>| match solid.and_then(|i| Some((i, set.solids.get(i)?))) {
+        None => *x,
+        Some((i, solid)) => {
+            let own = points_of_solid(&first, i);
+            solid_placement(solid.role == "fixed", &solid.start, &own, &first, &now).to_world(x)
+        }
+    };
+    let ties = set.ties.iter().filter(|tie| tie.acts_at(t));
+    let ties = ties.map(|tie| [0, 1].map(|k| placed(&tie.ends[k], tie.solids[k]).map(|x| x as f32)).to_vec());
     // A line that runs there and back encloses no area.
     let there_and_back = |nodes: Vec<[f32; 3]>| {
         let on_plane = |x: &[f32; 3]| project(&x.map(f64::from), flat).0;
         let nodes: Vec<[f64; 2]> = nodes.iter().map(on_plane).collect();
         (nodes.iter().chain(nodes.iter().rev()).copied().collect(), false)
     };
-    let lines: Vec<_> = film.moorings(number)?.into_iter().map(there_and_back).collect();
+    let lines: Vec<_> = ties.chain(film.moorings(number)?).map(there_and_back).collect();
     if !lines.is_empty() {
         all.push(SolidLines { lines, moves: true });
     }

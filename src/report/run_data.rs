@@ -9,6 +9,7 @@ use std::{
 use super::{
     outline::{Outline, outlines},
     placement::Placement,
+    ties::{Tie, ties},
 };
 use crate::{
     analysis::{CheckCurves, ReferenceCheck},
@@ -63,6 +64,8 @@ pub(crate) struct SceneGeometry {
     pub ends: Vec<(usize, f64)>,
     /// The solids at the start.
     pub solids: Vec<DrawnSolid>,
+    /// The springs and the ropes.
+    pub ties: Vec<Tie>,
     /// The probes, the checks and the output settings.
     pub plan: Plan,
 }
@@ -104,7 +107,7 @@ impl RunData {
         let mut remarks = Vec::new();
         let mut noted = |what: &str, why: Error| remarks.push(format!("{what}: {}", why.message));
         let sets: Vec<(String, String)> = manifest.set.iter().map(|(k, v)| (k.clone(), v.clone())).collect();
-        let set = Scene::read(&file, &sets).and_then(|scene| SceneGeometry::from_scene(&scene));
+        let set = Scene::read(&file, &sets).and_then(|scene| SceneGeometry::new(&scene, &manifest.events));
         let set = set.map_err(|why| noted("bodies and gauges are not drawn, for the scene cannot be built", why)).ok();
         let film = FrameSequence::open(folder).unwrap_or_else(|why| {
             noted("there is no player, for the frames cannot be read", why);
@@ -179,14 +182,15 @@ fn names(series: &Path, plan: Option<&Plan>) -> Vec<String> {
 }
 
 impl SceneGeometry {
-    fn from_scene(scene: &Scene) -> Result<Self> {
+    /// Returns the geometry of `scene`, of a run with these `events`.
+    fn new(scene: &Scene, events: &[String]) -> Result<Self> {
         match scene.dimension {
-            2 => Self::from_scene_in::<2>(scene),
-            _ => Self::from_scene_in::<3>(scene),
+            2 => Self::in_dimension::<2>(scene, events),
+            _ => Self::in_dimension::<3>(scene, events),
         }
     }
 
-    fn from_scene_in<const D: usize>(scene: &Scene) -> Result<Self> {
+    fn in_dimension<const D: usize>(scene: &Scene, events: &[String]) -> Result<Self> {
         let SceneLayout { solids, model, still_water } = scene.layout::<D>()?;
         let plan = scene.plan()?;
         let solids = solids.iter().map(|spec| DrawnSolid {
@@ -199,7 +203,8 @@ impl SceneGeometry {
             lines: outlines(&spec.shape),
             start: Placement::from_pose(&spec.initial_kinematics().pose),
         });
-        let solids = solids.collect();
+        let solids: Vec<_> = solids.collect();
+        let ties = ties::<D>(scene, &solids, events);
         let (down, beside) =
             model.gravity.split_last().map_or((0.0, false), |(g, rest)| (-g, rest.iter().any(|x| *x != 0.0)));
         let periodic = scene.periodic.clone().unwrap_or_default().build::<D>();
@@ -211,7 +216,7 @@ impl SceneGeometry {
         let faces = scene.inflow.iter().chain(&scene.outflow).filter_map(OpenBoundaryConfig::place);
         let ends = sides.chain(planes).chain(faces).collect();
         let (dp, level, rho0) = (scene.dp, still_water.level, model.rho0);
-        Ok(Self { dimension: D, dp, level, rho0, g, ends, solids, plan })
+        Ok(Self { dimension: D, dp, level, rho0, g, ends, solids, ties, plan })
     }
 
     /// Returns the gauges: the name of each gauge, its measured quantity, and its position (m) with as many coordinates

@@ -143,13 +143,22 @@ class Film {
     return p.map((x, k) => x + a * (q[k] - x));
   }
 
-  /** The mooring lines where they were placed: the nodes of each, m. */
+  /** The springs and ropes where they were placed: the ends of each, m. */
+  ties() {
+    const { i, a } = this.at, { times } = this, t = times[i] + (a ? a * (times[i + 1] - times[i]) : 0);
+    const acts = tie => tie.since <= t && (tie.until === null || t < tie.until);
+    const place = (x, solid) => solid === null ? x : moved(this.pose(solid), x);
+    return (this.run.stage?.ties ?? []).filter(acts).map(tie => tie.ends.map((x, k) => place(x, tie.solids[k])));
+  }
+
+  /** The springs, ropes and mooring lines where they were placed: the points of each, m. */
   lines() {
-    if (!this.moorings) return [];
+    const ties = this.ties();
+    if (!this.moorings) return ties;
     const { i } = this.at, { frames, channels, alone, changes, nodes } = this.moorings;
     const a = i + 1 < frames.length && !alone[i + 1] && !changes[i + 1] ? this.at.a : 0;
     let from = 0;
-    return nodes[i].map(n => {
+    const moorings = nodes[i].map(n => {
       const line = Array.from({ length: n }, (_, k) => [0, 1, 2].map(c => {
         if (!channels[c]) return 0;
         const p = frames[i][c][from + k], q = a ? frames[i + 1][c][from + k] : p;
@@ -158,6 +167,7 @@ class Film {
       from += n;
       return line;
     });
+    return [...ties, ...moorings];
   }
 
   /** The box that holds the water of all frames, but for single drops, and the moving solids: low and high corner. */

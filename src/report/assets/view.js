@@ -226,7 +226,7 @@ class View {
     on.globalAlpha = 1;
   }
 
-  /** The mooring lines; in a section what is near to it. */
+  /** The springs, ropes and mooring lines; in a section what is near to it. */
   moorings(on) {
     const { film, cut } = this, [u, v] = this.axes(), axis = "xyz".indexOf(this.look.mode);
     const off = x => x[axis] - cut, crosses = (a, b) => off(a) * off(b) <= 0 || Math.min(Math.abs(off(a)), Math.abs(off(b))) < film.dp;

@@ -186,6 +186,17 @@ pub enum ConstraintChange {
     Removed,
 }
 
+/// Time (s) at which `element`, such as `spring "line"`, ended or broke, by the texts of `events`.
+#[cfg(feature = "cli")]
+pub(crate) fn end_in_events(events: &[String], element: &str) -> Option<f64> {
+    let end = |event: &String| {
+        let told = event.strip_prefix(element)?;
+        let told = told.strip_prefix(" breaks at t = ").or_else(|| told.strip_prefix(" is released at t = "))?;
+        told.split(' ').next()?.parse().ok()
+    };
+    events.iter().find_map(end)
+}
+
 impl fmt::Display for ConstraintEvent {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { time, element, change, .. } = self;
