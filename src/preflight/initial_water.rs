@@ -30,7 +30,12 @@ pub(super) fn check<const D: usize>(context: &PreflightContext<D>, boxes: &[Boun
 /// A level between two rows of particles.
 fn check_surface<const D: usize>(context: &PreflightContext<D>, findings: &mut Vec<Finding>) {
     let (dp, level) = (context.dp(), context.still_water.level);
-    let highest = context.system.fluid().r.iter().map(|x| x[D - 1]).fold(f64::NEG_INFINITY, f64::max);
+    let heights = || context.system.fluid().r.iter().map(|x| x[D - 1]);
+    let top = heights().fold(f64::NEG_INFINITY, f64::max);
+    // A packed particle beside a body may stand above its row.
+    let mut row: Vec<f64> = heights().filter(|height| *height > top - 0.5 * dp).collect();
+    row.sort_by(f64::total_cmp);
+    let Some(&highest) = row.get(row.len() / 2) else { return };
     let off = highest + 0.5 * dp - level;
     // Round regions are packed without rows.
     if off.abs() <= OFF_LATTICE * dp || off.abs() > dp {
@@ -69,7 +74,8 @@ fn check_support<const D: usize>(
         context.system.visit_fluid_near(x, &mut |_, y, _| by_water |= y[D - 1] < x[D - 1] - 0.5 * dp);
         by_solid || by_water
     };
-    if row.is_empty() || row.iter().any(is_carried) {
+    // Walls beside the water carry nothing, but reach as far.
+    if row.is_empty() || 2 * row.iter().filter(|x| is_carried(x)).count() >= row.len() {
         return;
     }
     let what = format!(

@@ -3,7 +3,7 @@
 use super::context::Context;
 use crate::{
     error::{ErrorCode, Result},
-    math::{expression::Formula, format::four_digits},
+    math::expression::Formula,
 };
 
 /// Number of equal intervals of the run at whose ends the value is looked at.
@@ -35,7 +35,8 @@ pub(super) fn require_finite(ctx: &Context, key: &str, text: &str, formula: &For
         x if x.is_nan() => "no value".into(),
         x => format!("the value {x}"),
     };
-    let what = format!("\"{text}\" has {shown} at t = {} s of a run to {} s", four_digits(wrong), ctx.until);
+    let rounded = (wrong * 1e4).round() / 1e4;
+    let what = format!("\"{text}\" has {shown} at t = {} s of a run to {} s", rounded, ctx.until);
     let help = "write a formula that is finite at all times, as with max(0, ..) below a root, or end the run before";
     Err(ctx.error_with_help(key, what, help).with_code(ErrorCode::OutOfRange))
 }

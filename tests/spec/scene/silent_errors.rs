@@ -201,6 +201,9 @@ fn changed(pairs: &[(&str, &str)]) -> String {
     })
 }
 
+/// The box that touches nothing: contacts do not act across periodic sides.
+const UNTOUCHED: &str = "free = { density = 500.0 }\n[[contact]]\nbetween = [\"box\"]\ntouch = false\n";
+
 /// The region of the water of the valid scene.
 const REGION: &str = "min = [0.0, 0.0], max = [2.0, 0.5] } }";
 
@@ -273,6 +276,7 @@ fn a_period_of_another_length_than_the_water_is_found() {
     let periodic = |sides: &str| {
         changed(&[
             ("frames = \"off\"", &format!("frames = \"off\"\nperiodic = {{ x = {sides} }}")),
+            ("free = { density = 500.0 }\n", UNTOUCHED),
             (
                 "shape = { tank = { size = [2.0, 1.0] } }",
                 "shape = { box = { size = [9.0, 0.3] } }\nat = { x = 1.0, y = -0.15 }",
@@ -308,6 +312,7 @@ fn a_carriage_that_starts_at_speed_with_the_water_is_noted() {
                 "frames = \"off\"\ntowed = { along = \"x\", velocity = 0.3 }\nperiodic = { x = [0.0, 2.0] }",
             ),
             (REGION, &format!("{REGION}\n{water}")),
+            ("free = { density = 500.0 }\n", UNTOUCHED),
             (
                 "shape = { tank = { size = [2.0, 1.0] } }",
                 "shape = { box = { size = [9.0, 0.3] } }\nat = { x = 1.0, y = -0.15 }",
