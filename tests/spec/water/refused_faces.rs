@@ -31,7 +31,7 @@ fn build(text: &str) -> Result<(), Error> {
 
 /// The message and the remedy.
 fn refusal(text: &str) -> String {
-    let error = build(text).err().expect(text);
+    let error = build(text).expect_err(text);
     format!("{} {}", error.message, error.help.unwrap_or_default())
 }
 
