@@ -69,10 +69,10 @@ fn a_formula_without_a_value_during_the_run_is_refused_with_its_time() {
     let force = "[[force]]\nname = \"f\"\non = \"box\"\nforce = [\"sqrt(1-t)\", 0.0]\n";
     let motor = format!("{slider}motor = {{ force = \"sqrt(1-t)\" }}\n");
     for (name, more, key) in [
-        ("moor", chain, "mooring.m.paid_out"),
-        ("force", force, "force.f.force"),
+        ("moor", chain, "mooring.0.paid_out"),
+        ("force", force, "force.0.force"),
         ("wind", "[[wind]]\non = [\"box\"]\nvelocity = [\"sqrt(1-t)\", 0.0]\n", "wind.0.velocity"),
-        ("joint", &motor, "joint.j.motor.force"),
+        ("joint", &motor, "joint.0.motor.force"),
     ] {
         assert_refused(name, &scene(REST, more), &[], &[key, "t = 1 s"]);
     }
