@@ -27,8 +27,14 @@ const LIVE_ITERATIONS: usize = 500;
 /// Rounds in which the surroundings are read anew where the nodes have come to lie.
 const ROUNDS: usize = 4;
 
-/// Largest force that the rounds may leave on a node over its weight, –.
+/// Largest force on a node over its weight with which a line that may float has found its rest, –.
 const SETTLED: f64 = 1e-4;
+
+/// Factors on the damping of an iteration after one whose step was cut to less than [`CUT`] of it, and after another.
+const DAMPING: [f64; 2] = [10.0, 0.3];
+
+/// Share of a step below which the next iteration is damped more.
+const CUT: f64 = 0.2;
 
 /// Depth to which a node may come below the bed that it had, in an iteration, over the length of a segment.
 const SINKING: f64 = 0.02;
@@ -43,16 +49,14 @@ impl<const D: usize> MooringLine<D> {
     /// Brings the line to rest between its held ends. `around` says what is around a place (m), and `gravity` is in m/s². Returns
     /// the largest force (N) that remains on a node over the weight of a node.
     pub(crate) fn find_rest(&mut self, around: &dyn Fn(&Vector<D>) -> NodeSurroundings<D>, gravity: &Vector<D>) -> f64 {
-        self.hang(around, gravity);
-        if !self.may_float() {
-            for _ in 0..ROUNDS {
-                let near: Vec<_> = self.state.x.iter().map(around).collect();
-                self.minimize(&Around::Frozen(near), gravity);
-            }
-        }
-        let mut left = self.force_left(around, gravity);
-        if left > if self.may_float() { TOLERANCE } else { SETTLED } {
-            left = self.minimize(&Around::Live(around), gravity);
+        let mut left = if self.may_float() {
+            self.hang(around, gravity);
+            self.minimize(&Around::Live(around), gravity)
+        } else {
+            f64::INFINITY
+        };
+        if left > SETTLED {
+            left = self.find_rest_in_rounds(around, gravity);
         }
         self.state.v.iter_mut().for_each(|v| *v = Vector::zeros());
         let near: Vec<_> = self.state.x.iter().map(around).collect();
@@ -67,6 +71,20 @@ impl<const D: usize> MooringLine<D> {
         left
     }
 
+    /// Brings the line to rest from the elastic catenary, with what is around the nodes read anew in a few rounds. Returns the largest
+    /// force (N) that remains on a node, with what was around it in the last round, over the weight of a node.
+    fn find_rest_in_rounds(&mut self, around: &dyn Fn(&Vector<D>) -> NodeSurroundings<D>, gravity: &Vector<D>) -> f64 {
+        if let Some(shape) = self.catenary(around, gravity) {
+            self.place_on(shape);
+        }
+        let mut left = f64::INFINITY;
+        for _ in 0..ROUNDS {
+            let near: Vec<_> = self.state.x.iter().map(around).collect();
+            left = self.minimize(&Around::Frozen(near), gravity);
+        }
+        left
+    }
+
     /// Brings the line to rest between its held ends, as [`MooringLine::find_rest`] does, and keeps the velocities of its nodes.
     pub(crate) fn place_at_rest(&mut self, around: &dyn Fn(&Vector<D>) -> NodeSurroundings<D>, gravity: &Vector<D>) {
         let velocities = self.state.v.clone();
@@ -78,14 +96,6 @@ impl<const D: usize> MooringLine<D> {
     fn may_float(&self) -> bool {
         let density = self.material.water_density;
         self.material.mass < self.material.displaced() || self.bodies.iter().any(|b| b.mass < density * b.volume)
-    }
-
-    /// The largest force (N) on a node between the ends over the weight of a node.
-    fn force_left(&self, around: &dyn Fn(&Vector<D>) -> NodeSurroundings<D>, gravity: &Vector<D>) -> f64 {
-        let near: Vec<_> = self.state.x.iter().map(around).collect();
-        let last = self.segments();
-        let largest = self.forces(&near, gravity)[1..last].iter().map(|f| f.norm()).fold(0.0, f64::max);
-        largest / self.node_weight(gravity)
     }
 
     /// Weight of a node in air, N.
@@ -266,7 +276,8 @@ impl<const D: usize> MooringLine<D> {
             return 0.0;
         }
         let weight = self.node_weight(gravity);
-        let least = 1e-6 * weight / self.state.segment;
+        let (softest, stiffest) = (1e-6 * weight / self.state.segment, 10.0 * weight / self.state.segment);
+        let mut least = softest;
         let inner = |forces: &[Vector<D>]| DVector::from_iterator((n - 1) * D, forces[1..n].iter().flatten().copied());
         let largest = |forces: &[Vector<D>]| forces[1..n].iter().map(|f| f.norm()).fold(0.0, f64::max) / weight;
         let mut near = around.of(&self.state.x);
@@ -296,6 +307,9 @@ impl<const D: usize> MooringLine<D> {
                     break;
                 }
                 part *= 0.5;
+            }
+            if matches!(around, Around::Live(_)) {
+                least = (least * DAMPING[usize::from(part >= CUT)]).clamp(softest, stiffest);
             }
         }
         largest(&forces)

@@ -138,3 +138,18 @@ fn a_buoyant_line_that_reaches_the_surface_lies_on_it() {
     let [fairlead, anchor] = line.state.end_forces.map(|force| force.norm());
     assert!((anchor - fairlead - 9.13).abs() < 0.5, "fairlead {fairlead} N, anchor {anchor} N");
 }
+
+#[test]
+fn a_loop_of_buoyant_line_that_hangs_into_the_water_floats_on_it() {
+    // 1 m between ends 0.2 m apart and 0.27 m above the water: more than reaches the surface.
+    let material = LineMaterial { mass: 1.0, diameter: 0.04, stiffness: 2e3, ..sample::material() };
+    let mut line = MooringLine::<2>::straight(material, 1.0, 20, [[0.5, 0.57].into(), [0.7, 0.57].into()]);
+    let water = |x: &Vector<2>| sea(&(x + Vector::from([0.0, 0.5])));
+    let left = line.find_rest(&water, &down());
+    assert!(left < 1e-4, "{left} of a node's weight remains");
+    let lowest = line.state.x.iter().map(|x| x[1]).fold(1.0, f64::min);
+    assert!((0.28..0.31).contains(&lowest), "the lowest node is at {lowest} m, the surface at 0.3 m");
+    // Each side bears what hangs above the water, some 0.27 m of 1 kg/m.
+    let [first, _] = line.state.end_forces;
+    assert!((-first[1] / (0.27 * GRAVITY) - 1.0).abs() < 0.2, "{first} N");
+}
