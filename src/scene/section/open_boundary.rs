@@ -335,10 +335,12 @@ impl OpenBoundaryConfig {
             wave.build(ctx, &format!("{key}.wave"), &water)
         });
         let waves = waves.transpose()?;
-        let speed = match self.absorb_period.or(waves.as_ref().map(IncidentWaves::main_period)) {
+        let period = self.absorb_period.or(waves.as_ref().map(IncidentWaves::main_period));
+        let absorbed_speed = match (self.absorb, period) {
+            (None | Some(false), _) => None,
             // Long waves.
-            None => (g * depth).sqrt(),
-            Some(period) => {
+            (Some(true), None) => Some((g * depth).sqrt()),
+            (Some(true), Some(period)) => {
                 // Of the waves that leave, in the water, on the current that they meet.
                 let (omega, along) = (TAU / period, face.outward_velocity(&middle, 0.0).unwrap_or(0.0));
                 let k = wave_number_on_current(omega, depth, along, g).ok_or_else(|| {
@@ -346,10 +348,9 @@ impl OpenBoundaryConfig {
                     let help = format!("write  absorb = false, or: {}", against_current(omega, depth, -along, g));
                     ctx.error_with_help(&format!("{key}.absorb_period"), &what, &help)
                 })?;
-                omega / k - along
+                Some(omega / k - along)
             }
         };
-        let absorbed_speed = self.absorb.unwrap_or(false).then_some(speed);
         // Without velocity and level the pressure is that of the water.
         let level = if face.velocity.is_some() { Some(level) } else { self.level };
         let face = OpenBoundary { level, absorbed_speed, waves, ..face };
