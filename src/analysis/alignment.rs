@@ -93,14 +93,19 @@ pub fn best_delay(sim: &TimeSeries, reference: &TimeSeries) -> Option<f64> {
         }
     }
     let (middle, least) = best?;
-    let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
-    let (mut a, mut b) = ((middle - STEP).max(-MAX_DELAY), (middle + STEP).min(MAX_DELAY));
-    while b - a > 1e-6 {
-        let (x, y) = (b - golden * (b - a), a + golden * (b - a));
-        if n(x).unwrap_or(f64::INFINITY) <= n(y).unwrap_or(f64::INFINITY) { b = y } else { a = x }
-    }
-    let fine = 0.5 * (a + b);
+    let around = [(middle - STEP).max(-MAX_DELAY), (middle + STEP).min(MAX_DELAY)];
+    let fine = least_by_golden_section(around, 1e-6, |delay| n(delay).unwrap_or(f64::INFINITY));
     Some(if n(fine).is_some_and(|n| n < least) { fine } else { middle })
+}
+
+/// Returns where in the range from `a` to `b` the function `f`, with one minimum there, is least, to `tolerance`.
+pub(super) fn least_by_golden_section([mut a, mut b]: [f64; 2], tolerance: f64, f: impl Fn(f64) -> f64) -> f64 {
+    let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
+    while b - a > tolerance {
+        let (x, y) = (b - golden * (b - a), a + golden * (b - a));
+        if f(x) <= f(y) { b = y } else { a = x }
+    }
+    0.5 * (a + b)
 }
 
 /// Returns `reference` shifted by the delay of the run, over the times of the run, or `None` if the run covers too

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::{Matrix4, Vector4};
 
-use super::{AlignedMetrics, ErrorMetrics};
+use super::{AlignedMetrics, ErrorMetrics, alignment::least_by_golden_section};
 use crate::{math::time_series::TimeSeries, plan::ResponseReference};
 
 /// Range of the fitted period about the stated one, relative to it: a body that drifts with a fifth of the wave's speed
@@ -61,13 +61,8 @@ pub(super) fn fundamental(series: &TimeSeries, period: f64) -> Option<Fundamenta
     let step = (high - low) / f64::from(TRIED);
     let tried = (0..=TRIED).map(|i| low + f64::from(i) * step);
     let best = tried.min_by(|a, b| remainder(*a).total_cmp(&remainder(*b)))?;
-    let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
-    let (mut a, mut b) = ((best - step).max(low), (best + step).min(high));
-    while b - a > 1e-9 * best {
-        let (x, y) = (b - golden * (b - a), a + golden * (b - a));
-        if remainder(x) <= remainder(y) { b = y } else { a = x }
-    }
-    fit(0.5 * (a + b)).filter(|fit| fit.amplitude > 0.0)
+    let around = [(best - step).max(low), (best + step).min(high)];
+    fit(least_by_golden_section(around, 1e-9 * best, remainder)).filter(|fit| fit.amplitude > 0.0)
 }
 
 /// Returns the fit of `series` with this `frequency` (Hz).

@@ -4,9 +4,9 @@ use serde::Serialize;
 
 use super::{Finding, PreflightContext};
 use crate::{
-    math::format::three_digits,
+    math::{Vector, format::three_digits},
     simulation::Simulation,
-    solid::{Role, WinchTarget},
+    solid::{MooringReading, MooringSpec, Role, WinchTarget},
 };
 
 /// A mooring line at rest that acts at the start.
@@ -52,7 +52,8 @@ pub(super) fn summaries<const D: usize>(
     findings: &mut Vec<Finding>,
 ) -> (Vec<MooringSummary>, Vec<MooredSurge>) {
     let specs = &context.system.constraints().moorings;
-    let line = |(i, now): (usize, crate::solid::MooringReading<D>)| {
+    let readings = sim.mooring_readings();
+    let line = |(i, now): (usize, &MooringReading<D>)| {
         if now.nodes.is_empty() {
             return None;
         }
@@ -73,7 +74,7 @@ pub(super) fn summaries<const D: usize>(
             step_s: sim.mooring_step(i),
         })
     };
-    let lines: Vec<MooringSummary> = sim.mooring_readings().into_iter().enumerate().filter_map(line).collect();
+    let lines: Vec<MooringSummary> = readings.iter().enumerate().filter_map(line).collect();
     for own in lines.iter().filter(|own| own.step_s * MOST_INNER_STEPS < sim.step_limit()) {
         let inner = (sim.step_limit() / own.step_s).ceil();
         let what = format!(
@@ -113,8 +114,8 @@ pub(super) fn summaries<const D: usize>(
             findings.push(Finding::warning("breaks_at_start", what, mend));
         }
     }
-    let buried = |(i, now): (usize, crate::solid::MooringReading<D>)| lies_in_solid(context, &specs[i], &now.nodes);
-    findings.extend(sim.mooring_readings().into_iter().enumerate().filter_map(buried));
+    let buried = readings.iter().zip(specs).filter_map(|(now, spec)| lies_in_solid(context, spec, &now.nodes));
+    findings.extend(buried);
     let surge = |(i, solid): (usize, &crate::solid::Solid<D>)| {
         let body = solid.body.as_ref()?;
         let moored = specs.iter().any(|spec| spec.ends.iter().any(|end| end.solid == Some(i)));
@@ -133,11 +134,11 @@ pub(super) fn summaries<const D: usize>(
 /// A warning about a line with nodes deep in a fixed solid or behind it: deeper than a bed yields.
 fn lies_in_solid<const D: usize>(
     context: &PreflightContext<'_, D>,
-    spec: &crate::solid::MooringSpec<D>,
-    nodes: &[crate::math::Vector<D>],
+    spec: &MooringSpec<D>,
+    nodes: &[Vector<D>],
 ) -> Option<Finding> {
     let (dp, last) = (context.system.model().dp, nodes.len().checked_sub(1)?);
-    let depth = |x: &crate::math::Vector<D>| {
+    let depth = |x: &Vector<D>| {
         let solids = context.solids().iter().filter(|solid| matches!(solid.spec.role, Role::Fixed));
         let depths = solids.map(|solid| {
             let local = solid.kinematics.pose.local(x);

@@ -282,7 +282,8 @@ impl<const D: usize> MooringLine<D> {
         let largest = |forces: &[Vector<D>]| forces[1..n].iter().map(|f| f.norm()).fold(0.0, f64::max) / weight;
         let mut near = around.of(&self.state.x);
         let mut forces = self.forces(&near, gravity);
-        let most = if matches!(around, Around::Live(_)) { LIVE_ITERATIONS } else { ITERATIONS };
+        let is_live = matches!(around, Around::Live(_));
+        let most = if is_live { LIVE_ITERATIONS } else { ITERATIONS };
         for _ in 0..most {
             if largest(&forces) <= TOLERANCE {
                 break;
@@ -295,34 +296,35 @@ impl<const D: usize> MooringLine<D> {
             let downhill = uphill.dot(&step);
             let longest = step.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
             let mut part = (self.state.segment / longest).min(1.0);
-            let before = near.clone();
+            let before = if is_live { near.clone() } else { Vec::new() };
             for _ in 0..30 {
                 for i in 1..n {
                     self.state.x[i] = start[i] + Vector::from_fn(|k, _| part * step[(i - 1) * D + k]);
                 }
-                near = around.of(&self.state.x);
+                if is_live {
+                    near = around.of(&self.state.x);
+                }
                 forces = self.forces(&near, gravity);
                 // The energy is convex: beyond its least value along the step the forces point back.
-                if inner(&forces).dot(&step) > -0.5 * downhill && !self.sinks(around, &before, &start) {
+                if inner(&forces).dot(&step) > -0.5 * downhill && !self.sinks(&before, &start) {
                     break;
                 }
                 part *= 0.5;
             }
-            if matches!(around, Around::Live(_)) {
+            if is_live {
                 least = (least * DAMPING[usize::from(part >= CUT)]).clamp(softest, stiffest);
             }
         }
         largest(&forces)
     }
 
-    /// Whether a node has gone from `start` (m) through the bed that it had `before`, where the surroundings are read anew: behind a thin
-    /// wall there is none.
-    fn sinks(&self, around: &Around<'_, D>, before: &[NodeSurroundings<D>], start: &[Vector<D>]) -> bool {
+    /// Whether a node has gone from `start` (m) through the bed that it had `before`: behind a thin wall there is none.
+    fn sinks(&self, before: &[NodeSurroundings<D>], start: &[Vector<D>]) -> bool {
         let sinks = |((here, from), to): ((&NodeSurroundings<D>, &Vector<D>), &Vector<D>)| {
             let allowed = |bed: &BedPlane<D>| self.material.depth(bed, from).max(0.0) + SINKING * self.state.segment;
             here.bed.is_some_and(|bed| self.material.depth(&bed, to) > allowed(&bed))
         };
-        matches!(around, Around::Live(_)) && before.iter().zip(start).zip(&self.state.x).any(sinks)
+        before.iter().zip(start).zip(&self.state.x).any(sinks)
     }
 }
 
