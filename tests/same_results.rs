@@ -4,7 +4,7 @@
 //! layout of a checkpoint. It hashes the series as files. On a mismatch it prints the new table, which replaces the
 //! record after an intended change.
 //!
-//! Each scene has the same bits on three ranks.
+//! Each scene has the same bits on three ranks, or on as many as the environment variable `PONTOON_TEST_RANKS` says.
 //!
 //! `.ci/without-slp` repeats the test in a build with `-C no-vectorize-slp`: a compiler fault in one of the builds, in this crate
 //! or in its dependencies, changes bits of only one of them (decision record 0130).
@@ -38,6 +38,9 @@ const COARSER: [(&str, &str); 6] = [
 
 /// Largest number of water particles for a run with the reference pair loop, which takes ten times as long.
 const REFERENCE: usize = 8_000;
+
+/// Number of ranks unless the environment says another.
+const RANKS: usize = 3;
 
 /// FNV-1a, 64 bits.
 struct Hash(u64);
@@ -87,21 +90,22 @@ where
     hash.0
 }
 
-/// Asserts that each of three ranks, which share the pairs, has the state `alone`.
+/// Asserts that each of several ranks, which share the pairs, has the state `alone`.
 fn assert_same_on_ranks<const D: usize>(name: &str, scene: &Scene, alone: u64)
 where
     Dim<D>: Dimension<D>,
 {
+    let count = std::env::var("PONTOON_TEST_RANKS").map_or(RANKS, |count| count.parse().unwrap());
     let of_rank = |ranks| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
         pool.install(|| state::<D>(scene, ranks))
     };
     let states: Vec<u64> = std::thread::scope(|scope| {
         let threads: Vec<_> =
-            Ranks::in_threads(3).into_iter().map(|ranks| scope.spawn(move || of_rank(ranks))).collect();
+            Ranks::in_threads(count).into_iter().map(|ranks| scope.spawn(move || of_rank(ranks))).collect();
         threads.into_iter().map(|thread| thread.join().unwrap()).collect()
     });
-    assert_eq!(states, [alone; 3], "{name} on three ranks");
+    assert_eq!(states, vec![alone; count], "{name} on {count} ranks");
 }
 
 /// Asserts that no water is lost or inside a solid.

@@ -74,6 +74,8 @@ pub use {
     velocity::VelocityPlan,
 };
 
+use std::collections::BTreeMap;
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -402,19 +404,19 @@ impl ProbeConfig {
     /// Returns the file stems of `probes`. A stem is the name, the default name, or the key, with a number from the
     /// second probe of that key on.
     pub(crate) fn names(probes: &[Self]) -> Vec<String> {
-        let nameless = |probe: &&Self| probe.name.is_none();
-        let name = |(i, probe): (usize, &Self)| {
+        let mut nameless = BTreeMap::<&str, usize>::new();
+        let name = |probe: &Self| {
+            if let Some(name) = &probe.name {
+                return name.clone();
+            }
             let key = probe.keys().first().copied().unwrap_or("probe");
-            let alike = || {
-                probes[..i].iter().filter(nameless).filter(|other| other.keys().first() == probe.keys().first()).count()
-            };
-            let numbered = || match alike() {
-                0 => key.to_string(),
-                before => format!("{key}_{}", before + 1),
-            };
-            probe.name.clone().or_else(|| probe.default_name()).unwrap_or_else(numbered)
+            let number = *nameless.entry(key).and_modify(|number| *number += 1).or_insert(1);
+            probe.default_name().unwrap_or_else(|| match number {
+                1 => key.to_string(),
+                number => format!("{key}_{number}"),
+            })
         };
-        probes.iter().enumerate().map(name).collect()
+        probes.iter().map(name).collect()
     }
 }
 

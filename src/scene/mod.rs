@@ -29,6 +29,7 @@ mod schema;
 mod svg;
 mod toml_source;
 mod untagged;
+mod value_reader;
 mod verify_probes;
 
 /// The sections of a scene.

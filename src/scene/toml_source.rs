@@ -21,6 +21,7 @@ use toml::{
 use super::{
     diagnostics,
     overrides::{self, CHOICES, OverrideLocations, subkey},
+    value_reader::ValueReader,
 };
 use crate::error::{Error, ErrorCode, Result};
 
@@ -198,10 +199,11 @@ pub(super) fn read<T: DeserializeOwned>(
         origin.renamed[i].key = origin.key_with_names(&origin.renamed[i].key);
     }
     require_finite(root.get_ref(), "", &origin)?;
-    let scene = T::deserialize(toml::Deserializer::from(root)).map_err(|e| {
-        let start = e.span().map_or(0, |span| span.start);
-        let key = marks.key(start).unwrap_or_else(|| key_at(&entries, &e.span().unwrap_or(0..0)));
-        let (error, key) = diagnostics::explain(e.message(), &key);
+    let scene = T::deserialize(ValueReader::from(root)).map_err(|e| {
+        let span = e.span.unwrap_or(0..0);
+        let start = span.start;
+        let key = marks.key(start).unwrap_or_else(|| key_at(&entries, &span));
+        let (error, key) = diagnostics::explain(&e.message, &key);
         let shown = origin.key_with_names(&key);
         match start > text.len() {
             true => error.at("--set", None, shown),

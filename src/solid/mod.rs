@@ -28,6 +28,7 @@ pub use constraint::{
 pub use force::{ForceCommand, ForceSpec};
 pub use load::Load;
 pub(crate) use load::LoadContext;
+pub(crate) use mooring::SHORTEST_SHARE;
 pub use mooring::{
     ClumpSpec, LineDamping, LineType, MooringPointSpec, MooringReading, MooringSpec, Winch, WinchTarget,
 };

@@ -13,7 +13,7 @@ use crate::{
     probe::ProbeConfig,
     scene::{
         context::{Context, Defaults, quoted_list, set_keys},
-        files,
+        files, finite_law,
         record::{self, Record},
     },
 };
@@ -209,7 +209,13 @@ impl CheckConfig {
             }
             (Some(text), None) => {
                 let place = |e: Error| ctx.with_location(e, &format!("{key}.formula"));
-                Formula::parse(text).map(|_| ()).map_err(place)
+                let formula = Formula::parse(text).map_err(place)?;
+                let span = [self.from.unwrap_or(0.0), self.until.unwrap_or(ctx.until)];
+                // An alignment moves the clock of the formula by a time that is known after the run.
+                match self.align {
+                    None => finite_law::require_finite(ctx, &format!("{key}.formula"), text, &formula, span),
+                    Some(_) => Ok(()),
+                }
             }
             (None, Some(_)) => self.verify_response_alone(ctx, key),
             (None, None) => match of_table[..2].iter().find(|(_, given)| !given) {

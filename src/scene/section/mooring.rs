@@ -12,17 +12,20 @@ use super::{
 };
 use crate::{
     error::{ErrorCode, Result, suggestion},
-    math::NumberOrArray,
+    math::{NumberOrArray, format::three_digits},
     scene::{
         context::{Context, Defaults},
         section::shape::vector,
         untagged::{CoordinateUnit, TimeFunctionConfig},
     },
-    solid::{ClumpSpec, LineDamping, LineType, MooringPointSpec, MooringSpec},
+    solid::{ClumpSpec, LineDamping, LineType, MooringPointSpec, MooringSpec, SHORTEST_SHARE, TimeFunction},
 };
 
 /// Number of segments of a line unless it is given.
 const SEGMENTS: usize = 20;
+
+/// Number of parts of a run at whose ends the length that a winch leaves is looked at.
+const PAID_OUT_SAMPLES: u32 = 1000;
 
 /// A section `[[mooring]]`: a mooring line with mass.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -448,7 +451,9 @@ impl MooringConfig {
         made.lifetime = self.lifetime().build(tied(scope.solids, &self.between));
         if let Some(law) = &self.paid_out {
             let span = [made.lifetime.since, made.lifetime.until];
-            made.paid_out = Some(law.build_during(ctx, &format!("{key}.paid_out"), CoordinateUnit::Si, span)?);
+            let law = law.build_during(ctx, &format!("{key}.paid_out"), CoordinateUnit::Si, span)?;
+            self.require_line_left(ctx, key, &law, [span[0].max(0.0), span[1].min(ctx.until)])?;
+            made.paid_out = Some(law);
         }
         made.winch = self.winch.map(|winch| winch.build(self.length));
         made.acts_on_water = self.acts_on_water.unwrap_or_default();
@@ -462,5 +467,23 @@ impl MooringConfig {
             })
             .collect();
         Ok(made)
+    }
+
+    /// Refuses a `law` of the winch that leaves less of the line over the `span` (s) than is computed.
+    fn require_line_left(&self, ctx: &Context, key: &str, law: &TimeFunction, span: [f64; 2]) -> Result<()> {
+        let time = |i: u32| span[0] + (span[1] - span[0]) * f64::from(i) / f64::from(PAID_OUT_SAMPLES);
+        let left = |t: f64| self.length + law.value_and_rate(t).0;
+        let short = (0..=PAID_OUT_SAMPLES).map(time).find(|&t| left(t) < SHORTEST_SHARE * self.length);
+        let Some(t) = short else { return Ok(()) };
+        let what = format!(
+            "at t = {} s the winch has left {} m of a line of {} m",
+            three_digits(t),
+            three_digits(left(t)),
+            self.length
+        );
+        let help =
+            format!("pay out {} m or more, or end the line before", three_digits((SHORTEST_SHARE - 1.0) * self.length));
+        let error = ctx.error_with_help(&format!("{key}.paid_out"), what, help);
+        Err(error.with_code(ErrorCode::OutOfRange))
     }
 }

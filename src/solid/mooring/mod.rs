@@ -22,7 +22,7 @@ pub(crate) use line::{LineState, MooringLine};
 pub(crate) use network::{Junctions, LineStep};
 pub(crate) use pretension::forces_at_rest;
 pub use specification::{ClumpSpec, LineDamping, LineType, MooringPointSpec, MooringSpec};
-pub(crate) use specification::{check_mooring, check_mooring_points, junctions};
+pub(crate) use specification::{SHORTEST_SHARE, check_mooring, check_mooring_points, junctions};
 pub use winch::{Winch, WinchTarget};
 
 #[cfg(all(test, feature = "dim2", feature = "dim3"))]

@@ -17,6 +17,9 @@ pub(crate) const DEFAULT_BED_STIFFNESS: f64 = 3e6;
 /// Damping of a bed unless it is given, Pa s/m.
 pub(crate) const DEFAULT_BED_DAMPING: f64 = 3e5;
 
+/// Least length of a line on a winch over its length at the start, –.
+pub(crate) const SHORTEST_SHARE: f64 = 0.01;
+
 /// Axial damping of a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LineDamping {
@@ -243,10 +246,10 @@ impl<const D: usize> MooringSpec<D> {
         Self { acts_on_water: true, ..self }
     }
 
-    /// Length without tension at time `t` (s), m: a hundredth of the length at the start at least.
+    /// Length without tension at time `t` (s), m: [`SHORTEST_SHARE`] of the length at the start at least.
     pub(crate) fn length_at(&self, t: f64) -> f64 {
         let paid_out = self.paid_out.as_ref().map_or(0.0, |law| law.value_and_rate(t).0);
-        (self.length + paid_out).max(0.01 * self.length)
+        (self.length + paid_out).max(SHORTEST_SHARE * self.length)
     }
 
     /// The same line in this number of segments.

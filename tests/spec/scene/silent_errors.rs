@@ -76,10 +76,24 @@ fn a_formula_without_a_value_during_the_run_is_refused_with_its_time() {
     ] {
         assert_refused(name, &scene(REST, more), &[], &[key, "t = 1 s"]);
     }
+    // A check is computed after the run, whose time would be lost.
+    let check = "[[probe]]\nmotion = \"box\"\n[[check]]\nseries = \"box.heave_m\"\nformula = \"sqrt(1-t)\"\n";
+    assert_refused("check", &scene(REST, check), &[], &["check.0.formula", "t = 1 s"]);
+    assert_not_found("early", &scene(REST, &format!("{check}until = 0.9\n")), &[], "no value");
     // A force that has ended, and a time that no step meets, need no value.
     for (name, more) in [("ended", format!("{force}until = 1.0\n")), ("hole", force.replace(root, "(t-1)/(t-1)"))] {
         assert_not_found(name, &scene(REST, &more), &[], "no value");
     }
+}
+
+/// A line of less than a hundredth of its length is not computed: the winch would stop there without a word.
+#[test]
+fn a_winch_that_takes_in_the_whole_line_is_refused_with_the_time() {
+    let line = "[[line_type]]\nname = \"c\"\ndiameter = 0.01\nmass_per_length = 0.5\nstiffness = 1e4\n[[mooring]]\n\
+                name = \"m\"\nbetween = [\"box\"]\nfrom = [1.0, 0.4]\nto = [0.2, 0.0]\nlength = 1.2\nline = \"c\"\n";
+    let winch = format!("{line}paid_out = {{ formula = \"-t\" }}\n");
+    assert_refused("winch", &scene(REST, &winch), &[], &["mooring.0.paid_out", "t = 1.19 s", "-1.19 m or more"]);
+    assert_not_found("released", &scene(REST, &format!("{winch}until = 1.0\n")), &[], "winch");
 }
 
 #[test]
