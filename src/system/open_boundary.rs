@@ -12,6 +12,7 @@
 //!   u = U,               x_b = x_rest + x     where the velocity U is prescribed,
 //!   u = U + c₀² x/c,     x_b = x_rest + x     where the face absorbs waves of speed c,
 //!   u = that of the water, x_b = x_rest       where the level alone is prescribed,
+//!   u = mean of that of the water + c₀² x/c, x_b = x_rest    where the level alone is prescribed, and moves,
 //!   u = that of the water, x_b = x_rest + x   where nothing is.
 //!
 //! The second is the relation of velocity and pressure in a linear wave that moves out, at every depth @dean1991; for long waves it is
@@ -78,7 +79,7 @@ pub struct OpenBoundary<const D: usize> {
     pub factor: Option<TimeFunction>,
     /// Height of the surface at rest (m) as a function of time; if there is none, the pressure is that of the water beside the face.
     pub level: Option<TimeFunction>,
-    /// Speed of waves that leave through the face (m/s); the velocity is kept exactly if there is none.
+    /// Speed of waves that leave through the face (m/s); a velocity is kept exactly if there is none, and water follows a moving level late.
     pub absorbed_speed: Option<f64>,
     /// Waves that enter through the face, along its normal and on its current.
     pub waves: Option<IncidentWaves>,
@@ -357,6 +358,12 @@ pub(super) fn exchange_at_faces<const D: usize>(system: &mut System<D>, order: &
     }
     let (water, length, mass) = (system.particle_count(), buffer_length(&system.model), system.particle_mass());
     let mass = mass * system.water_multiplicity();
+    let is_kept = |i: usize| system.fluid_domain.open_boundaries[i].keeps_rows();
+    let kept: Vec<usize> = (0..system.fluid_domain.open_boundaries.len()).filter(|&i| is_kept(i)).collect();
+    let moved: Vec<(usize, Vector<D>)> = kept.iter().flat_map(|&face| rows::spread(system, face)).collect();
+    for (i, place) in moved {
+        system.fluid.particles.r[i] = place;
+    }
     let mut exchange = std::mem::take(&mut system.fluid.buffer.exchange);
     let time = system.fluid.buffer.time;
     let (faces, before) = (&system.fluid_domain.open_boundaries, &system.fluid.buffer.tags);
@@ -408,7 +415,7 @@ pub(super) fn exchange_at_faces<const D: usize>(system: &mut System<D>, order: &
             Place::Gone => {}
         }
     }
-    for face in (0..faces.len()).filter(|&face| faces[face].keeps_rows()) {
+    for face in kept {
         rows::keep(system, face, &inside, (&mut buffer, &mut created));
     }
     inside.extend(buffer.iter().map(|(i, _)| i));
@@ -442,7 +449,8 @@ pub(crate) fn update_buffer<const D: usize>(system: &mut System<D>, t: f64, dt: 
         return;
     }
     let states = (water..own).into_par_iter().map(|i| buffer_state(system, i, t, dt));
-    let states: Vec<(Vector<D>, f64)> = states.collect();
+    let mut states: Vec<(Vector<D>, f64)> = states.collect();
+    move_as_one(system, &mut states, dt);
     let Fluid { particles: Particles { v, rho, .. }, images, .. } = &mut system.fluid;
     for (i, (velocity, density)) in (water..own).zip(states) {
         (v[i], rho[i]) = (velocity, density);
@@ -452,6 +460,33 @@ pub(crate) fn update_buffer<const D: usize>(system: &mut System<D>, t: f64, dt: 
         let axes = images.reflections.get(k).copied().unwrap_or(0);
         (v[own + k], rho[own + k]) = (reflected(axes, v[original]), rho[original]);
     }
+}
+
+/// Gives all `states`, velocity (m/s) and density (kg/m³), in a buffer below a level that moves and without a velocity of its own one
+/// velocity normal to the face, because rows that moved by themselves would part and cross: their mean, which they follow within
+/// the step `dt` (s) as an absorbing face does.
+fn move_as_one<const D: usize>(system: &System<D>, states: &mut [(Vector<D>, f64)], dt: f64) {
+    let (tags, before) = (&system.fluid.buffer.tags, &system.fluid.particles.v[system.particle_count()..]);
+    for (number, face) in system.fluid_domain.open_boundaries.iter().enumerate() {
+        if face.velocity.is_some() || !face.has_moving_level() {
+            continue;
+        }
+        let [mut target, mut now, mut count] = [0.0; 3];
+        for (k, (v, _)) in states.iter().enumerate().filter(|(k, _)| tags[*k].face() == number) {
+            (target, now, count) = (target + v[face.axis], now + before[k][face.axis], count + 1.0);
+        }
+        let part = face.absorbed_speed.map_or(1.0, |speed| response(system, speed, dt));
+        let mut mean = Vector::zeros();
+        mean[face.axis] = (now + (target - now) * part) / f64::max(count, 1.0);
+        for (_, (v, _)) in states.iter_mut().enumerate().filter(|(k, _)| tags[*k].face() == number) {
+            *v = mean;
+        }
+    }
+}
+
+/// The part of its way to the velocity that lets waves of this `speed` (m/s) leave which a face makes in the step `dt` (s).
+fn response<const D: usize>(system: &System<D>, speed: f64, dt: f64) -> f64 {
+    if dt > 0.0 { (dt * speed / (RESPONSE * system.model.h)).min(1.0) } else { 1.0 }
 }
 
 /// Velocity (m/s) and density (kg/m³) of buffer particle `i`: see the head of this file.
@@ -488,7 +523,11 @@ fn buffer_state<const D: usize>(system: &System<D>, i: usize, t: f64, dt: f64) -
     let density = |x: f64| rho0 * (1.0 + at_rest(r) + rise + x);
     let Some(prescribed) = face.outward_velocity(r, t) else {
         let held = face.level.is_some();
-        let velocity = if beside { water_beside::linear_velocity(system, &place, volume, &velocity) } else { velocity };
+        let mut velocity =
+            if beside { water_beside::linear_velocity(system, &place, volume, &velocity) } else { velocity };
+        if let Some(speed) = face.absorbed_speed.filter(|_| face.has_moving_level()) {
+            velocity[face.axis] += face.outward() * system.properties.c0.powi(2) * compression / speed;
+        }
         return (velocity, density(if held { 0.0 } else { compression }));
     };
     let mut along = Vector::zeros();
@@ -500,8 +539,7 @@ fn buffer_state<const D: usize>(system: &System<D>, i: usize, t: f64, dt: f64) -
             let then = face.outward_velocity(r, t - dt).unwrap_or(0.0);
             let yielded = (before - waves(&(r - before * dt), t - dt).1).dot(&along) - then;
             let target = system.properties.c0.powi(2) * compression / speed;
-            let part = if dt > 0.0 { (dt * speed / (RESPONSE * system.model.h)).min(1.0) } else { 1.0 };
-            prescribed + yielded + (target - yielded) * part
+            prescribed + yielded + (target - yielded) * response(system, speed, dt)
         }
     };
     (along * outward + orbital, density(compression))

@@ -346,7 +346,10 @@ impl OpenBoundaryConfig {
         });
         let waves = waves.transpose()?;
         let period = self.absorb_period.or(waves.as_ref().map(IncidentWaves::main_period));
+        let follows_level = face.velocity.is_none() && written.as_ref().is_some_and(|l| l.steady_value().is_none());
         let absorbed_speed = match (self.absorb, period) {
+            // The water follows its level by long waves.
+            _ if follows_level => Some((g * depth).sqrt()),
             (None | Some(false), _) => None,
             // Long waves.
             (Some(true), None) => Some((g * depth).sqrt()),

@@ -36,7 +36,7 @@ const SPEED_SAMPLES: u32 = 100;
 ///
 /// # Errors
 /// `Scene` if the face is not vertical, lies across a periodic side or a symmetry plane, has no water on one of its sides, is too near
-/// to the end of a solid, is where another face is, leaves the pressure of a closed duct free, or lets water pass faster than the valid range of the water allows.
+/// to the end of a solid, beside the end of the bed, is where another face is, leaves the pressure of a closed duct free, or lets water pass faster than the valid range of the water allows.
 pub(crate) fn check<const D: usize>(setup: &Setup<D>, i: usize, until: f64) -> Result<()> {
     let (face, length) = (&setup.open_boundaries[i], setup.buffer_length());
     let (name, axis, at) = (&face.name, face.axis, face.at);
@@ -81,9 +81,19 @@ pub(crate) fn check<const D: usize>(setup: &Setup<D>, i: usize, until: f64) -> R
         let what = format!("solid {:?} ends in the buffer of open boundary {name:?}", solid.name);
         let help = match solid.role {
             Role::Free(_) => format!("keep it on the water's side of {along} = {at}"),
-            _ => format!("let it reach to {along} = {end:.6} or further, or end at {along} = {at}"),
+            _ => {
+                format!("let it reach to {along} = {end:.6} or further, or end at {along} = {at} if it is not the bed")
+            }
         };
         return Err(Error::scene(what).help(help));
+    }
+    if let Some(solid) = bed_that_ends(setup, face) {
+        let end = at + face.outward() * length;
+        let what = format!(
+            "solid {:?}, the bed, ends at open boundary {name:?}: water would fall out beside the buffer",
+            solid.name
+        );
+        return Err(Error::scene(what).help(format!("let it reach to {along} = {end:.6} or further")));
     }
     let orbital = face.waves.as_ref().map_or(0.0, IncidentWaves::orbital_speed);
     let most = FASTEST * setup.model.c0;
@@ -118,6 +128,31 @@ pub(crate) fn check<const D: usize>(setup: &Setup<D>, i: usize, until: f64) -> R
         }
         _ => Ok(()),
     }
+}
+
+/// The solid under the lowest water beside `face` that does not go on under the buffer.
+fn bed_that_ends<'a, const D: usize>(setup: &'a Setup<D>, face: &OpenBoundary<D>) -> Option<&'a SolidSpec<D>> {
+    if setup.initial_gravity()[D - 1] >= 0.0 {
+        return None;
+    }
+    let dp = setup.model.dp;
+    let mut lowest = BTreeMap::<Vec<i64>, Vector<D>>::new();
+    for r in setup.water.iter().filter(|r| (0.0..dp).contains(&face.beyond(r))) {
+        let column = r.iter().take(D - 1).map(|x| (x / dp).floor() as i64).collect();
+        let own = lowest.entry(column).or_insert(*r);
+        if r[D - 1] < own[D - 1] {
+            *own = *r;
+        }
+    }
+    let solid_at = |x: &Vector<D>| setup.solids.iter().find(|solid| is_inside(solid, x));
+    lowest.into_values().find_map(|r| {
+        let [inside, outside] = [-0.5, 0.5].map(|beyond| {
+            let mut x = r;
+            (x[face.axis], x[D - 1]) = (face.at + face.outward() * beyond * dp, r[D - 1] - dp);
+            x
+        });
+        solid_at(&inside).filter(|_| solid_at(&outside).is_none())
+    })
 }
 
 /// Refuses open boundary number `i` if one before it is in its place.

@@ -5,8 +5,11 @@
 //! by rows up to the present level, one particle to each dpᴰ, the first of them dp from the water. While water enters, a
 //! particle that came from the water returns without a successor, a row whose far end has moved in by dp gets a new particle
 //! there, and a column gets a row on top, or loses it, as the level moves past the middle of that row.
+//!
+//! Water that has left is not in rows, and where the velocity differs from height to height its particles would pass each other at any
+//! distance, because nothing in a buffer repels them. Those nearer than a part of dp move apart at each rebuild of the lists.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::{BufferTag, OpenBoundary, buffer_length};
 use crate::{math::Vector, system::System};
@@ -19,6 +22,12 @@ const WATER_REMOVED: f64 = 1.0;
 
 /// Least distance of a particle on top of a column from water in the buffer, over dp.
 const CLEARANCE: f64 = 0.75;
+
+/// Distance below which water in the buffer moves away from another particle, over dp.
+const NEAREST: f64 = 0.85;
+
+/// Farthest that water in the buffer moves away at a rebuild of the lists, over dp; a jump would be a blow to the water beside it.
+const FARTHEST: f64 = 0.1;
 
 /// Part of dp by which places that should be equal may differ.
 const ROUNDING: f64 = 1e-6;
@@ -104,6 +113,44 @@ pub(super) fn keep<const D: usize>(
     if face.has_moving_level() {
         follow_level(system, number, (buffer, created));
     }
+}
+
+/// The places (m) of water that has left through face number `number` and is too near to others in the buffer, by their indices: half
+/// of the missing distance further from each of such water, the whole of it from a row, but not out of the buffer or into a solid.
+pub(super) fn spread<const D: usize>(system: &System<D>, number: usize) -> Vec<(usize, Vector<D>)> {
+    let face = &system.fluid_domain.open_boundaries[number];
+    let (buffer, water) = (&system.fluid.buffer, system.particle_count());
+    let r = &system.fluid.particles.r;
+    let [nearest, farthest] = [NEAREST, FARTHEST].map(|part| part * system.model.dp);
+    let mut own: Vec<(usize, BufferTag)> =
+        (water..).zip(buffer.tags.iter().copied()).filter(|(_, tag)| tag.face() == number).collect();
+    if own.iter().all(|(_, tag)| !tag.is_from_water()) {
+        return Vec::new();
+    }
+    own.sort_by(|(a, _), (b, _)| r[*a][face.axis].total_cmp(&r[*b][face.axis]).then(a.cmp(b)));
+    let rows: BTreeSet<Row> = rows_at_level(system, number).iter().map(|x| row_of(system, number, x)).collect();
+    let push = |(k, (i, tag)): (usize, &(usize, BufferTag))| {
+        let near = |(j, _): &&(usize, BufferTag)| (r[*j][face.axis] - r[*i][face.axis]).abs() < nearest;
+        let others = own[..k].iter().rev().take_while(near).chain(own[k + 1..].iter().take_while(near));
+        let mut way = Vector::<D>::zeros();
+        for (j, other) in others.filter(|_| tag.is_from_water()) {
+            let away = r[*i] - r[*j];
+            let distance = away.norm();
+            if distance < nearest && distance > 0.0 {
+                let part = if other.is_from_water() { 0.5 } else { 1.0 };
+                way += away * (part * (nearest - distance) / distance);
+            }
+        }
+        let place = r[*i] + way * (farthest / way.norm().max(farthest));
+        let mut row = row_of(system, number, &place);
+        let is_beside_row = rows.contains(&row) || {
+            // The surface of the water that leaves may be above the level.
+            row[D - 2] -= 1;
+            rows.contains(&row)
+        };
+        (way.norm() > 0.0 && is_beside_row && face.beyond(&place) > 0.0).then_some((*i, place))
+    };
+    own.iter().enumerate().filter_map(push).collect()
 }
 
 /// The places (m) of the rows of face number `number` at the present level: those at the start below it, and above
