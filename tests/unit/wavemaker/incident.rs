@@ -120,7 +120,7 @@ fn a_sea_has_its_height_and_keeps_its_particles() {
 fn a_sea_against_a_current_lacks_the_components_that_are_stopped() {
     let with = WaterAtFace { depth: 0.5, current: 0.3, g: G, ramp: Some(2.0), until: 30.0 };
     let against = WaterAtFace { current: -0.3, ..with };
-    let sea = |water: &WaterAtFace| IncidentWaves::irregular(0.04, &WaveSpectrum::jonswap(1.3, 3.3), (7, 40), water);
+    let sea = |water: &WaterAtFace| IncidentWaves::irregular(0.03, &WaveSpectrum::jonswap(1.3, 3.3), (7, 40), water);
     let [all, left] = [sea(&with), sea(&against)].map(|waves| waves.expect("a sea"));
     let energy =
         |waves: &IncidentWaves| waves.trains.iter().map(|train| train.component.amplitude.powi(2)).sum::<f64>();
