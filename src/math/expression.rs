@@ -149,6 +149,11 @@ impl<const D: usize> UnsteadyField<D> {
         self.root.is_constant()
     }
 
+    /// Whether the time stands in it.
+    pub(crate) fn changes_in_time(&self) -> bool {
+        self.root.reads(D)
+    }
+
     /// The field that is `value` everywhere, at all times.
     pub fn constant(value: f64) -> Self {
         Self { root: Node::Number(value) }
@@ -163,6 +168,16 @@ impl<const D: usize> UnsteadyField<D> {
 }
 
 impl Node {
+    /// Whether variable number `i` stands in it.
+    fn reads(&self, i: usize) -> bool {
+        match self {
+            Self::Number(_) => false,
+            Self::Variable(own) => *own == i,
+            Self::Negate(x) | Self::Call(_, x) => x.reads(i),
+            Self::Binary(_, x, y) => x.reads(i) || y.reads(i),
+        }
+    }
+
     fn is_constant(&self) -> bool {
         match self {
             Self::Number(_) => true,

@@ -4,7 +4,12 @@ use std::borrow::Cow;
 
 use serde::{Deserialize, Serialize};
 
-use super::{AxisSet, Escape, FaceExchange, System, driving::CurrentState, open_boundary::Buffer, own_water};
+use super::{
+    AxisSet, Escape, FaceExchange, System,
+    driving::CurrentState,
+    open_boundary::{Buffer, BufferTag},
+    own_water,
+};
 use crate::{
     error::{Error, ErrorKind, Result},
     interaction::PairSums,
@@ -26,8 +31,8 @@ pub(crate) struct SystemState<'a, const D: usize> {
     images: Cow<'a, [u32]>,
     /// Along which axes each image is reflected; empty without a symmetry plane.
     reflections: Cow<'a, [AxisSet]>,
-    /// Number of the face of each buffer particle, the name of the next, and what has passed through each face.
-    buffer: (Cow<'a, [u8]>, u32, Cow<'a, [FaceExchange<D>]>),
+    /// The tag of each buffer particle, the name of the next, and what has passed through each face.
+    buffer: (Cow<'a, [BufferTag]>, u32, Cow<'a, [FaceExchange<D>]>),
     /// The force that holds a current.
     current: CurrentState,
     /// Number of boundary particles.
@@ -62,7 +67,7 @@ impl<const D: usize> System<D> {
             images: Cow::Borrowed(&self.fluid.images.originals),
             reflections: Cow::Borrowed(&self.fluid.images.reflections),
             buffer: (
-                Cow::Borrowed(&self.fluid.buffer.faces),
+                Cow::Borrowed(&self.fluid.buffer.tags),
                 self.fluid.buffer.next_id,
                 Cow::Borrowed(&self.fluid.buffer.exchange),
             ),
@@ -97,7 +102,7 @@ impl<const D: usize> System<D> {
         let fits = state.current.is_finite()
             && state.buffer.2.len() == faces
             && state.buffer.0.len() <= real
-            && state.buffer.0.iter().all(|&face| usize::from(face) < faces);
+            && state.buffer.0.iter().all(|tag| tag.face() < faces);
         let all = if faces > 0 {
             true
         } else if fewer {
@@ -154,10 +159,11 @@ impl<const D: usize> System<D> {
         self.fluid.stress = self.fluid.stress.take().map(|_| state.stress.into_owned());
         self.fluid.gradient_correction =
             self.fluid.gradient_correction.take().map(|_| state.gradient_correction.into_owned());
-        let (faces, next_id, exchange) = state.buffer;
+        let (tags, next_id, exchange) = state.buffer;
         self.driving.current = state.current;
-        self.fluid.buffer =
-            Buffer { faces: faces.into_owned(), next_id, exchange: exchange.into_owned(), ..Buffer::default() };
+        let rows = std::mem::take(&mut self.fluid.buffer.rows);
+        let (tags, exchange) = (tags.into_owned(), exchange.into_owned());
+        self.fluid.buffer = Buffer { tags, rows, next_id, exchange, time: 0.0 };
         self.fluid.images.originals = state.images.into_owned();
         self.fluid.images.reflections = state.reflections.into_owned();
         // The corrections of the state belong to its lists, whatever this system was about to do.

@@ -58,7 +58,7 @@ impl<const D: usize> Fluid<D> {
 impl<const D: usize> System<D> {
     /// Number of water particles, buffers of open boundaries and images not counted.
     pub(crate) fn particle_count(&self) -> usize {
-        self.own_count() - self.fluid.buffer.faces.len()
+        self.own_count() - self.fluid.buffer.tags.len()
     }
 
     /// Number of particles that are no images: the water, and then the buffers of open boundaries.

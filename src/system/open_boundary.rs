@@ -12,12 +12,18 @@
 //!   u = U,               x_b = x_rest + x     where the velocity U is prescribed,
 //!   u = U + c₀² x/c,     x_b = x_rest + x     where the face absorbs waves of speed c,
 //!   u = that of the water, x_b = x_rest       where the level alone is prescribed,
+//!   u = mean of that of the water + c₀² x/c, x_b = x_rest    where the level alone is prescribed, and moves,
 //!   u = that of the water, x_b = x_rest + x   where nothing is.
 //!
 //! The second is the relation of velocity and pressure in a linear wave that moves out, at every depth @dean1991; for long waves it is
 //! that of @flather1976. Waves that enter add their velocity to U and their pressure to x_rest.
+//!
+//! Beyond a face whose level or velocity changes in time, what lies in the buffer when the flow turns inwards is water that has left,
+//! as high as it was then, and where rows moved apart or together no longer one particle to each dpᴰ. Such a face keeps rows: see
+//! [`rows`].
 
 mod check;
+mod rows;
 mod water_beside;
 
 pub(crate) use check::check;
@@ -33,6 +39,7 @@ use crate::{
     solid::{Role, TimeFunction},
     wavemaker::{IncidentWaves, Orbit},
 };
+use rows::Created;
 
 /// Distance from the face at which the water is observed, over h: there most of the kernel lies in the water.
 const OBSERVATION: f64 = 1.0;
@@ -70,9 +77,9 @@ pub struct OpenBoundary<const D: usize> {
     pub velocity: Option<UnsteadyField<D>>,
     /// Factor on the velocity as a function of time, –.
     pub factor: Option<TimeFunction>,
-    /// Height of the surface at rest, m; if there is none, the pressure is that of the water beside the face.
-    pub level: Option<f64>,
-    /// Speed of waves that leave through the face (m/s); the velocity is kept exactly if there is none.
+    /// Height of the surface at rest (m) as a function of time; if there is none, the pressure is that of the water beside the face.
+    pub level: Option<TimeFunction>,
+    /// Speed of waves that leave through the face (m/s); a velocity is kept exactly if there is none, and water follows a moving level late.
     pub absorbed_speed: Option<f64>,
     /// Waves that enter through the face, along its normal and on its current.
     pub waves: Option<IncidentWaves>,
@@ -112,8 +119,8 @@ impl<const D: usize> OpenBoundary<D> {
     }
 
     /// The same face with a surface at rest at the height `level` (m).
-    pub fn level(self, level: f64) -> Self {
-        Self { level: Some(level), ..self }
+    pub fn level(self, level: impl Into<TimeFunction>) -> Self {
+        Self { level: Some(level.into()), ..self }
     }
 
     /// The same face, which absorbs waves of this `speed` (m/s).
@@ -141,9 +148,27 @@ impl<const D: usize> OpenBoundary<D> {
         if self.is_lower { -1.0 } else { 1.0 }
     }
 
+    /// The height (m) of the surface at rest at time `t` (s), if the face has one.
+    pub(crate) fn level_at(&self, t: f64) -> Option<f64> {
+        self.level.as_ref().map(|level| level.value_and_rate(t).0)
+    }
+
+    /// Whether the level changes in time.
+    pub(crate) fn has_moving_level(&self) -> bool {
+        self.level.as_ref().is_some_and(|level| level.steady_value().is_none())
+    }
+
+    /// Whether the buffer is kept in rows: the level or the velocity changes in time.
+    fn keeps_rows(&self) -> bool {
+        let changes = |velocity: &UnsteadyField<D>| {
+            velocity.changes_in_time() || self.factor.as_ref().is_some_and(|factor| factor.steady_value().is_none())
+        };
+        self.waves.is_none() && (self.has_moving_level() || self.velocity.as_ref().is_some_and(changes))
+    }
+
     /// The orbit in the waves that enter, at time `t` (s), of the particle at `x` (m), with its velocity as a vector (m/s).
     fn orbit(&self, x: &Vector<D>, t: f64) -> Option<(Orbit, Vector<D>)> {
-        let (orbit, _) = self.waves.as_ref()?.orbit(-self.beyond(x), x[D - 1] - self.level.unwrap_or(0.0), t);
+        let (orbit, _) = self.waves.as_ref()?.orbit(-self.beyond(x), x[D - 1] - self.level_at(t).unwrap_or(0.0), t);
         Some((orbit, self.along_waves(orbit.velocity)))
     }
 
@@ -173,7 +198,7 @@ impl<const D: usize> OpenBoundary<D> {
         way[self.axis] = self.outward() * length;
         if let Some(waves) = &self.waves {
             let along = -self.beyond(x);
-            let (here, height) = waves.orbit(along, x[D - 1] - self.level.unwrap_or(0.0), t);
+            let (here, height) = waves.orbit(along, x[D - 1] - self.level_at(t).unwrap_or(0.0), t);
             let there = waves.orbit_of([along - here.displacement[0] - length, height], t);
             way += self.along_waves([0, 1].map(|k| there.displacement[k] - here.displacement[k]));
             velocity_change = self.along_waves([0, 1].map(|k| there.velocity[k] - here.velocity[k]));
@@ -229,11 +254,44 @@ impl<const D: usize> FaceExchange<D> {
     }
 }
 
+/// Most open boundaries of a run.
+pub(crate) const MOST_FACES: usize = 128;
+
+/// The number of the face of a buffer particle, and whether it has been water since it was placed.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub(super) struct BufferTag(u8);
+
+impl BufferTag {
+    const FROM_WATER: u8 = 1 << 7;
+
+    /// Of a particle that was placed in the buffer of face number `face`, below [`MOST_FACES`].
+    fn placed(face: usize) -> Self {
+        Self(face as u8)
+    }
+
+    /// Of a particle that has left the water through face number `face`, below [`MOST_FACES`].
+    fn from_water(face: usize) -> Self {
+        Self(face as u8 | Self::FROM_WATER)
+    }
+
+    /// Number of the face.
+    pub(super) fn face(self) -> usize {
+        usize::from(self.0 & !Self::FROM_WATER)
+    }
+
+    fn is_from_water(self) -> bool {
+        self.0 & Self::FROM_WATER != 0
+    }
+}
+
 /// The particles beyond the faces.
 #[derive(Default)]
 pub(super) struct Buffer<const D: usize> {
-    /// Number of the face of each of them; they follow the water in this order.
-    pub(super) faces: Vec<u8>,
+    /// The tag of each of them; they follow the water in this order.
+    pub(super) tags: Vec<BufferTag>,
+    /// Of each face that keeps rows, a place (m) in each of them at the start.
+    pub(super) rows: Vec<Vec<Vector<D>>>,
     /// Name of the next particle.
     pub(super) next_id: u32,
     /// Time of the next rebuild of the lists, s.
@@ -245,8 +303,7 @@ pub(super) struct Buffer<const D: usize> {
 /// What a particle is after the lists were rebuilt.
 enum Place {
     Water,
-    /// In the buffer of the face of that number.
-    Buffer(u8),
+    Buffer(BufferTag),
     Gone,
 }
 
@@ -271,10 +328,15 @@ pub(super) fn start_buffers<const D: usize>(system: &mut System<D>) {
     let beyond = |r: &Vector<D>| faces.iter().position(|face| face.beyond(r) > 0.0);
     let r = &system.fluid.particles.r;
     let (buffer, water): (Vec<u32>, Vec<u32>) = (0..r.len() as u32).partition(|&i| beyond(&r[i as usize]).is_some());
-    let numbers = buffer.iter().filter_map(|&i| beyond(&r[i as usize])).map(|face| face as u8).collect();
+    let tags: Vec<_> = buffer.iter().filter_map(|&i| beyond(&r[i as usize])).map(BufferTag::placed).collect();
+    let of_face = |number: usize, face: &OpenBoundary<D>| {
+        let own = buffer.iter().zip(&tags).filter(|(_, tag)| tag.face() == number).map(|(&i, _)| &r[i as usize]);
+        if face.keeps_rows() { rows::places(face, system.model.dp, own) } else { Vec::new() }
+    };
+    let rows = faces.iter().enumerate().map(|(number, face)| of_face(number, face)).collect();
     let exchange = vec![FaceExchange::zero(); faces.len()];
     let order: Vec<u32> = water.into_iter().chain(buffer).collect();
-    system.fluid.buffer = Buffer { faces: numbers, next_id: order.len() as u32, exchange, time: 0.0 };
+    system.fluid.buffer = Buffer { tags, rows, next_id: order.len() as u32, exchange, time: 0.0 };
     system.fluid.permute(&order);
 }
 
@@ -283,36 +345,43 @@ pub(super) fn start_buffers<const D: usize>(system: &mut System<D>) {
 pub(super) fn needs_exchange<const D: usize>(system: &System<D>) -> bool {
     let (faces, r) = (&system.fluid_domain.open_boundaries, &system.fluid.particles.r);
     let (water, far) = (system.particle_count(), system.neighbours.margin());
-    let buffer = system.fluid.buffer.faces.iter().zip(&r[water..]);
+    let buffer = system.fluid.buffer.tags.iter().zip(&r[water..]);
     faces.iter().any(|face| r[..water].par_iter().any(|r| face.beyond(r) > far))
-        || buffer.into_iter().any(|(face, r)| faces[usize::from(*face)].beyond(r) < -far)
+        || buffer.into_iter().any(|(tag, r)| faces[tag.face()].beyond(r) < -far)
 }
 
 /// Sorts the particles of `order` into water and buffers by their places, and appends the sources of new buffer particles.
-/// Returns the number of these.
-pub(super) fn exchange_at_faces<const D: usize>(system: &mut System<D>, order: &mut Vec<u32>) -> usize {
+/// Returns these.
+pub(super) fn exchange_at_faces<const D: usize>(system: &mut System<D>, order: &mut Vec<u32>) -> Vec<Created<D>> {
     if system.fluid_domain.open_boundaries.is_empty() {
-        return 0;
+        return Vec::new();
     }
     let (water, length, mass) = (system.particle_count(), buffer_length(&system.model), system.particle_mass());
     let mass = mass * system.water_multiplicity();
+    let is_kept = |i: usize| system.fluid_domain.open_boundaries[i].keeps_rows();
+    let kept: Vec<usize> = (0..system.fluid_domain.open_boundaries.len()).filter(|&i| is_kept(i)).collect();
+    let moved: Vec<(usize, Vector<D>)> = kept.iter().flat_map(|&face| rows::spread(system, face)).collect();
+    for (i, place) in moved {
+        system.fluid.particles.r[i] = place;
+    }
     let mut exchange = std::mem::take(&mut system.fluid.buffer.exchange);
     let time = system.fluid.buffer.time;
-    let (faces, before) = (&system.fluid_domain.open_boundaries, &system.fluid.buffer.faces);
+    let (faces, before) = (&system.fluid_domain.open_boundaries, &system.fluid.buffer.tags);
+    let replaces: Vec<bool> = (0..faces.len()).map(|face| rows::replaces_water(system, face)).collect();
     let Particles { r, v, rho, .. } = &system.fluid.particles;
-    let (mut inside, mut buffer, mut numbers, mut created) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    let (mut inside, mut buffer, mut created) = (Vec::new(), Vec::new(), Vec::new());
     for &i in order.iter() {
         let old = i as usize;
         let was = old.checked_sub(water).map(|k| before[k]);
         let place = match was {
-            Some(face) => {
-                let face_of = &faces[face as usize];
-                if face_of.beyond(&r[old]) <= 0.0 {
+            Some(tag) => {
+                let face = &faces[tag.face()];
+                if face.beyond(&r[old]) <= 0.0 {
                     Place::Water
-                } else if face_of.is_beyond_buffer(&r[old], length, time) {
+                } else if face.is_beyond_buffer(&r[old], length, time) {
                     Place::Gone
                 } else {
-                    Place::Buffer(face)
+                    Place::Buffer(tag)
                 }
             }
             None => match faces.iter().position(|face| face.beyond(&r[old]) > 0.0) {
@@ -320,54 +389,42 @@ pub(super) fn exchange_at_faces<const D: usize>(system: &mut System<D>, order: &
                     exchange[face].count(-1.0, mass, &v[old], system.particle_energy(&r[old], &v[old], rho[old]));
                     Place::Gone
                 }
-                Some(face) => Place::Buffer(face as u8),
+                Some(face) => Place::Buffer(BufferTag::from_water(face)),
                 None => Place::Water,
             },
         };
         match (was, &place) {
-            (Some(face), Place::Water) => {
+            (Some(tag), Place::Water) => {
                 let energy = system.particle_energy(&r[old], &v[old], rho[old]);
-                exchange[face as usize].count(1.0, mass, &v[old], energy);
-                created.push((i, face));
+                exchange[tag.face()].count(1.0, mass, &v[old], energy);
+                if replaces[tag.face()] || !tag.is_from_water() {
+                    let (way, velocity_change) = faces[tag.face()].way_out(&r[old], length, time);
+                    let (r, v) = (r[old] + way, v[old] + velocity_change);
+                    created.push(Created { source: i, face: tag.face(), r, v });
+                }
             }
-            (None, Place::Buffer(face)) => {
+            (None, Place::Buffer(tag)) => {
                 let energy = system.particle_energy(&r[old], &v[old], rho[old]);
-                exchange[*face as usize].count(-1.0, mass, &v[old], energy);
+                exchange[tag.face()].count(-1.0, mass, &v[old], energy);
             }
             _ => {}
         }
         match place {
             Place::Water => inside.push(i),
-            Place::Buffer(face) => {
-                buffer.push(i);
-                numbers.push(face);
-            }
+            Place::Buffer(tag) => buffer.push((i, tag)),
             Place::Gone => {}
         }
     }
-    inside.extend(buffer);
-    inside.extend(created.iter().map(|(i, _)| i));
-    numbers.extend(created.iter().map(|(_, face)| face));
+    for face in kept {
+        rows::keep(system, face, &inside, (&mut buffer, &mut created));
+    }
+    inside.extend(buffer.iter().map(|(i, _)| i));
+    inside.extend(created.iter().map(|new| new.source));
+    let tags = buffer.iter().map(|(_, tag)| *tag).chain(created.iter().map(|new| BufferTag::placed(new.face)));
+    system.fluid.buffer.tags = tags.collect();
     *order = inside;
-    system.fluid.buffer.faces = numbers;
     system.fluid.buffer.exchange = exchange;
-    created.len()
-}
-
-/// The ways (m) to the last `created` particles of `order`, from those that have crossed their faces, and the differences
-/// of their velocities (m/s).
-pub(super) fn ways_to_created<const D: usize>(
-    system: &System<D>,
-    order: &[u32],
-    created: usize,
-) -> Vec<(Vector<D>, Vector<D>)> {
-    let (Buffer { faces, time, .. }, length) = (&system.fluid.buffer, buffer_length(&system.model));
-    let sources = order[order.len() - created..].iter().zip(&faces[faces.len() - created..]);
-    let way = |(source, face): (&u32, &u8)| {
-        let face = &system.fluid_domain.open_boundaries[*face as usize];
-        face.way_out(&system.fluid.particles.r[*source as usize], length, *time)
-    };
-    sources.map(way).collect()
+    created
 }
 
 /// Sets the time `t` (s) of the next rebuild of the lists, at which waves place new particles.
@@ -392,7 +449,8 @@ pub(crate) fn update_buffer<const D: usize>(system: &mut System<D>, t: f64, dt: 
         return;
     }
     let states = (water..own).into_par_iter().map(|i| buffer_state(system, i, t, dt));
-    let states: Vec<(Vector<D>, f64)> = states.collect();
+    let mut states: Vec<(Vector<D>, f64)> = states.collect();
+    move_as_one(system, &mut states, dt);
     let Fluid { particles: Particles { v, rho, .. }, images, .. } = &mut system.fluid;
     for (i, (velocity, density)) in (water..own).zip(states) {
         (v[i], rho[i]) = (velocity, density);
@@ -404,12 +462,39 @@ pub(crate) fn update_buffer<const D: usize>(system: &mut System<D>, t: f64, dt: 
     }
 }
 
+/// Gives all `states`, velocity (m/s) and density (kg/m³), in a buffer below a level that moves and without a velocity of its own one
+/// velocity normal to the face, because rows that moved by themselves would part and cross: their mean, which they follow within
+/// the step `dt` (s) as an absorbing face does.
+fn move_as_one<const D: usize>(system: &System<D>, states: &mut [(Vector<D>, f64)], dt: f64) {
+    let (tags, before) = (&system.fluid.buffer.tags, &system.fluid.particles.v[system.particle_count()..]);
+    for (number, face) in system.fluid_domain.open_boundaries.iter().enumerate() {
+        if face.velocity.is_some() || !face.has_moving_level() {
+            continue;
+        }
+        let [mut target, mut now, mut count] = [0.0; 3];
+        for (k, (v, _)) in states.iter().enumerate().filter(|(k, _)| tags[*k].face() == number) {
+            (target, now, count) = (target + v[face.axis], now + before[k][face.axis], count + 1.0);
+        }
+        let part = face.absorbed_speed.map_or(1.0, |speed| response(system, speed, dt));
+        let mut mean = Vector::zeros();
+        mean[face.axis] = (now + (target - now) * part) / f64::max(count, 1.0);
+        for (_, (v, _)) in states.iter_mut().enumerate().filter(|(k, _)| tags[*k].face() == number) {
+            *v = mean;
+        }
+    }
+}
+
+/// The part of its way to the velocity that lets waves of this `speed` (m/s) leave which a face makes in the step `dt` (s).
+fn response<const D: usize>(system: &System<D>, speed: f64, dt: f64) -> f64 {
+    if dt > 0.0 { (dt * speed / (RESPONSE * system.model.h)).min(1.0) } else { 1.0 }
+}
+
 /// Velocity (m/s) and density (kg/m³) of buffer particle `i`: see the head of this file.
 fn buffer_state<const D: usize>(system: &System<D>, i: usize, t: f64, dt: f64) -> (Vector<D>, f64) {
     let (particles, rho0) = (&system.fluid.particles, system.properties.rho0);
-    let face = &system.fluid_domain.open_boundaries[system.fluid.buffer.faces[i - system.particle_count()] as usize];
+    let face = &system.fluid_domain.open_boundaries[system.fluid.buffer.tags[i - system.particle_count()].face()];
     let (r, before) = (&particles.r[i], &particles.v[i]);
-    let level = face.level.unwrap_or(0.0);
+    let level = face.level_at(t).unwrap_or(0.0);
     let at_rest = |x: &Vector<D>| {
         let head = (level - x[D - 1]) * -system.properties.gravity[D - 1];
         system.equation_of_state.hydrostatic_compression(head)
@@ -438,7 +523,11 @@ fn buffer_state<const D: usize>(system: &System<D>, i: usize, t: f64, dt: f64) -
     let density = |x: f64| rho0 * (1.0 + at_rest(r) + rise + x);
     let Some(prescribed) = face.outward_velocity(r, t) else {
         let held = face.level.is_some();
-        let velocity = if beside { water_beside::linear_velocity(system, &place, volume, &velocity) } else { velocity };
+        let mut velocity =
+            if beside { water_beside::linear_velocity(system, &place, volume, &velocity) } else { velocity };
+        if let Some(speed) = face.absorbed_speed.filter(|_| face.has_moving_level()) {
+            velocity[face.axis] += face.outward() * system.properties.c0.powi(2) * compression / speed;
+        }
         return (velocity, density(if held { 0.0 } else { compression }));
     };
     let mut along = Vector::zeros();
@@ -450,8 +539,7 @@ fn buffer_state<const D: usize>(system: &System<D>, i: usize, t: f64, dt: f64) -
             let then = face.outward_velocity(r, t - dt).unwrap_or(0.0);
             let yielded = (before - waves(&(r - before * dt), t - dt).1).dot(&along) - then;
             let target = system.properties.c0.powi(2) * compression / speed;
-            let part = if dt > 0.0 { (dt * speed / (RESPONSE * system.model.h)).min(1.0) } else { 1.0 };
-            prescribed + yielded + (target - yielded) * part
+            prescribed + yielded + (target - yielded) * response(system, speed, dt)
         }
     };
     (along * outward + orbital, density(compression))
@@ -476,7 +564,7 @@ pub(crate) fn prescribed_discharge<const D: usize>(system: &System<D>, i: usize,
     let Fluid { particles, buffer, .. } = &system.fluid;
     let face = &system.fluid_domain.open_boundaries[i];
     face.velocity.as_ref()?;
-    let own = buffer.faces.iter().zip(&particles.r[system.particle_count()..]).filter(|(face, _)| **face as usize == i);
+    let own = buffer.tags.iter().zip(&particles.r[system.particle_count()..]).filter(|(tag, _)| tag.face() == i);
     let speeds = own.filter_map(|(_, r)| face.outward_velocity(r, t)).sum::<f64>();
     Some(speeds * system.properties.particle_volume() * system.water_multiplicity() / buffer_length(&system.model))
 }

@@ -219,20 +219,19 @@ impl<const D: usize> System<D> {
         }
         let created = open_boundary::exchange_at_faces(self, &mut order);
         let real = order.len();
-        let ways = open_boundary::ways_to_created(self, &order, created);
+        let first_created = real - created.len();
         let Fluid { particles, images, .. } = &mut self.fluid;
         let mut copies = Vec::new();
         if images.any() {
             let mut sorted: Vec<Vector<D>> = order.iter().map(|&i| particles.r[i as usize]).collect();
-            sorted[real - created..].iter_mut().zip(&ways).for_each(|(r, (way, _))| *r += way);
+            sorted[first_created..].iter_mut().zip(&created).for_each(|(r, new)| *r = new.r);
             copies = images.make(&sorted);
             order.extend(copies.iter().map(|image| order[image.original as usize]).collect::<Vec<_>>());
         }
         self.fluid.permute(&order);
         let Particles { r, v, .. } = &mut self.fluid.particles;
-        for (i, (way, velocity_change)) in (real - created..real).zip(&ways) {
-            r[i] += way;
-            v[i] += velocity_change;
+        for (i, new) in (first_created..real).zip(&created) {
+            (r[i], v[i]) = (new.r, new.v);
         }
         let images = &mut self.fluid.images;
         images.originals = copies.iter().map(|image| image.original).collect();
@@ -247,13 +246,13 @@ impl<const D: usize> System<D> {
         for (r, image) in self.fluid.particles.r[real..].iter_mut().zip(&copies) {
             *r += image.away;
         }
-        open_boundary::name_created(self, created);
+        open_boundary::name_created(self, created.len());
         (SortedWater { order, reflections }, lost)
     }
 
     /// Limits the next step by the acceleration of the water without images and buffers.
     pub(super) fn limit_step_by_originals(&mut self) {
-        if self.fluid.images.any() || !self.fluid.buffer.faces.is_empty() {
+        if self.fluid.images.any() || !self.fluid.buffer.tags.is_empty() {
             // The outermost images lack half their neighbours: their acceleration says nothing of the water.
             let (real, rates) = (self.particle_count(), self.fluid_rates());
             let largest = (0..real).map(|i| rates.of(i).acceleration.norm_squared()).fold(0.0, f64::max);

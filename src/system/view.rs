@@ -78,11 +78,18 @@ impl<const D: usize> System<D> {
         &self.fluid_domain.open_boundaries
     }
 
+    /// Place (m), velocity (m/s) and density (kg/m³) of each particle in the buffer of open boundary number `face`.
+    pub fn buffer_particles(&self, face: usize) -> impl Iterator<Item = (&Vector<D>, &Vector<D>, f64)> {
+        let (water, particles) = (self.particle_count(), &self.fluid.particles);
+        let own = self.fluid.buffer.tags.iter().enumerate().filter(move |(_, tag)| tag.face() == face);
+        own.map(move |(i, _)| (&particles.r[water + i], &particles.v[water + i], particles.rho[water + i]))
+    }
+
     /// What messages call particle number `i` of the water and the buffers.
     pub(crate) fn particle_name(&self, i: usize) -> String {
         let Some(id) = self.fluid.particles.id.get(i) else { return "the run".into() };
-        let place = i.checked_sub(self.particle_count()).and_then(|place| self.fluid.buffer.faces.get(place));
-        match place.and_then(|face| self.open_boundaries().get(usize::from(*face))) {
+        let place = i.checked_sub(self.particle_count()).and_then(|place| self.fluid.buffer.tags.get(place));
+        match place.and_then(|tag| self.open_boundaries().get(tag.face())) {
             None => format!("water particle {id}"),
             Some(face) => format!("particle {id} in the buffer of open boundary {:?}", face.name),
         }

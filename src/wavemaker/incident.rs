@@ -28,6 +28,12 @@ const SAMPLES: f64 = 16.0;
 /// of 40 components have all.
 const SUMMED_MAX: f64 = 4e7;
 
+/// Factor on an opposing current: waves that this current would stop are as short as some dp, and left out of a spectrum.
+const FASTER: f64 = 1.1;
+
+/// Most of the energy of a spectrum that waves hold that are left out.
+const LEFT_OUT: f64 = 0.15;
+
 /// Factor on the greatest sample: between samples, and beside the face, the water moves a little further and faster.
 const MARGIN: f64 = 1.05;
 
@@ -78,6 +84,24 @@ pub(crate) struct Orbit {
     pub velocity: [f64; 2],
     /// Pressure less that of water at rest in the same place, as a head, m.
     pub head: f64,
+}
+
+/// The components of a spectrum without the short waves that the current stops, or almost, and as high together as all were; all of them
+/// if those hold more than a small part of the energy.
+fn without_stopped(components: Vec<WaveComponent>, water: &WaterAtFace) -> Vec<WaveComponent> {
+    let WaterAtFace { depth, current, g, .. } = *water;
+    if current >= 0.0 {
+        return components;
+    }
+    let energy = |components: &[WaveComponent]| components.iter().map(|c| c.amplitude.powi(2)).sum::<f64>();
+    let moves = |c: &&WaveComponent| Train::new(**c, depth, FASTER * current, g).is_ok();
+    let mut kept: Vec<WaveComponent> = components.iter().filter(moves).copied().collect();
+    let (part, all) = (energy(&kept), energy(&components));
+    if part < (1.0 - LEFT_OUT) * all {
+        return components;
+    }
+    kept.iter_mut().for_each(|c| c.amplitude *= (all / part).sqrt());
+    kept
 }
 
 impl IncidentWaves {
@@ -132,7 +156,7 @@ impl IncidentWaves {
         water: &WaterAtFace,
     ) -> Result<Self> {
         let components = irregular_components(height, spectrum, seed, count)?;
-        Self::sum(&components, (height, spectrum.peak_period), water)
+        Self::sum(&without_stopped(components, water), (height, spectrum.peak_period), water)
     }
 
     /// The waves η = Σ a cos(ω t + φ) at the origin of the axis.

@@ -13,7 +13,7 @@ use super::{
 use crate::{
     error::{ErrorCode, Result},
     geometry::{Shape, WaterRegion},
-    math::{Bounds, Pose, expression::UnsteadyField},
+    math::{Bounds, Pose, expression::UnsteadyField, format::three_digits},
     scene::{
         context::{Context, Defaults, quoted_list, set_keys},
         untagged::{CoordinateUnit, FieldFormulaConfig, TimeValueConfig},
@@ -39,8 +39,8 @@ pub struct OpenBoundaryConfig {
     pub profile: Option<VelocityProfileConfig>,
     /// Factor on the velocity, –: a number, a formula in t or a table.
     pub factor: Option<TimeValueConfig>,
-    /// Height of the surface at rest, m.
-    pub level: Option<f64>,
+    /// Height of the surface at rest, m: a number, a formula in t or a table.
+    pub level: Option<TimeValueConfig>,
     /// Whether the velocity yields to waves that leave, so that they are not reflected.
     pub absorb: Option<bool>,
     /// Period of the waves that leave, s; long waves without one.
@@ -171,9 +171,9 @@ impl OpenBoundaryConfig {
         Self { velocity: Some(FieldFormulaConfig(velocity.into())), ..self }
     }
 
-    /// The same face with a surface at rest at the height `level` (m).
-    pub fn level(self, level: f64) -> Self {
-        Self { level: Some(level), ..self }
+    /// The same face with a surface at rest at the height `level`: a number (m) or a formula in t (s).
+    pub fn level(self, level: impl Into<TimeValueConfig>) -> Self {
+        Self { level: Some(level.into()), ..self }
     }
 
     /// The formula of the velocity in the sense of the flow, if the face has one.
@@ -247,18 +247,20 @@ impl OpenBoundaryConfig {
             let what = "without gravity there are no waves to absorb";
             return Err(ctx.error_with_help(key, what, "leave absorb out"));
         }
-        match self.level.filter(|level| !level.is_finite()) {
-            Some(level) => Err(ctx.error_at(&format!("{key}.level"), format!("a level of {level} m"))),
-            None => Ok(()),
+        if let Some(level) = &self.level {
+            level.verify(ctx, &format!("{key}.level"))?;
         }
+        Ok(())
     }
 
     /// Fills in the defaults of face number `i` of its section.
     pub(crate) fn fill(&mut self, ctx: &Context, defaults: &mut Defaults, i: usize, flow: FaceFlow) {
         let (section, key) = (flow.section(), format!("{}.{i}", flow.section()));
         defaults.fill(format!("{key}.name"), &mut self.name, default_name(section, i), "after its kind");
-        if let Some(factor) = &mut self.factor {
-            factor.0.fill(defaults, &format!("{key}.factor"));
+        for (word, law) in [("factor", &mut self.factor), ("level", &mut self.level)] {
+            if let Some(law) = law {
+                law.0.fill(defaults, &format!("{key}.{word}"));
+            }
         }
         // A scene that gives no gravity has that of the earth.
         let weight = ctx.gravity.is_none() || ctx.has_gravity();
@@ -305,10 +307,20 @@ impl OpenBoundaryConfig {
         });
         let mut bounds = beside.clone().fold(Bounds::<D>::empty(), |all, body| all.union(&body.bounds()));
         let top = beside.map(|body| body.level).fold(f64::NEG_INFINITY, f64::max);
-        let level = self.level.unwrap_or(top);
+        let law = |value: &Option<TimeValueConfig>, word: &str| {
+            value.as_ref().map(|law| law.0.build(ctx, &format!("{key}.{word}"), CoordinateUnit::Si)).transpose()
+        };
+        let written = law(&self.level, "level")?;
+        let level = written.as_ref().map_or(top, |level| level.value_and_rate(0.0).0);
         if ctx.has_gravity() && (level - top).abs() > 0.5 * ctx.dp {
-            let what = format!("the level {level} m differs from {top} m, that of the water beside the face");
-            let help = format!("write  level = {top}, or change the water: a step of the surface would break");
+            let (what, help) = if written.as_ref().is_some_and(|level| level.steady_value().is_none()) {
+                let what = format!("the level is {level} m at t = 0, and that of the water beside the face {top} m");
+                let by = three_digits(top - level);
+                (what, format!("add {by} m to it, or change the water: a step of the surface would break"))
+            } else {
+                let what = format!("the level {level} m differs from {top} m, that of the water beside the face");
+                (what, format!("write  level = {top}, or change the water: a step of the surface would break"))
+            };
             return Err(ctx.error_with_help(&format!("{key}.level"), what, help));
         }
         let (from, to) = if is_lower { (at - length, at) } else { (at, at + length) };
@@ -321,9 +333,7 @@ impl OpenBoundaryConfig {
             (FaceFlow::In, Some(velocity)) => OpenBoundary::inflow(name, axis, at, velocity),
             (_, velocity) => OpenBoundary::outflow(name, axis, at, velocity),
         };
-        let factor = self.factor.as_ref();
-        let factor = factor.map(|f| f.0.build(ctx, &format!("{key}.factor"), CoordinateUnit::Si)).transpose()?;
-        let face = OpenBoundary { is_lower, factor, ..face };
+        let face = OpenBoundary { is_lower, factor: law(&self.factor, "factor")?, ..face };
         let (g, depth) = (ctx.gravity_norm(), top - bounds.min[D - 1]);
         let middle = 0.5 * (bounds.min + bounds.max);
         let waves = self.wave.as_ref().map(|wave| {
@@ -336,7 +346,10 @@ impl OpenBoundaryConfig {
         });
         let waves = waves.transpose()?;
         let period = self.absorb_period.or(waves.as_ref().map(IncidentWaves::main_period));
+        let follows_level = face.velocity.is_none() && written.as_ref().is_some_and(|l| l.steady_value().is_none());
         let absorbed_speed = match (self.absorb, period) {
+            // The water follows its level by long waves.
+            _ if follows_level => Some((g * depth).sqrt()),
             (None | Some(false), _) => None,
             // Long waves.
             (Some(true), None) => Some((g * depth).sqrt()),
@@ -352,7 +365,7 @@ impl OpenBoundaryConfig {
             }
         };
         // Without velocity and level the pressure is that of the water.
-        let level = if face.velocity.is_some() { Some(level) } else { self.level };
+        let level = if face.velocity.is_some() { written.or(Some(level.into())) } else { written };
         let face = OpenBoundary { level, absorbed_speed, waves, ..face };
         let shape = Shape::Box { size: bounds.size() };
         let pose = Pose::at(middle);

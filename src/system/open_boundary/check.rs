@@ -2,12 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use super::OpenBoundary;
+use super::{MOST_FACES, OpenBoundary};
 use crate::{
     error::{Error, ErrorCode, Result},
     math::{
-        Vector,
-        format::{three_digits, two_digits_down},
+        Bounds, Vector,
+        format::{three_digits, two_digits_down, two_digits_up},
     },
     solid::{Role, SolidSpec},
     system::Setup,
@@ -20,6 +20,15 @@ const FASTEST: f64 = 0.2;
 /// Speed through a face over the c₀ that a message proposes: the usual ratio in weakly compressible water @monaghan1994.
 const SOUND: f64 = 0.1;
 
+/// Greatest rate of a level over √(g depth), the speed of long waves: water follows by a wave as steep as that.
+const FASTEST_LEVEL: f64 = 0.1;
+
+/// Least height of a level that changes above the bed, dp: the kernel spans that many rows.
+const LEAST_ROWS: f64 = 4.0;
+
+/// Number of parts of a run at whose ends a level is looked at.
+const LEVEL_SAMPLES: u32 = 2000;
+
 /// Number of parts of a run at whose ends the speed through a face is compared with that of sound.
 const SPEED_SAMPLES: u32 = 100;
 
@@ -27,11 +36,11 @@ const SPEED_SAMPLES: u32 = 100;
 ///
 /// # Errors
 /// `Scene` if the face is not vertical, lies across a periodic side or a symmetry plane, has no water on one of its sides, is too near
-/// to the end of a solid, is where another face is, leaves the pressure of a closed duct free, or lets water pass faster than the valid range of the water allows.
+/// to the end of a solid, beside the end of the bed, is where another face is, leaves the pressure of a closed duct free, or lets water pass faster than the valid range of the water allows.
 pub(crate) fn check<const D: usize>(setup: &Setup<D>, i: usize, until: f64) -> Result<()> {
     let (face, length) = (&setup.open_boundaries[i], setup.buffer_length());
     let (name, axis, at) = (&face.name, face.axis, face.at);
-    if axis + 1 >= D || !at.is_finite() || setup.open_boundaries.len() > usize::from(u8::MAX) {
+    if axis + 1 >= D || !at.is_finite() || setup.open_boundaries.len() > MOST_FACES {
         let what = format!("open boundary {name:?} needs a finite coordinate along a horizontal axis");
         return Err(Error::scene(what));
     }
@@ -72,9 +81,19 @@ pub(crate) fn check<const D: usize>(setup: &Setup<D>, i: usize, until: f64) -> R
         let what = format!("solid {:?} ends in the buffer of open boundary {name:?}", solid.name);
         let help = match solid.role {
             Role::Free(_) => format!("keep it on the water's side of {along} = {at}"),
-            _ => format!("let it reach to {along} = {end:.6} or further, or end at {along} = {at}"),
+            _ => {
+                format!("let it reach to {along} = {end:.6} or further, or end at {along} = {at} if it is not the bed")
+            }
         };
         return Err(Error::scene(what).help(help));
+    }
+    if let Some(solid) = bed_that_ends(setup, face) {
+        let end = at + face.outward() * length;
+        let what = format!(
+            "solid {:?}, the bed, ends at open boundary {name:?}: water would fall out beside the buffer",
+            solid.name
+        );
+        return Err(Error::scene(what).help(format!("let it reach to {along} = {end:.6} or further")));
     }
     let orbital = face.waves.as_ref().map_or(0.0, IncidentWaves::orbital_speed);
     let most = FASTEST * setup.model.c0;
@@ -101,6 +120,7 @@ pub(crate) fn check<const D: usize>(setup: &Setup<D>, i: usize, until: f64) -> R
         let help = "give the face that velocity into the water, the same everywhere at all times, and a level";
         return Err(Error::scene(what).with_code(ErrorCode::ConflictingKeys).help(help));
     }
+    check_level(setup, face, until)?;
     check_pressure(setup, face)?;
     match face.absorbed_speed {
         Some(speed) if !(speed > 0.0 && speed.is_finite()) => {
@@ -108,6 +128,31 @@ pub(crate) fn check<const D: usize>(setup: &Setup<D>, i: usize, until: f64) -> R
         }
         _ => Ok(()),
     }
+}
+
+/// The solid under the lowest water beside `face` that does not go on under the buffer.
+fn bed_that_ends<'a, const D: usize>(setup: &'a Setup<D>, face: &OpenBoundary<D>) -> Option<&'a SolidSpec<D>> {
+    if setup.initial_gravity()[D - 1] >= 0.0 {
+        return None;
+    }
+    let dp = setup.model.dp;
+    let mut lowest = BTreeMap::<Vec<i64>, Vector<D>>::new();
+    for r in setup.water.iter().filter(|r| (0.0..dp).contains(&face.beyond(r))) {
+        let column = r.iter().take(D - 1).map(|x| (x / dp).floor() as i64).collect();
+        let own = lowest.entry(column).or_insert(*r);
+        if r[D - 1] < own[D - 1] {
+            *own = *r;
+        }
+    }
+    let solid_at = |x: &Vector<D>| setup.solids.iter().find(|solid| is_inside(solid, x));
+    lowest.into_values().find_map(|r| {
+        let [inside, outside] = [-0.5, 0.5].map(|beyond| {
+            let mut x = r;
+            (x[face.axis], x[D - 1]) = (face.at + face.outward() * beyond * dp, r[D - 1] - dp);
+            x
+        });
+        solid_at(&inside).filter(|_| solid_at(&outside).is_none())
+    })
 }
 
 /// Refuses open boundary number `i` if one before it is in its place.
@@ -127,6 +172,73 @@ fn check_other_faces<const D: usize>(setup: &Setup<D>, i: usize) -> Result<()> {
     );
     let help = "leave one out, or move it to another end of the water; solids close a part of a face";
     Err(Error::scene(what).with_code(ErrorCode::ConflictingKeys).help(help))
+}
+
+/// Refuses a level of `face` that changes in time and, until the time `until` (s), is near to the bed, reaches the top of the domain or a solid, or
+/// changes faster than the water can follow; one without gravity, and one beside waves that enter.
+fn check_level<const D: usize>(setup: &Setup<D>, face: &OpenBoundary<D>, until: f64) -> Result<()> {
+    let (name, dp, g) = (&face.name, setup.model.dp, -setup.initial_gravity()[D - 1]);
+    let Some(law) = face.level.as_ref().filter(|_| face.has_moving_level()) else { return Ok(()) };
+    let refuse = |code: ErrorCode, what: String, help: String| Err(Error::scene(what).with_code(code).help(help));
+    if !(g > 0.0) || face.waves.is_some() {
+        let what =
+            format!("the level of open boundary {name:?} changes in time, without gravity or with waves that enter");
+        return refuse(ErrorCode::ConflictingKeys, what, "give it one level for the whole run".into());
+    }
+    let in_buffer = || setup.water.iter().filter(|r| face.beyond(r) > 0.0);
+    let heights = || in_buffer().map(|r| r[D - 1]);
+    let bed = heights().fold(f64::INFINITY, f64::min) - 0.5 * dp;
+    let still = heights().fold(f64::NEG_INFINITY, f64::max) + 0.5 * dp;
+    // Without a domain of its own a scene has room above the water as high as the water is long.
+    let all = Bounds::around(&setup.water);
+    let ceiling = setup.domain.map_or(all.max[D - 1] + all.size().max(), |domain| domain.max[D - 1]) - dp;
+    let least = bed + LEAST_ROWS * dp;
+    let laws = (0..=LEVEL_SAMPLES).map(|k| until * f64::from(k) / f64::from(LEVEL_SAMPLES));
+    let laws = laws.map(|t| (t, law.value_and_rate(t)));
+    let mut highest = f64::NEG_INFINITY;
+    for (t, (level, rate)) in laws {
+        let at =
+            format!("the level of open boundary {name:?} is {} m at t = {} s", three_digits(level), three_digits(t));
+        if !(level >= least) {
+            let what = format!("{at}, and the bed {} m", three_digits(bed));
+            let help = format!("keep it at {} m or more, {LEAST_ROWS} dp above the bed", three_digits(least));
+            return refuse(ErrorCode::OutOfRange, what, help);
+        }
+        if level > ceiling {
+            let what = format!("{at}, and the domain ends at {} m", three_digits(ceiling + dp));
+            let help = format!("keep it at {} m or less, or let [domain] reach higher", three_digits(ceiling));
+            return refuse(ErrorCode::OutOfRange, what, help);
+        }
+        let fastest = FASTEST_LEVEL * (g * (level - bed)).sqrt();
+        if !(rate.abs() <= fastest) {
+            let what = format!(
+                "the level of open boundary {name:?} changes by {} m/s at t = {} s; water of that depth follows {} m/s",
+                three_digits(rate.abs()),
+                three_digits(t),
+                two_digits_down(fastest)
+            );
+            let help = format!("let the change take {} times as long", two_digits_up(rate.abs() / fastest));
+            return refuse(ErrorCode::OutOfRange, what, help);
+        }
+        highest = highest.max(level);
+    }
+    let rises = |r: &&Vector<D>| r[D - 1] > still - dp && highest > still;
+    for r in in_buffer().filter(rises) {
+        let mut x = *r;
+        while x[D - 1] <= highest {
+            if let Some(solid) = setup.solids.iter().find(|solid| is_inside(solid, &x)) {
+                let what = format!(
+                    "the level of open boundary {name:?} rises to {} m, into solid {:?}",
+                    three_digits(highest),
+                    solid.name
+                );
+                let help = format!("keep it below {} m, or move the solid up", three_digits(x[D - 1] - 0.5 * dp));
+                return refuse(ErrorCode::OutOfRange, what, help);
+            }
+            x[D - 1] += dp;
+        }
+    }
+    Ok(())
 }
 
 /// Refuses a `face` without velocity and level at a closed duct in which no other face holds the pressure.

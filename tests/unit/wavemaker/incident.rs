@@ -114,6 +114,25 @@ fn a_sea_has_its_height_and_keeps_its_particles() {
     assert!(error.help.as_deref().unwrap_or_default().contains("the peak period is"), "{:?}", error.help);
 }
 
+/// Against a current a sea enters without the short components that the current stops, as high as with them; waves of a table are the
+/// user's own, and refused.
+#[test]
+fn a_sea_against_a_current_lacks_the_components_that_are_stopped() {
+    let with = WaterAtFace { depth: 0.5, current: 0.3, g: G, ramp: Some(2.0), until: 30.0 };
+    let against = WaterAtFace { current: -0.3, ..with };
+    let sea = |water: &WaterAtFace| IncidentWaves::irregular(0.03, &WaveSpectrum::jonswap(1.3, 3.3), (7, 40), water);
+    let [all, left] = [sea(&with), sea(&against)].map(|waves| waves.expect("a sea"));
+    let energy =
+        |waves: &IncidentWaves| waves.trains.iter().map(|train| train.component.amplitude.powi(2)).sum::<f64>();
+    assert!(all.component_count() == 40 && (30..40).contains(&left.component_count()), "{}", left.component_count());
+    assert!((energy(&left) / energy(&all) - 1.0).abs() < 1e-12);
+    // A current a tenth faster stops none of them: in deep water it would stop those above g/(4 U).
+    let shortest = left.trains.iter().map(|train| train.component.omega).fold(0.0, f64::max);
+    assert!(shortest < G / (4.0 * 1.1 * 0.3), "{shortest} rad/s");
+    let table = [WaveComponent { amplitude: 0.001, omega: 10.0, phase: 0.0 }];
+    assert!(IncidentWaves::components(&table, &against).is_err());
+}
+
 /// The components of a table have their phases at the face: η = Σ a cos(ω t + φ) there, and none moves the water as a paddle would not.
 #[test]
 fn components_make_their_surface_at_the_face() {
