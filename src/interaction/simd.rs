@@ -228,14 +228,9 @@ impl<const D: usize> PairLoop<D> for SimdPairLoop<D> {
         works.into_par_iter().with_max_len(1).for_each(|(slab, rows)| sums.sum_slab(level, packed, slab, flow, rows));
         self.spent += start.elapsed();
         exchange::complete_sums(&mut self.sums, clusters, &lengths);
-        let Units { length, time } = self.units;
         let rows = boundary_sums::row_count(D, flow);
         let read = |fit: &mut WallExtrapolation<f64, D>, slot: u32| {
-            let sum = self.of_slot(slot, rows);
-            boundary_sums::for_each_row(fit, flow, |row, x| *x = sum(row));
-            fit.pressure_sum *= (length / time).powi(2);
-            fit.offset_sum = fit.offset_sum.map(|x| x * length);
-            fit.velocity_sum = fit.velocity_sum.map(|x| x * (length / time));
+            boundary_sums::set(fit, flow, self.of_slot(slot, rows), &self.units);
         };
         let Some(own) = own else {
             for_each_own(clusters, fits, read);
