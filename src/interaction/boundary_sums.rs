@@ -9,7 +9,7 @@ use super::{
 use crate::{
     math::simd::{self, LANES, LaneRow, Level, Simd, SimdTask, f32x8, i32x8},
     neighbours::{ListPart, ParticleListChunk, Slab},
-    sph::{Num, boundary::WallExtrapolation, kernel::Kernel},
+    sph::{Num, Units, boundary::WallExtrapolation, kernel::Kernel},
 };
 
 /// The sums under one kernel.
@@ -76,6 +76,19 @@ impl<K: Kernel, const D: usize> BoundarySums<D> for KernelSums<K> {
             false => simd::dispatch(level, BoundarySlabTask::<_, false, D> { kernel: self.0, packed, slab, sums }),
         }
     }
+}
+
+/// Sets `fit` to the sums by row in `units`, with the velocity if `flow`.
+pub(super) fn set<const D: usize>(
+    fit: &mut WallExtrapolation<f64, D>,
+    flow: bool,
+    sums: impl Fn(usize) -> f64,
+    Units { length, time }: &Units,
+) {
+    for_each_row(fit, flow, |row, x| *x = sums(row));
+    fit.pressure_sum *= (length / time).powi(2);
+    fit.offset_sum = fit.offset_sum.map(|x| x * length);
+    fit.velocity_sum = fit.velocity_sum.map(|x| x * (length / time));
 }
 
 /// Calls `visit` with the row and the value of each sum.

@@ -92,12 +92,14 @@ pub trait PairLoop<const D: usize>: Send + Sync {
     /// Time spent on pairs so far.
     fn time_spent(&self) -> Duration;
 
-    /// Fluid-to-wall extrapolation sums, with the velocity if `flow`. Call before [`PairLoop::rates`], which reuses the packed
-    /// fluid data; the neighbour lists must hold.
+    /// Fluid-to-wall extrapolation sums, with the velocity if `flow`. Writes those of the boundary particles near water to `fits`; if
+    /// `own` are the places among them of those that this rank advances, of these alone. Call before [`PairLoop::rates`], which reuses
+    /// the packed fluid data; the neighbour lists must hold.
     fn extrapolate_to_boundary(
         &mut self,
         input: &PairLoopInput<'_, D>,
         flow: bool,
+        own: Option<&[u32]>,
         fits: &mut [WallExtrapolation<f64, D>],
     );
 

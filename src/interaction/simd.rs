@@ -216,7 +216,8 @@ impl<const D: usize> PairLoop<D> for SimdPairLoop<D> {
         &mut self,
         input: &PairLoopInput<'_, D>,
         flow: bool,
-        extrapolate_to_boundary: &mut [WallExtrapolation<f64, D>],
+        own: Option<&[u32]>,
+        fits: &mut [WallExtrapolation<f64, D>],
     ) {
         let clusters = clusters(input.neighbours);
         self.pack(input, clusters);
@@ -227,16 +228,16 @@ impl<const D: usize> PairLoop<D> for SimdPairLoop<D> {
         works.into_par_iter().with_max_len(1).for_each(|(slab, rows)| sums.sum_slab(level, packed, slab, flow, rows));
         self.spent += start.elapsed();
         exchange::complete_sums(&mut self.sums, clusters, &lengths);
-        let Units { length, time } = self.units;
         let rows = boundary_sums::row_count(D, flow);
-        for_each_own(clusters, extrapolate_to_boundary, |fit, slot| {
-            let sum = self.of_slot(slot, rows);
-            boundary_sums::for_each_row(fit, flow, |row, x| *x = sum(row));
-            fit.pressure_sum *= (length / time).powi(2);
-            fit.offset_sum = fit.offset_sum.map(|x| x * length);
-            fit.velocity_sum = fit.velocity_sum.map(|x| x * (length / time));
-        });
-        exchange::share_extrapolations(extrapolate_to_boundary, clusters, flow);
+        let read = |fit: &mut WallExtrapolation<f64, D>, slot: u32| {
+            boundary_sums::set(fit, flow, self.of_slot(slot, rows), &self.units);
+        };
+        let Some(own) = own else {
+            for_each_own(clusters, fits, read);
+            return exchange::share_extrapolations(fits, clusters, flow);
+        };
+        let fits = fits.par_iter_mut().zip(own).with_min_len(PARTICLES_PER_TASK);
+        fits.for_each(|(fit, &place)| read(fit, clusters.boundary_slots[place as usize]));
     }
 
     fn moments(&mut self, input: &PairLoopInput<'_, D>, moments: &mut [Matrix<D>]) {

@@ -123,7 +123,7 @@ impl Clusters {
     }
 
     /// Makes clusters and lists of the water and of those boundary particles that may be near it; returns which
-    /// boundary particles are, in ascending order.
+    /// boundary particles are, in ascending order. Water that this rank lacks has no clusters, so that each rank has numbers of its own.
     pub(super) fn build<const D: usize>(
         &mut self,
         columns: &Columns<D>,
@@ -135,14 +135,12 @@ impl Clusters {
         self.source.clear();
         self.slabs.resize_with(columns.slab_count(), Slab::default);
         let (up, span, read) = (columns.up, SPAN * sizes.width, self.read_slabs());
-        let lacking = self.lacking_clusters(columns, (water_r, water), span);
         // Lists are made of the slabs that this rank reads, and only their clusters need an extent.
         let [mut extents, mut unread] = [Vec::with_capacity(self.source.capacity() / LANES), Vec::new()];
         let (mut ranges, mut end) = ([vec![0..0; columns.len()], vec![0..0; columns.len()]], 0);
         for (s, slab) in self.slabs.iter_mut().enumerate() {
             slab.first = end;
             let extents = if read.contains(&s) { &mut extents } else { &mut unread };
-            self.source.resize((end + lacking.get(s).map_or(0, |&n| n as usize)) * LANES, PAD);
             for (kind, (r, sorted)) in [(water_r, water), (skin_r, skin)].into_iter().enumerate() {
                 for column in columns.columns_of_slab(s) {
                     let before = (self.source.len() / LANES) as u32;
@@ -167,28 +165,6 @@ impl Clusters {
         let wet = self.maps(water_r.len(), &touched);
         self.division.find_owners(&self.slabs, &self.source, &self.boundary_slots, water_r.len());
         wet
-    }
-
-    /// The number of clusters of water in each slab whose water this rank lacks; empty if it lacks none.
-    fn lacking_clusters<const D: usize>(
-        &self,
-        columns: &Columns<D>,
-        (r, water): (&[Vector<D>], &Sorted),
-        span: f64,
-    ) -> Vec<u32> {
-        if !self.division.is_apart {
-            return Vec::new();
-        }
-        let mut counts = vec![0; self.slabs.len()];
-        for slab in self.own_slabs() {
-            for column in columns.columns_of_slab(slab) {
-                let particles = &water.order[water.start[column] as usize..water.start[column + 1] as usize];
-                counts[slab] += runs(particles, r, columns.up, span).count() as u32;
-            }
-        }
-        self.division.share_by_slab(&mut counts);
-        counts[self.read_slabs()].fill(0);
-        counts
     }
 
     /// The slabs that this rank computes.

@@ -56,6 +56,12 @@ impl Division {
         }
     }
 
+    /// The places, among the boundary particles near water, of those that this rank advances, in ascending order; `None` if it advances
+    /// all.
+    pub(crate) fn own_boundary(&self) -> Option<&[u32]> {
+        self.boundary.get(self.ranks.rank()).filter(|_| self.by_owner).map(Vec::as_slice)
+    }
+
     /// Makes `own` the water of this rank, in ascending order, of `count` particles.
     pub(crate) fn set_own_water(&mut self, own: Vec<u32>, count: usize) {
         self.is_own = vec![false; count];
@@ -109,23 +115,19 @@ impl Division {
         self.ranks.share_doubles(numbers, &self.slabs.iter().map(of).collect::<Vec<_>>());
     }
 
-    /// Completes the numbers of slabs, of which each rank has those of its own.
-    pub(super) fn share_by_slab(&self, numbers: &mut [u32]) {
-        self.ranks.share_numbers(numbers, &self.slabs);
-    }
-
-    /// Completes `touched` with what the lists of other ranks touch, and counts the entries of all lists.
+    /// Completes `touched` with the boundary particles that the lists of other ranks touch, and counts the entries of all lists.
     pub(super) fn combine_lists(&mut self, slabs: &[Slab], touched: &mut [u8]) {
         if self.ranks.count() == 1 {
             return;
         }
-        let clusters_of = |part: &Range<usize>| match slabs[part.clone()].first() {
-            Some(slab) => slab.first..slabs[part.end.min(slabs.len() - 1)].end,
-            None => 0..0,
+        // All ranks have the same clusters of boundary particles, but not those of all water.
+        let clusters_of = |part: &Range<usize>| {
+            let last = if part.is_empty() { part.start } else { (part.end + 1).min(slabs.len()) };
+            slabs[part.start..last].iter().flat_map(|slab| slab.middle..slab.end)
         };
-        let all = self.ranks.gather_bytes(&touched[clusters_of(&self.own_slabs())]);
-        for (part, theirs) in self.slabs.iter().zip(all) {
-            touched[clusters_of(part)].iter_mut().zip(theirs).for_each(|(all, one)| *all |= one);
+        let own: Vec<u8> = clusters_of(&self.own_slabs()).map(|c| touched[c]).collect();
+        for (part, theirs) in self.slabs.iter().zip(self.ranks.gather_bytes(&own)) {
+            clusters_of(part).zip(theirs).for_each(|(c, one)| touched[c] |= one);
         }
         self.entries = slabs.iter().map(|slab| slab.index.len() as u32).collect();
         self.ranks.share_numbers(&mut self.entries, &self.slabs);

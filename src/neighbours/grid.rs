@@ -28,11 +28,18 @@ impl<const D: usize> CellGrid<D> {
         if r.is_empty() {
             return Self::default();
         }
-        let bounds = Bounds::around(r);
+        Self::of_part(r, (Bounds::around(r), r.len()), cell)
+    }
+
+    /// As [`CellGrid::new`] for a part `r` of `count` positions within `bounds` (m), in the cells of all of these.
+    pub(super) fn of_part(r: &[Vector<D>], (bounds, count): (Bounds<D>, usize), cell: f64) -> Self {
+        if r.is_empty() {
+            return Self::default();
+        }
         let size = bounds.size();
         let wanted = |cell: f64| (0..D).map(|i| (size[i] / cell).floor() + 1.0).product::<f64>();
         let mut cell = cell;
-        while wanted(cell) > 1000.0 + CELLS_PER_PARTICLE * r.len() as f64 {
+        while wanted(cell) > 1000.0 + CELLS_PER_PARTICLE * count as f64 {
             cell *= 2.0;
         }
         let cells = std::array::from_fn(|i| (size[i] / cell).floor() as usize + 1);

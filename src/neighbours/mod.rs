@@ -61,8 +61,7 @@ pub struct NeighbourLists<const D: usize> {
     positions_at_build: Vec<Vector<D>>,
     /// The positions of water and boundary particles at the last build in grids, for queries at a point; made at the first query.
     grids: [OnceLock<CellGrid<D>>; 2],
-    /// The water particles whose places are known, if a device has told those of some alone.
-    #[cfg(feature = "gpu")]
+    /// The water particles whose places are known, if a device or other ranks have told those of some alone.
     known: Option<Vec<u32>>,
 }
 
@@ -81,7 +80,6 @@ impl<const D: usize> NeighbourLists<D> {
             boundary_near_fluid: Vec::new(),
             positions_at_build: Vec::new(),
             grids: Default::default(),
-            #[cfg(feature = "gpu")]
             known: None,
         }
     }
@@ -193,11 +191,7 @@ impl<const D: usize> NeighbourLists<D> {
     }
 
     fn build_sorted(&mut self, columns: &Columns<D>, (water, sorted): (&[Vector<D>], &Sorted), skin: &[Vector<D>]) {
-        self.grids = Default::default();
-        #[cfg(feature = "gpu")]
-        {
-            self.known = None;
-        }
+        self.forget_known();
         let look = self.list_radius();
         let mut heights = columns.heights(water, sorted, look);
         if let Some(division) = self.division().filter(|division| division.is_apart) {
@@ -225,11 +219,20 @@ impl<const D: usize> NeighbourLists<D> {
         };
     }
 
-    /// Leaves the positions at the last build of `these` particles alone.
-    pub(crate) fn leave_positions(&mut self, these: &Range<usize>) {
-        let mut left = zeros(self.positions_at_build.len());
-        left[these.clone()].copy_from_slice(&self.positions_at_build[these.clone()]);
-        (self.positions_at_build, self.grids) = (left, Default::default());
+    /// Lets queries at a point find `these` particles of the `water` (m) alone, which this rank knows, in the order in which they find
+    /// all.
+    pub(crate) fn know(&mut self, these: Vec<u32>, water: &[Vector<D>]) {
+        let own = self.division().and_then(Division::own_water).map_or(&[][..], |(own, _)| own);
+        let bounds = Bounds::around(own.iter().map(|&i| &water[i as usize]));
+        let bounds = self.division().map_or(bounds, |division| division.union(&bounds));
+        let places: Vec<Vector<D>> = these.iter().map(|&i| water[i as usize]).collect();
+        let grid = CellGrid::of_part(&places, (bounds, water.len()), self.list_radius());
+        (self.grids, self.known) = ([OnceLock::from(grid), OnceLock::new()], Some(these));
+    }
+
+    /// Lets queries at a point find all positions at the last build again.
+    pub(crate) fn forget_known(&mut self) {
+        (self.grids, self.known) = (Default::default(), None);
     }
 
     /// Gives the first rank, or all if `everyone`, all `water`, its positions at the last build, and its gradient `corrections` if
@@ -288,12 +291,9 @@ impl<const D: usize> NeighbourLists<D> {
         self.known = Some(these);
     }
 
-    /// The water particles whose places are known, if a device has told those of some alone.
+    /// The water particles whose places are known, if a device or other ranks have told those of some alone.
     pub(crate) fn known_water(&self) -> Option<&[u32]> {
-        #[cfg(feature = "gpu")]
-        return self.known.as_deref();
-        #[cfg(not(feature = "gpu"))]
-        None
+        self.known.as_deref()
     }
 
     /// The positions of the water for which the lists were made, m.

@@ -2,7 +2,7 @@
 //!
 //! Every array of boundary particles is declared, extended, cut, saved and restored here and nowhere else.
 
-use std::ops::Range;
+use std::{borrow::Cow, ops::Range};
 
 use rayon::prelude::*;
 
@@ -10,6 +10,7 @@ use super::{
     System,
     boundary_extension::ExtensionParticle,
     film::{self, Films},
+    own_water,
     periodic::Images,
     symmetry::{AxisSet, Division, MirroredParticle, reflected},
     thin_layers::{self, ThinLayers},
@@ -18,7 +19,7 @@ use crate::{
     error::{Error, Result},
     math::{Bounds, Pose, Vector},
     model::{Model, Walls},
-    particles::{PARTICLES_PER_TASK, Particles, optional_bytes},
+    particles::{PARTICLES_PER_TASK, Particles, optional_bytes, zeros},
     solid::{Kinematics, Role, Solid, SolidDivision, SolidSpec, boundary_motion},
     sph::boundary::{
         DynamicBoundary, Slip, SupportCoverage, WallExtrapolation, WallTarget, no_slip_velocity, promptness,
@@ -37,7 +38,8 @@ pub(crate) struct Boundary<const D: usize> {
     pub(super) depths: Option<Vec<f64>>,
     /// Outward normals in the frames of their solids; `None` unless water sticks to the face.
     normals: Option<Vec<Vector<D>>>,
-    /// Target densities of those that had water near them in the last pass, in ascending order; `None` unless walls relax.
+    /// Target densities of those that this rank advances and that had water near them in the last pass, in ascending order; `None`
+    /// unless walls relax.
     target_density: Option<Vec<TargetDensity>>,
     /// Velocities (m/s) with which they act on the water; `None` where those are their own.
     pub(super) extrapolated_velocity: Option<Vec<Vector<D>>>,
@@ -305,10 +307,14 @@ impl<const D: usize> System<D> {
     /// Gives each boundary particle of `range` near water the density of still water at its depth, but not below ρ₀. It reads nothing
     /// of the last force pass, which a restored state does not hold.
     pub(super) fn init_hydrostatic(&mut self, range: Range<usize>) {
+        own_water::know_adjacent_slabs(self);
         let (water, boundary, rho0) = (&self.fluid.particles, &self.boundary.particles, self.properties.rho0);
         let near = self.neighbours.boundary_near_fluid();
-        let place = |end: usize| near.partition_point(|&i| (i as usize) < end);
-        let near = &near[place(range.start)..place(range.end)];
+        let within = |i: &u32| range.contains(&(*i as usize));
+        let near: Vec<u32> = match own_water::own_boundary(&self.neighbours) {
+            None => near.iter().copied().filter(within).collect(),
+            Some(places) => places.iter().map(|&k| near[k as usize]).filter(within).collect(),
+        };
         let still: Vec<f64> = near
             .par_iter()
             .map(|&i| {
@@ -327,6 +333,10 @@ impl<const D: usize> System<D> {
         for (&i, still) in near.iter().zip(still) {
             self.boundary.particles.rho[i as usize] = DynamicBoundary.limited_density(still, rho0);
         }
+        own_water::share_boundary_density(&self.neighbours, &mut self.boundary.particles.rho);
+        if own_water::is_apart(&self.neighbours) {
+            self.neighbours.forget_known();
+        }
     }
 
     /// Sets the density (kg/m³) of each boundary particle near water to what `rho` makes of its place among them, its
@@ -339,7 +349,9 @@ impl<const D: usize> System<D> {
     ) {
         let (rho0, Boundary { particles, target_density, .. }) = (self.properties.rho0, &mut self.boundary);
         let mut targets = target_density.iter().flatten().peekable();
-        for (k, &i) in self.neighbours.boundary_near_fluid().iter().enumerate() {
+        let near = self.neighbours.boundary_near_fluid();
+        let mut set = |k: usize| {
+            let i = near[k];
             while targets.next_if(|target| target.particle < i).is_some() {}
             let target = targets.next_if(|target| target.particle == i);
             let i = i as usize;
@@ -351,6 +363,13 @@ impl<const D: usize> System<D> {
                     relaxation.map_or(own, |relaxation| own + target.change(own, relaxation))
                 }
             };
+        };
+        match own_water::own_boundary(&self.neighbours) {
+            None => (0..near.len()).for_each(set),
+            Some(own) => {
+                own.iter().for_each(|&k| set(k as usize));
+                own_water::share_boundary_density(&self.neighbours, &mut self.boundary.particles.rho);
+            }
         }
     }
 
@@ -361,11 +380,18 @@ impl<const D: usize> System<D> {
         if !relaxes && !sticks && self.boundary.wetness.is_none() {
             return;
         }
-        let Self { pair_loop, neighbours, fluid, boundary, properties, equation_of_state, .. } = self;
+        let Self { pair_loop, neighbours, fluid, boundary, gap_pressure, properties, equation_of_state, .. } = self;
         let mut input = Self::pair_input(neighbours, fluid, boundary, properties, equation_of_state);
         input.boundary_velocity = &boundary.particles.v;
-        let mut fits = vec![WallExtrapolation::filled_with(0.0); neighbours.boundary_near_fluid().len()];
-        pair_loop.extrapolate_to_boundary(&input, sticks || relaxes, &mut fits);
+        // Only these read the water beside boundary particles of other ranks.
+        let read_by_all = boundary.wetness.is_some()
+            || !gap_pressure.is_empty()
+            || !boundary.films.is_empty()
+            || !boundary.thin.is_empty();
+        let made = own_water::own_boundary(neighbours).filter(|_| !read_by_all);
+        let count = made.map_or(neighbours.boundary_near_fluid().len(), <[u32]>::len);
+        let mut fits = vec![WallExtrapolation::filled_with(0.0); count];
+        pair_loop.extrapolate_to_boundary(&input, sticks || relaxes, made, &mut fits);
         if let Some(wetness) = &mut self.boundary.wetness {
             let near = self.neighbours.boundary_near_fluid().iter();
             *wetness = near.zip(&fits).map(|(i, fit)| (*i, fit.weight_sum)).collect();
@@ -375,16 +401,34 @@ impl<const D: usize> System<D> {
             film::update_water(self, &fits);
             let place = |system: &Self, i: u32| system.neighbours.boundary_near_fluid().binary_search(&i).ok();
             thin_layers::update_water(self, |system, i| place(system, i).map(|place| fits[place].weight_sum));
-            self.update_wall_pressure(&fits);
         }
-        if sticks {
-            self.update_wall_velocity(&fits);
+        let near = self.neighbours.boundary_near_fluid();
+        let wet: Cow<'_, [u32]> = match own_water::own_boundary(&self.neighbours) {
+            None => Cow::Borrowed(near),
+            Some(own) => {
+                if read_by_all {
+                    fits = own.iter().map(|&k| fits[k as usize]).collect();
+                }
+                own.iter().map(|&k| near[k as usize]).collect()
+            }
+        };
+        let mut targets = self.boundary.target_density.take();
+        if relaxes {
+            self.wall_targets(&wet, &fits, targets.get_or_insert_default());
         }
+        let velocities = sticks.then(|| self.wall_velocities(&wet, &fits));
+        if let Some(velocities) = velocities {
+            let count = self.boundary.particles.len();
+            let all = self.boundary.extrapolated_velocity.get_or_insert_with(|| zeros(count));
+            all.resize(count, Vector::zeros());
+            wet.iter().zip(velocities).for_each(|(&i, v)| all[i as usize] = v);
+            own_water::share_boundary_velocity(&self.neighbours, all);
+        }
+        self.boundary.target_density = targets;
     }
 
-    /// Makes target densities of the extrapolated pressures of `fits`, one for each boundary particle near water.
-    fn update_wall_pressure(&mut self, fits: &[WallExtrapolation<f64, D>]) {
-        let mut targets = self.boundary.target_density.take().unwrap_or_default();
+    /// Makes `targets` of the extrapolated pressures of `fits`, one for each of the boundary particles `wet`.
+    fn wall_targets(&self, wet: &[u32], fits: &[WallExtrapolation<f64, D>], targets: &mut Vec<TargetDensity>) {
         let (medium, Boundary { particles, depths, coverage, .. }) = (&self.properties, &self.boundary);
         let depths = depths.as_deref().unwrap_or_default();
         let target = |(&particle, fit): (&u32, &WallExtrapolation<f64, D>)| {
@@ -398,9 +442,7 @@ impl<const D: usize> System<D> {
             let promptness = self.wall_promptness(owner);
             TargetDensity { particle, target: WallTarget::new(density, own, approach, cover, promptness, constants) }
         };
-        let wet = self.neighbours.boundary_near_fluid();
-        wet.par_iter().zip(fits).with_min_len(PARTICLES_PER_TASK).map(target).collect_into_vec(&mut targets);
-        self.boundary.target_density = Some(targets);
+        wet.par_iter().zip(fits).with_min_len(PARTICLES_PER_TASK).map(target).collect_into_vec(targets);
     }
 
     /// The pressure (P/ρ₀, m²/s²) of the water of `fit` at boundary particle `i` of solid number `owner`.
@@ -416,8 +458,8 @@ impl<const D: usize> System<D> {
         promptness(solid.body.as_ref().map_or(f64::INFINITY, |body| body.mass / water_in_place))
     }
 
-    /// Makes the velocities with which boundary particles act of `fits`, one for each boundary particle near water.
-    fn update_wall_velocity(&mut self, fits: &[WallExtrapolation<f64, D>]) {
+    /// The velocities with which the boundary particles `wet` act by `fits`, one for each of them.
+    fn wall_velocities(&self, wet: &[u32], fits: &[WallExtrapolation<f64, D>]) -> Vec<Vector<D>> {
         let Boundary { particles, depths, normals, .. } = &self.boundary;
         let (depths, normals) = (depths.as_deref().unwrap_or_default(), normals.as_deref().unwrap_or_default());
         let velocity = |(&i, fit): (&u32, &WallExtrapolation<f64, D>)| {
@@ -425,14 +467,7 @@ impl<const D: usize> System<D> {
             let normal = self.solids[self.owner(i)].kinematics.pose.rotation * normals[i];
             no_slip_velocity(fit, particles.v[i], &normal, depths[i])
         };
-        let (wet, count) = (self.neighbours.boundary_near_fluid(), particles.len());
-        let velocities: Vec<Vector<D>> =
-            wet.par_iter().zip(fits).with_min_len(PARTICLES_PER_TASK).map(velocity).collect();
-        let all = self.boundary.extrapolated_velocity.get_or_insert_default();
-        all.resize(count, Vector::zeros());
-        for (&i, v) in wet.iter().zip(velocities) {
-            all[i as usize] = v;
-        }
+        wet.par_iter().zip(fits).with_min_len(PARTICLES_PER_TASK).map(velocity).collect()
     }
 
     /// Number of the solid of boundary particle `i`.

@@ -82,6 +82,11 @@ impl<const D: usize> Films<D> {
     pub(super) fn new(model: &Model) -> Self {
         Self { films: Vec::new(), water: Vec::new(), possible: model.walls == Walls::RelaxedAdami }
     }
+
+    /// Whether there is none.
+    pub(super) fn is_empty(&self) -> bool {
+        self.films.is_empty()
+    }
 }
 
 /// Finds the films at the positions `r` (m) of all boundary particles for which the neighbour lists were built.

@@ -32,7 +32,9 @@ impl<const D: usize> Fluid<D> {
         rho: Vec<f64>,
         images: Images<D>,
     ) -> Self {
-        v.resize(r.len(), Vector::zeros());
+        if v.is_empty() {
+            v = zeros(r.len());
+        }
         let tensors = |needed: bool| needed.then(|| zeros(r.len()));
         Self {
             stress: tensors(model.viscosity.stress().is_some()),

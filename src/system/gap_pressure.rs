@@ -47,6 +47,11 @@ impl<const D: usize> GapPressure<D> {
         Self { particles: Vec::new(), support, slope: model.kernel_slope::<D>() }
     }
 
+    /// Whether there is no narrow gap.
+    pub(super) fn is_empty(&self) -> bool {
+        self.particles.is_empty()
+    }
+
     /// Reads from `fits`, one for each boundary particle near water, where the water is.
     pub(super) fn update_directions(&mut self, fits: &[WallExtrapolation<f64, D>]) {
         for particle in &mut self.particles {

@@ -63,7 +63,7 @@ use crate::{
     math::{Bounds, Matrix, Pose, Vector},
     model::{Model, PressureGradient},
     neighbours::{CHUNK, Columns, NeighbourLists},
-    particles::{PARTICLES_PER_TASK, Particles},
+    particles::{PARTICLES_PER_TASK, Particles, zeros},
     ranks::Ranks,
     solid::{Constraints, Load, Solid, TimeFunction},
     sph::{AuxiliarySums, FluidProperties, equation_of_state::EquationOfState, gradient_correction},
@@ -288,18 +288,20 @@ impl<const D: usize> System<D> {
             let ends = [&min, &max].map(|end| planes.mirrored(1 << axis, end)[axis]);
             (bounds.min[axis], bounds.max[axis]) = (min[axis].min(ends[1]), max[axis].max(ends[0]));
         }
+        // Most are of fixed solids: velocities that nothing writes take no memory.
+        system.boundary.particles.v = zeros(system.boundary.particles.len());
         for i in 0..system.solids.len() {
             system.place_boundary(i);
         }
         open_boundary::extend_domain_by_buffers(&mut system);
         open_boundary::start_buffers(&mut system);
         driving::start_current(&mut system);
+        own_water::divide_at_start(&mut system);
         system.rebuild_neighbours();
         open_boundary::update_buffer(&mut system, 0.0, 0.0);
         system.check_water();
         system.init_hydrostatic(0..system.boundary.particles.len());
         driving::set_gravity_at(&mut system, 0.0);
-        own_water::leave_own(&mut system);
         system.update_rates(RequestedSums::All);
         Ok(system)
     }

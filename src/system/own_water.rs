@@ -56,16 +56,26 @@ pub(crate) fn divide<const D: usize>(system: &mut System<D>, by_owner: bool) {
     }
 }
 
-/// Leaves each rank its own water after the first lists are made, where it may advance that alone.
-pub(super) fn leave_own<const D: usize>(system: &mut System<D>) {
+/// Leaves each rank its own water before the first lists are made, where it may advance that alone. All ranks have all water until then.
+pub(super) fn divide_at_start<const D: usize>(system: &mut System<D>) {
     if !may_be_divided(system, 0.0) || !system.constraints.moorings.is_empty() {
         return;
     }
     divide(system, true);
-    let (these, _) = own(&system.neighbours, system.fluid.particles.len());
-    system.fluid.particles = part(&system.fluid.particles, &these);
-    clear_corrections(system);
-    system.neighbours.leave_positions(&these);
+    let System { neighbours, fluid, .. } = system;
+    let r = &fluid.particles.r;
+    let count = |part: usize, division: &Division| (r.len() * part / division.ranks.count()) as u32;
+    if let Some(division) = neighbours.division_mut() {
+        let rank = division.ranks.rank();
+        division.set_own_water((count(rank, division)..count(rank + 1, division)).collect(), r.len());
+    }
+    let columns = neighbours.share_out(r);
+    if let Some(division) = neighbours.division_mut() {
+        let rank = division.ranks.rank();
+        let is_own = |&i: &u32| division.owner_of(columns.slab_at(&r[i as usize])) == rank;
+        let own = (0..r.len() as u32).filter(is_own).collect();
+        division.set_own_water(own, r.len());
+    }
     set_apart(system, true);
 }
 
@@ -116,6 +126,29 @@ pub(crate) fn own<const D: usize>(neighbours: &NeighbourLists<D>, count: usize) 
         Some(division) => (division.own_range(count), division.own_water().map(|(_, is_own)| is_own)),
         None => (0..count, None),
     }
+}
+
+/// The places, among the boundary particles near water, of those that this rank advances; `None` if all.
+pub(super) fn own_boundary<const D: usize>(neighbours: &NeighbourLists<D>) -> Option<&[u32]> {
+    neighbours.division().and_then(Division::own_boundary)
+}
+
+/// Completes the densities (kg/m³) of all boundary particles with those of the boundary particles that other ranks advance.
+pub(super) fn share_boundary_density<const D: usize>(neighbours: &NeighbourLists<D>, rho: &mut [f64]) {
+    let (Some(division), near) = (division(neighbours), neighbours.boundary_near_fluid()) else { return };
+    let give = |rho: &&mut [f64], k: usize, numbers: &mut Vec<f64>| numbers.push(rho[near[k] as usize]);
+    let take = |rho: &mut &mut [f64], k: usize, numbers: &[f64]| rho[near[k] as usize] = numbers[0];
+    division.share_boundary(&mut { rho }, 1, give, take);
+}
+
+/// Completes the velocities (m/s) with which all boundary particles act as [`share_boundary_density`].
+pub(super) fn share_boundary_velocity<const D: usize>(neighbours: &NeighbourLists<D>, v: &mut [Vector<D>]) {
+    let (Some(division), near) = (division(neighbours), neighbours.boundary_near_fluid()) else { return };
+    let give = |v: &&mut [Vector<D>], k: usize, numbers: &mut Vec<f64>| numbers.extend(v[near[k] as usize].iter());
+    let take = |v: &mut &mut [Vector<D>], k: usize, numbers: &[f64]| {
+        v[near[k] as usize] = Vector::from_column_slice(numbers);
+    };
+    division.share_boundary(&mut { v }, D, give, take);
 }
 
 /// Shares the slabs out anew and gives each particle, with its state in `start`, to the rank that has its slab now. Returns the columns
@@ -248,6 +281,32 @@ pub(super) fn take_next_slab<const D: usize>(system: &mut System<D>, columns: &C
         r[words[0] as usize] = Vector::from_iterator(ranks::doubles(&words[1..]));
     }
     next
+}
+
+/// Takes places and densities of the water in the slabs beside those of this rank, and lets queries at a point find these and its own.
+pub(super) fn know_adjacent_slabs<const D: usize>(system: &mut System<D>) {
+    let System { neighbours, fluid: Fluid { particles: Particles { r, rho, .. }, .. }, .. } = system;
+    let Some(division) = division(neighbours).filter(|division| division.is_apart) else { return };
+    let ([before, after], slabs) = (division.adjacent(), division.own_slabs());
+    let mut known = division.own_water().map_or(Vec::new(), |(own, _)| own.to_vec());
+    let width = 1 + 2 * (D + 1);
+    for (to, from, slab) in [(before, after, slabs.start), (after, before, slabs.end.saturating_sub(1))] {
+        let mut out = Vec::new();
+        for i in to.iter().flat_map(|_| neighbours.water_of_slab(slab)) {
+            out.push(i as u32);
+            out.extend(r[i].iter().chain([&rho[i]]).flat_map(|&x| ranks::words_of(x)));
+        }
+        let counts = division.counts(out.len());
+        let mut into = vec![0; from.map_or(0, |rank| counts[rank])];
+        division.ranks.pass((to, &out), (from, &mut into));
+        for words in into.chunks_exact(width) {
+            let (i, numbers): (_, Vec<f64>) = (words[0] as usize, ranks::doubles(&words[1..]).collect());
+            (r[i], rho[i]) = (Vector::from_column_slice(&numbers[..D]), numbers[D]);
+            known.push(words[0]);
+        }
+    }
+    known.sort_unstable();
+    neighbours.know(known, r);
 }
 
 /// Arrays as long as those of `all`, of which only the places `these` are written.

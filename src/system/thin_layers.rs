@@ -40,6 +40,11 @@ impl ThinLayers {
         Self { of_solid: Vec::new(), wet: Vec::new(), possible: model.walls == Walls::RelaxedAdami }
     }
 
+    /// Whether no part is thin.
+    pub(super) fn is_empty(&self) -> bool {
+        self.of_solid.iter().all(Vec::is_empty)
+    }
+
     /// Adds a solid of this `shape` with boundary particles at `places` (m, in its frame), `depths` (m) below its face.
     pub(super) fn append<const D: usize>(&mut self, shape: &Shape<D>, places: &[Vector<D>], depths: &[f64], dp: f64) {
         let thin = |(place, (x, depth)): (usize, (&Vector<D>, &f64))| {
