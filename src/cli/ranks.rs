@@ -22,9 +22,6 @@ pub fn join() -> Result<Processes> {
     let count = started_together();
     #[cfg(feature = "mpi")]
     {
-        if count > 1 {
-            return_freed_memory();
-        }
         let world = if count > 1 { Some(crate::ranks::World::start()?) } else { None };
         let ranks = world.as_ref().map(crate::ranks::World::ranks).unwrap_or_default();
         abort_on_panic(&ranks);
@@ -39,25 +36,6 @@ pub fn join() -> Result<Processes> {
         Ok(Processes { ranks: Ranks::default() })
     }
 }
-
-/// Starts this process again with the setting by which the GNU C library gives the memory of freed arrays back to the system, unless it
-/// has one: the library reads it at the start alone. By default it keeps arrays of up to 32 MiB, and with them what the set-up took.
-#[cfg(feature = "mpi")]
-fn return_freed_memory() {
-    #[cfg(all(target_os = "linux", target_env = "gnu"))]
-    if env::var_os(MAPPED_FROM.0).is_none()
-        && let Ok(program) = env::current_exe()
-    {
-        use std::os::unix::process::CommandExt as _;
-        // It returns only if the system refuses: then the run takes more memory.
-        let _ =
-            std::process::Command::new(program).args(env::args_os().skip(1)).env(MAPPED_FROM.0, MAPPED_FROM.1).exec();
-    }
-}
-
-/// The setting: the size from which an array is given back, B.
-#[cfg(all(feature = "mpi", target_os = "linux", target_env = "gnu"))]
-const MAPPED_FROM: (&str, &str) = ("MALLOC_MMAP_THRESHOLD_", "1048576");
 
 /// Refuses several processes, of which each would do the same.
 ///
