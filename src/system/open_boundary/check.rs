@@ -180,7 +180,7 @@ fn check_level<const D: usize>(setup: &Setup<D>, face: &OpenBoundary<D>, until: 
     let (name, dp, g) = (&face.name, setup.model.dp, -setup.initial_gravity()[D - 1]);
     let Some(law) = face.level.as_ref().filter(|_| face.has_moving_level()) else { return Ok(()) };
     let refuse = |code: ErrorCode, what: String, help: String| Err(Error::scene(what).with_code(code).help(help));
-    if !(g > 0.0) || face.waves.is_some() {
+    if g.is_nan() || g <= 0.0 || face.waves.is_some() {
         let what =
             format!("the level of open boundary {name:?} changes in time, without gravity or with waves that enter");
         return refuse(ErrorCode::ConflictingKeys, what, "give it one level for the whole run".into());
@@ -199,7 +199,7 @@ fn check_level<const D: usize>(setup: &Setup<D>, face: &OpenBoundary<D>, until: 
     for (t, (level, rate)) in laws {
         let at =
             format!("the level of open boundary {name:?} is {} m at t = {} s", three_digits(level), three_digits(t));
-        if !(level >= least) {
+        if level.is_nan() || level < least {
             let what = format!("{at}, and the bed {} m", three_digits(bed));
             let help = format!("keep it at {} m or more, {LEAST_ROWS} dp above the bed", three_digits(least));
             return refuse(ErrorCode::OutOfRange, what, help);
@@ -210,7 +210,7 @@ fn check_level<const D: usize>(setup: &Setup<D>, face: &OpenBoundary<D>, until: 
             return refuse(ErrorCode::OutOfRange, what, help);
         }
         let fastest = FASTEST_LEVEL * (g * (level - bed)).sqrt();
-        if !(rate.abs() <= fastest) {
+        if rate.is_nan() || rate.abs() > fastest {
             let what = format!(
                 "the level of open boundary {name:?} changes by {} m/s at t = {} s; water of that depth follows {} m/s",
                 three_digits(rate.abs()),
