@@ -5,7 +5,8 @@
 //! surface along the distance gradient. If two opposite faces are too close, the module moves the candidate halfway
 //! between them. The module selects the wanted number of candidates as far apart as possible, and spreads the selected
 //! points until their spacing is even. Points for which a layer has no space move to the next layer outward. The layers
-//! together then have the solid's volume.
+//! together then have the solid's volume. Where opposite faces leave no space for all layers, the points of all layers
+//! finally spread together.
 
 use rayon::prelude::*;
 
@@ -18,6 +19,8 @@ const GRAIN: f64 = 0.5;
 const OFF: f64 = 1e-4;
 /// Largest lack of depth of a point between two opposite faces, dp; the first layer allows no such lack.
 const SHORT: f64 = 0.25;
+/// Distance over which the depth falls beyond the middle between two opposite faces, dp.
+const MIDWAY: f64 = 0.1;
 /// Two faces are opposite if their normals are more than 120 degrees apart: −cos 120°.
 const OPPOSITE: f64 = 0.5;
 
@@ -49,7 +52,40 @@ pub(super) fn points_by_distance<const D: usize>(shape: &Shape<D>, dp: f64, laye
         skin.push(points.into_iter().map(|r| BoundaryPoint { r, layer: k as u8 }).collect::<Vec<_>>());
     }
     skin.reverse();
-    skin.concat()
+    levelled(shape, skin.concat(), dp, layers)
+}
+
+/// Spreads the points of all layers together where opposite faces leave no space for all `layers`. There the innermost
+/// points, even among themselves, leave holes below the edges if the faces are no whole number of layers apart. The
+/// first layer keeps its depth; the others become no less deep than their layers.
+fn levelled<const D: usize>(
+    shape: &Shape<D>,
+    skin: Vec<BoundaryPoint<D>>,
+    dp: f64,
+    layers: usize,
+) -> Vec<BoundaryPoint<D>> {
+    let between_faces = |p: &BoundaryPoint<D>| at_depth(shape, p.r, layers as f64 * dp, OFF * dp, dp).is_none();
+    let movable: Vec<bool> = skin.par_iter().map(between_faces).collect();
+    let (mut order, fixed): (Vec<usize>, Vec<usize>) = (0..skin.len()).partition(|&i| movable[i]);
+    let many = order.len();
+    order.extend(fixed);
+    let mut points: Vec<Vector<D>> = order.iter().map(|&i| skin[i].r).collect();
+    packing::spread_points(&mut points, many, dp, |i, from, x| {
+        let layer = skin[order[i]].layer;
+        let depth = (f64::from(layer) + 0.5) * dp;
+        let short = if layer == 0 { OFF * dp } else { SHORT * dp };
+        *x = at_depth(shape, *x, depth, short, dp).filter(|x| is_settled(shape, x, depth, dp)).unwrap_or(*from);
+        0.0
+    });
+    let mut skin = skin;
+    order.iter().zip(points).for_each(|(&i, r)| skin[i].r = r);
+    skin
+}
+
+/// Whether `x` has the depth `depth` (m), or lies midway between opposite faces: beside an edge a third face may be nearer.
+fn is_settled<const D: usize>(shape: &Shape<D>, x: &Vector<D>, depth: f64, dp: f64) -> bool {
+    let (distance, normal) = shape.distance_and_normal(x, 1e-3 * dp);
+    distance + depth < OFF * dp || shape.signed_distance(&(x - normal * (MIDWAY * dp))) > distance
 }
 
 /// Returns the points of layer `k`: `wanted` points, or as many as the layer has space for.
@@ -65,6 +101,13 @@ fn layer<const D: usize>(shape: &Shape<D>, cells: &[Cell<D>], k: usize, wanted: 
         0.0
     });
     apart(&[], &points, MIN_SPACING * dp)
+}
+
+/// Returns the least signed distance (m) around the deepest small cell, which need not be in the middle between two faces.
+fn deepest<const D: usize>(shape: &Shape<D>, found: &Found<D>, dp: f64) -> f64 {
+    let lowest = found.cells.iter().min_by(|a, b| a.1.total_cmp(&b.1));
+    let halfway = lowest.and_then(|(x, d)| at_depth(shape, *x, GRAIN * dp - d, GRAIN * dp, dp));
+    halfway.map_or(found.deepest, |x| shape.signed_distance(&x).min(found.deepest))
 }
 
 /// Returns the small cells no deeper than `depth` (m), and the volume below them. The function recursively halves a
@@ -109,7 +152,7 @@ fn counts<const D: usize>(shape: &Shape<D>, found: &Found<D>, dp: f64, layers: u
         let share = |&(_, d): &Cell<D>| (0.5 - (d + depth) / grain).clamp(0.0, 1.0);
         found.inner + found.cells.iter().map(share).sum::<f64>() * grain.powi(D as i32)
     };
-    let last = (-found.deepest / dp - 0.5 + SHORT).floor().max(0.0) as usize;
+    let last = (-deepest(shape, found, dp) / dp - 0.5 + SHORT + OFF).floor().max(0.0) as usize;
     let mut volume = vec![shape.volume_properties().volume];
     volume.extend((1..=layers.min(last + 1)).map(|k| deeper(k as f64 * dp)));
     if last < layers
@@ -138,7 +181,7 @@ fn at_depth<const D: usize>(shape: &Shape<D>, mut x: Vector<D>, depth: f64, shor
             // The path moves away from the first face by `off` and towards the other by `turn * off`; `half` is equally
             // far from both.
             let half = x - normal * ((distance - beyond + off * turn) / (1.0 + turn));
-            return (shape.signed_distance(&half) + depth < short).then_some(half);
+            return (shape.signed_distance(&half) + depth < short + OFF * dp).then_some(half);
         }
         (x, distance, normal) = (next, beyond, facing);
     }

@@ -12,7 +12,7 @@ use pontoon::{
 };
 use proptest::prelude::*;
 
-use crate::common::TestFolder;
+use crate::common::{TestFolder, run_to};
 
 /// Corners (m) of an asymmetric wedge and its facets, with indices from 0.
 const CORNERS: [[f64; 3]; 5] =
@@ -390,4 +390,25 @@ fn a_body_that_displaces_all_water_is_named_in_the_error() {
     let message = scene.build::<2>().map(|_| ()).unwrap_err().to_string();
     assert!(message.contains("\"barge\" is 1.2000 m long along x and the water 1.0000 m"), "{message}");
     assert!(message.contains("make it smaller"), "{message}");
+}
+
+#[test]
+fn still_water_stays_above_a_mesh_bed_of_a_broken_number_of_layers() {
+    // The bed is 3.33 dp thick. Particles sank 2.2 dp into holes beside its edges; above a box none does.
+    let (size, top, dp) = ([0.6, 0.3], 0.1, 0.03);
+    let corners = [[0.0; 2], [size[0], 0.0], [0.0, size[1]], size];
+    let corner = |z: f64| corners.map(|[x, y]| format!("v {x} {y} {z}\n")).concat();
+    let facets =
+        "f 1 3 2\nf 2 3 4\nf 5 6 7\nf 6 8 7\nf 1 2 5\nf 2 6 5\nf 3 7 4\nf 4 7 8\nf 1 5 3\nf 3 5 7\nf 2 4 6\nf 4 8 6\n";
+    let folder = folder("bed");
+    fs::write(folder.join("bed.obj"), corner(0.0) + &corner(top) + facets).unwrap();
+    let text = format!(
+        "dimension = 3\ndp = {dp}\nuntil = 0.5\n[[water]]\nfill = {{ box = {{ min = [0, 0, 0], max = [0.6, 0.3, 0.36] }} }}\n\
+         [[solid]]\nname = \"tank\"\nfixed = true\nshape = {{ tank = {{ size = [0.6, 0.3, 0.5] }} }}\n\
+         [[solid]]\nname = \"bed\"\nfixed = true\nshape = {{ mesh = {{ file = \"bed.obj\" }} }}\n"
+    );
+    let mut sim = Simulation::new(Scene::parse(&text, &folder, &[]).unwrap().build::<3>().unwrap().setup).unwrap();
+    run_to(&mut sim, 0.5).unwrap();
+    let deepest = sim.system().fluid().r.iter().map(|r| (top - r[2]) / dp).fold(f64::NEG_INFINITY, f64::max);
+    assert!(deepest < 0.5, "a particle is {deepest} dp below the bed's face");
 }
