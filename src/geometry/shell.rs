@@ -60,7 +60,7 @@ pub(super) fn points_by_distance<const D: usize>(shape: &Shape<D>, dp: f64, laye
 /// first layer keeps its depth; the others become no less deep than their layers.
 fn levelled<const D: usize>(
     shape: &Shape<D>,
-    skin: Vec<BoundaryPoint<D>>,
+    mut skin: Vec<BoundaryPoint<D>>,
     dp: f64,
     layers: usize,
 ) -> Vec<BoundaryPoint<D>> {
@@ -68,18 +68,23 @@ fn levelled<const D: usize>(
     let movable: Vec<bool> = skin.par_iter().map(between_faces).collect();
     let (mut order, fixed): (Vec<usize>, Vec<usize>) = (0..skin.len()).partition(|&i| movable[i]);
     let many = order.len();
+    if many == 0 {
+        return skin;
+    }
     order.extend(fixed);
     let mut points: Vec<Vector<D>> = order.iter().map(|&i| skin[i].r).collect();
     packing::spread_points(&mut points, many, dp, |i, from, x| {
-        let layer = skin[order[i]].layer;
-        let depth = (f64::from(layer) + 0.5) * dp;
-        let short = if layer == 0 { OFF * dp } else { SHORT * dp };
+        let (depth, short) = place_of_layer(skin[order[i]].layer.into(), dp);
         *x = at_depth(shape, *x, depth, short, dp).filter(|x| is_settled(shape, x, depth, dp)).unwrap_or(*from);
         0.0
     });
-    let mut skin = skin;
     order.iter().zip(points).for_each(|(&i, r)| skin[i].r = r);
     skin
+}
+
+/// Returns the depth (m) of layer `k`, and how much of it (m) a point midway between two faces may lack.
+fn place_of_layer(k: usize, dp: f64) -> (f64, f64) {
+    ((k as f64 + 0.5) * dp, if k == 0 { OFF * dp } else { SHORT * dp })
 }
 
 /// Whether `x` has the depth `depth` (m), or lies midway between opposite faces: beside an edge a third face may be nearer.
@@ -90,8 +95,7 @@ fn is_settled<const D: usize>(shape: &Shape<D>, x: &Vector<D>, depth: f64, dp: f
 
 /// Returns the points of layer `k`: `wanted` points, or as many as the layer has space for.
 fn layer<const D: usize>(shape: &Shape<D>, cells: &[Cell<D>], k: usize, wanted: usize, dp: f64) -> Vec<Vector<D>> {
-    let depth = (k as f64 + 0.5) * dp;
-    let short = if k == 0 { OFF * dp } else { SHORT * dp };
+    let (depth, short) = place_of_layer(k, dp);
     let near = cells.par_iter().filter(|(_, d)| (d + depth).abs() <= GRAIN * dp);
     let candidates: Vec<_> = near.filter_map(|(x, _)| at_depth(shape, *x, depth, short, dp)).collect();
     let mut points = chosen(&candidates, wanted, dp);

@@ -204,6 +204,7 @@ impl<const D: usize> PairLoop<D> for ReferencePairLoop<D> {
         &mut self,
         input: &PairLoopInput<'_, D>,
         flow: bool,
+        // Each rank advances all boundary particles here.
         _own: Option<&[u32]>,
         extrapolate_to_boundary: &mut [WallExtrapolation<f64, D>],
     ) {

@@ -5,7 +5,10 @@ use std::f64::consts::TAU;
 use serde::Serialize;
 
 use super::{Finding, PreflightContext, generated_waves::check_resolution};
-use crate::wavemaker::period_of_length;
+use crate::{
+    math::format::{three_digits, two_digits_up},
+    wavemaker::period_of_length,
+};
 
 /// Waves that enter through a face on a current: a regular wave, or the one of the significant height and the peak period of a sea.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -30,6 +33,8 @@ pub struct FaceWave {
     pub current_mps: f64,
     /// Number of components: 1 of a regular wave.
     pub components: usize,
+    /// Part of the energy of a spectrum in waves that the current stops, and that therefore do not enter.
+    pub left_out: f64,
     /// Greatest velocity of the water by the waves alone, m/s; below the current.
     pub orbital_mps: f64,
     /// Speed of the crests at a fixed place, m/s.
@@ -57,6 +62,7 @@ pub(super) fn face_waves<const D: usize>(context: &PreflightContext<D>, findings
             kd: in_water.kd(),
             current_mps,
             components: waves.component_count(),
+            left_out: waves.left_out(),
             orbital_mps: waves.orbital_speed(),
             celerity_mps: in_water.celerity() + current_mps,
             group_mps: in_water.group_velocity() + current_mps,
@@ -68,6 +74,17 @@ pub(super) fn face_waves<const D: usize>(context: &PreflightContext<D>, findings
         let (height, length) = ((wave.height_m, wave.height_dp), (wave.length_m, wave.length_dp));
         let period = |length: f64| period_of_length(length, wave.depth_m, wave.current_mps, context.g);
         check_resolution((&wave.face, "lets in"), height, length, &period, findings);
+        if wave.left_out > 0.0 {
+            let what = format!(
+                "the current of {} m/s stops the shortest waves of the sea that open boundary {:?} lets in, {} % of its energy: the \
+                 others are higher instead",
+                three_digits(wave.current_mps),
+                wave.face,
+                two_digits_up(100.0 * wave.left_out)
+            );
+            let mend = "choose a slower current or a longer peak period for the whole spectrum".into();
+            findings.push(Finding::note("waves_left_out", what, mend));
+        }
     }
     waves
 }

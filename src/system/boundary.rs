@@ -350,7 +350,9 @@ impl<const D: usize> System<D> {
         let (rho0, Boundary { particles, target_density, .. }) = (self.properties.rho0, &mut self.boundary);
         let mut targets = target_density.iter().flatten().peekable();
         let near = self.neighbours.boundary_near_fluid();
-        let mut set = |k: usize| {
+        let own = own_water::own_boundary(&self.neighbours);
+        for place in 0..own.map_or(near.len(), <[u32]>::len) {
+            let k = own.map_or(place, |own| own[place] as usize);
             let i = near[k];
             while targets.next_if(|target| target.particle < i).is_some() {}
             let target = targets.next_if(|target| target.particle == i);
@@ -363,14 +365,8 @@ impl<const D: usize> System<D> {
                     relaxation.map_or(own, |relaxation| own + target.change(own, relaxation))
                 }
             };
-        };
-        match own_water::own_boundary(&self.neighbours) {
-            None => (0..near.len()).for_each(set),
-            Some(own) => {
-                own.iter().for_each(|&k| set(k as usize));
-                own_water::share_boundary_density(&self.neighbours, &mut self.boundary.particles.rho);
-            }
         }
+        own_water::share_boundary_density(&self.neighbours, &mut self.boundary.particles.rho);
     }
 
     /// Extrapolates the water to each boundary particle near it: the pressure there becomes its target density, if walls

@@ -50,6 +50,8 @@ pub struct IncidentWaves {
     excursion: f64,
     /// The greatest velocity relative to the current, m/s.
     orbital_speed: f64,
+    /// Part of the energy of a spectrum in waves that the current stops; the others have it in their place.
+    left_out: f64,
 }
 
 /// The water at a face through which a sea enters.
@@ -86,22 +88,22 @@ pub(crate) struct Orbit {
     pub head: f64,
 }
 
-/// The components of a spectrum without the short waves that the current stops, or almost, and as high together as all were; all of them
-/// if those hold more than a small part of the energy.
-fn without_stopped(components: Vec<WaveComponent>, water: &WaterAtFace) -> Vec<WaveComponent> {
+/// The components of a spectrum without the short waves that the current stops, or almost, and as high together as all were, with the
+/// part of the energy that those held; all of them if that part is not small.
+fn without_stopped(components: Vec<WaveComponent>, water: &WaterAtFace) -> (Vec<WaveComponent>, f64) {
     let WaterAtFace { depth, current, g, .. } = *water;
     if current >= 0.0 {
-        return components;
+        return (components, 0.0);
     }
     let energy = |components: &[WaveComponent]| components.iter().map(|c| c.amplitude.powi(2)).sum::<f64>();
     let moves = |c: &&WaveComponent| Train::new(**c, depth, FASTER * current, g).is_ok();
     let mut kept: Vec<WaveComponent> = components.iter().filter(moves).copied().collect();
     let (part, all) = (energy(&kept), energy(&components));
     if part < (1.0 - LEFT_OUT) * all {
-        return components;
+        return (components, 0.0);
     }
     kept.iter_mut().for_each(|c| c.amplitude *= (all / part).sqrt());
-    kept
+    (kept, 1.0 - part / all)
 }
 
 impl IncidentWaves {
@@ -142,7 +144,7 @@ impl IncidentWaves {
         let excursion = train.excursion();
         let main = (height, component.omega, train.in_water);
         let orbital_speed = excursion * train.in_water.omega;
-        Ok(Self { depth, current, ramp, trains: vec![train], main, excursion, orbital_speed })
+        Ok(Self { depth, current, ramp, trains: vec![train], main, excursion, orbital_speed, left_out: 0.0 })
     }
 
     /// A sea of significant `height` (m) with this `spectrum` at a fixed place, of `count` components with random phases from `seed`.
@@ -156,7 +158,8 @@ impl IncidentWaves {
         water: &WaterAtFace,
     ) -> Result<Self> {
         let components = irregular_components(height, spectrum, seed, count)?;
-        Self::sum(&without_stopped(components, water), (height, spectrum.peak_period), water)
+        let (components, left_out) = without_stopped(components, water);
+        Ok(Self { left_out, ..Self::sum(&components, (height, spectrum.peak_period), water)? })
     }
 
     /// The waves η = Σ a cos(ω t + φ) at the origin of the axis.
@@ -271,6 +274,11 @@ impl IncidentWaves {
     /// Number of components.
     pub(crate) fn component_count(&self) -> usize {
         self.trains.len()
+    }
+
+    /// Part of the energy of a spectrum in waves that the current stops, and that therefore do not enter; the others have it in their place.
+    pub(crate) fn left_out(&self) -> f64 {
+        self.left_out
     }
 
     /// The surface (m) above that at rest at the time `t` (s) and the fixed place `x` (m) along the axis.

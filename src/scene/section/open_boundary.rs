@@ -312,8 +312,9 @@ impl OpenBoundaryConfig {
         };
         let written = law(&self.level, "level")?;
         let level = written.as_ref().map_or(top, |level| level.value_and_rate(0.0).0);
+        let changes = written.as_ref().is_some_and(|level| level.steady_value().is_none());
         if ctx.has_gravity() && (level - top).abs() > 0.5 * ctx.dp {
-            let (what, help) = if written.as_ref().is_some_and(|level| level.steady_value().is_none()) {
+            let (what, help) = if changes {
                 let what = format!("the level is {level} m at t = 0, and that of the water beside the face {top} m");
                 let by = three_digits(top - level);
                 (what, format!("add {by} m to it, or change the water: a step of the surface would break"))
@@ -346,10 +347,9 @@ impl OpenBoundaryConfig {
         });
         let waves = waves.transpose()?;
         let period = self.absorb_period.or(waves.as_ref().map(IncidentWaves::main_period));
-        let follows_level = face.velocity.is_none() && written.as_ref().is_some_and(|l| l.steady_value().is_none());
         let absorbed_speed = match (self.absorb, period) {
             // The water follows its level by long waves.
-            _ if follows_level => Some((g * depth).sqrt()),
+            (None, _) if changes && face.velocity.is_none() => Some((g * depth).sqrt()),
             (None | Some(false), _) => None,
             // Long waves.
             (Some(true), None) => Some((g * depth).sqrt()),

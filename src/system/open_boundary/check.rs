@@ -36,11 +36,16 @@ const SPEED_SAMPLES: u32 = 100;
 ///
 /// # Errors
 /// `Scene` if the face is not vertical, lies across a periodic side or a symmetry plane, has no water on one of its sides, is too near
-/// to the end of a solid, beside the end of the bed, is where another face is, leaves the pressure of a closed duct free, or lets water pass faster than the valid range of the water allows.
+/// to the end of a solid, at the end of the bed or where another face is, has a level that the water cannot follow, leaves the pressure
+/// of a closed duct free, or lets water pass faster than the valid range of the water allows.
 pub(crate) fn check<const D: usize>(setup: &Setup<D>, i: usize, until: f64) -> Result<()> {
     let (face, length) = (&setup.open_boundaries[i], setup.buffer_length());
     let (name, axis, at) = (&face.name, face.axis, face.at);
-    if axis + 1 >= D || !at.is_finite() || setup.open_boundaries.len() > MOST_FACES {
+    if setup.open_boundaries.len() > MOST_FACES {
+        let what = format!("{} open boundaries", setup.open_boundaries.len());
+        return Err(Error::scene(what).with_code(ErrorCode::OutOfRange).help(format!("give {MOST_FACES} or fewer")));
+    }
+    if axis + 1 >= D || !at.is_finite() {
         let what = format!("open boundary {name:?} needs a finite coordinate along a horizontal axis");
         return Err(Error::scene(what));
     }
@@ -174,8 +179,8 @@ fn check_other_faces<const D: usize>(setup: &Setup<D>, i: usize) -> Result<()> {
     Err(Error::scene(what).with_code(ErrorCode::ConflictingKeys).help(help))
 }
 
-/// Refuses a level of `face` that changes in time and, until the time `until` (s), is near to the bed, reaches the top of the domain or a solid, or
-/// changes faster than the water can follow; one without gravity, and one beside waves that enter.
+/// Refuses a level of `face` that changes in time and, until the time `until` (s), is near to the bed, reaches the top of the domain or
+/// a solid, or changes faster than the water can follow; one without gravity, and one beside waves that enter.
 fn check_level<const D: usize>(setup: &Setup<D>, face: &OpenBoundary<D>, until: f64) -> Result<()> {
     let (name, dp, g) = (&face.name, setup.model.dp, -setup.initial_gravity()[D - 1]);
     let Some(law) = face.level.as_ref().filter(|_| face.has_moving_level()) else { return Ok(()) };
@@ -193,19 +198,19 @@ fn check_level<const D: usize>(setup: &Setup<D>, face: &OpenBoundary<D>, until: 
     let all = Bounds::around(&setup.water);
     let ceiling = setup.domain.map_or(all.max[D - 1] + all.size().max(), |domain| domain.max[D - 1]) - dp;
     let least = bed + LEAST_ROWS * dp;
-    let laws = (0..=LEVEL_SAMPLES).map(|k| until * f64::from(k) / f64::from(LEVEL_SAMPLES));
-    let laws = laws.map(|t| (t, law.value_and_rate(t)));
+    let at = |level: f64, t: f64| {
+        format!("the level of open boundary {name:?} is {} m at t = {} s", three_digits(level), three_digits(t))
+    };
     let mut highest = f64::NEG_INFINITY;
-    for (t, (level, rate)) in laws {
-        let at =
-            format!("the level of open boundary {name:?} is {} m at t = {} s", three_digits(level), three_digits(t));
+    for t in (0..=LEVEL_SAMPLES).map(|k| until * f64::from(k) / f64::from(LEVEL_SAMPLES)) {
+        let (level, rate) = law.value_and_rate(t);
         if level.is_nan() || level < least {
-            let what = format!("{at}, and the bed {} m", three_digits(bed));
+            let what = format!("{}, and the bed {} m", at(level, t), three_digits(bed));
             let help = format!("keep it at {} m or more, {LEAST_ROWS} dp above the bed", three_digits(least));
             return refuse(ErrorCode::OutOfRange, what, help);
         }
         if level > ceiling {
-            let what = format!("{at}, and the domain ends at {} m", three_digits(ceiling + dp));
+            let what = format!("{}, and the domain ends at {} m", at(level, t), three_digits(ceiling + dp));
             let help = format!("keep it at {} m or less, or let [domain] reach higher", three_digits(ceiling));
             return refuse(ErrorCode::OutOfRange, what, help);
         }

@@ -100,10 +100,13 @@ fn waves_that_the_current_stops_are_refused_with_the_period_and_the_current_that
 }
 
 fn report(wave: &str, velocity: f64) -> (Vec<Finding>, Vec<FaceWave>) {
-    let faces = format!(
+    report_of(&format!(
         "inflow = [{{ x = 0.0, velocity = {velocity}, absorb = false, wave = {{ {wave} }} }}]\noutflow = [{{ x = 4.0, velocity = {velocity} }}]"
-    );
-    let scene = Scene::parse(&channel(&faces, false, 0.04), Path::new(""), &[]).expect("a sound scene");
+    ))
+}
+
+fn report_of(faces: &str) -> (Vec<Finding>, Vec<FaceWave>) {
+    let scene = Scene::parse(&channel(faces, false, 0.04), Path::new(""), &[]).expect("a sound scene");
     let BuiltScene { setup, plan, initial_water, .. } = scene.build::<2>().expect("a sound scene");
     let sim = Simulation::new(setup).expect("a sound setup");
     let report = preflight::preflight(&sim, &plan, initial_water, &[1]);
@@ -131,4 +134,23 @@ fn inspect_tells_which_sea_enters() {
     let (omega, k) = (std::f64::consts::TAU / wave.period_s, std::f64::consts::TAU / wave.length_m);
     let own = (9.81 * k * (0.4 * k).tanh()).sqrt();
     assert!(((omega - 0.6 * k) / own - 1.0).abs() < 1e-9, "{wave:?}");
+}
+
+/// A spectrum that comes against a current lacks the waves that the current stops: a note has their part of the energy.
+#[test]
+fn inspect_tells_what_of_a_sea_a_current_stops() {
+    let against = |velocity: f64| {
+        let wave = "jonswap = { height = 0.03, peak_period = 1.3 }";
+        let (findings, waves) = report_of(&format!(
+            "inflow = [{{ x = 0.0, velocity = {velocity} }}]\noutflow = [{{ x = 4.0, velocity = {velocity}, wave = {{ {wave} }} }}]"
+        ));
+        (findings.into_iter().find(|f| f.topic == "waves_left_out"), waves[0].left_out)
+    };
+    let (note, left_out) = against(0.3);
+    let note = note.expect("short waves are stopped");
+    let shown = number_after(&note.what, "lets in,");
+    // Rounded upwards to two digits.
+    assert!((left_out..1.1 * left_out).contains(&(0.01 * shown)) && left_out < 0.15, "{note:?}, {left_out}");
+    let (none, all) = report("jonswap = { height = 0.03, peak_period = 1.3 }", 0.3);
+    assert!(all[0].left_out == 0.0 && none.iter().all(|f| f.topic != "waves_left_out"), "{none:?}");
 }

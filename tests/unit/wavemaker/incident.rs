@@ -126,6 +126,8 @@ fn a_sea_against_a_current_lacks_the_components_that_are_stopped() {
         |waves: &IncidentWaves| waves.trains.iter().map(|train| train.component.amplitude.powi(2)).sum::<f64>();
     assert!(all.component_count() == 40 && (30..40).contains(&left.component_count()), "{}", left.component_count());
     assert!((energy(&left) / energy(&all) - 1.0).abs() < 1e-12);
+    // Less than the part above which a sea is refused.
+    assert!(all.left_out() == 0.0 && (0.001..0.15).contains(&left.left_out()), "{}", left.left_out());
     // A current a tenth faster stops none of them: in deep water it would stop those above g/(4 U).
     let shortest = left.trains.iter().map(|train| train.component.omega).fold(0.0, f64::max);
     assert!(shortest < G / (4.0 * 1.1 * 0.3), "{shortest} rad/s");
