@@ -33,7 +33,10 @@ use std::{
     },
 };
 
-use crate::error::{Error, ErrorKind, Result};
+use crate::{
+    error::{Error, ErrorKind, Result},
+    run::MOST_THREADS,
+};
 use clap::{Args, CommandFactory, Parser, Subcommand};
 
 /// Rigid bodies that float, collide and are driven in water.
@@ -241,6 +244,12 @@ fn key_value(text: &str) -> std::result::Result<(String, String), String> {
         Some((key, value)) if !key.trim().is_empty() => Ok((key.trim().into(), value.trim().into())),
         _ => Err("write key=value, as in --set model.h_over_dp=1.7".into()),
     }
+}
+
+/// Parses a number of threads.
+fn thread_count(text: &str) -> std::result::Result<usize, String> {
+    let count = text.parse().ok().filter(|count| (1..=MOST_THREADS).contains(count));
+    count.ok_or_else(|| format!("threads are from 1 to {MOST_THREADS}"))
 }
 
 /// Parses `arguments`, the first of which is the name of the program, runs the command, prints its result and returns

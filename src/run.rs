@@ -366,12 +366,14 @@ fn with_threads<T: Send>(threads: Option<usize>, work: impl FnOnce() -> Result<T
     thread_pool(threads)?.install(work)
 }
 
+/// Largest number of threads of a run: more than a machine has processors.
+pub const MOST_THREADS: usize = 4096;
+
 /// Creates a pool of `threads` threads, by default one for each processor.
 pub(crate) fn thread_pool(threads: Option<usize>) -> Result<rayon::ThreadPool> {
-    if threads == Some(0) {
-        return Err(
-            Error::new(ErrorKind::Usage, "0 threads cannot run anything").help("leave --threads out to use them all")
-        );
+    if let Some(count) = threads.filter(|count| !(1..=MOST_THREADS).contains(count)) {
+        let what = format!("{count} threads cannot be had: from 1 to {MOST_THREADS}");
+        return Err(Error::new(ErrorKind::Usage, what).help("leave the number out to use one for each processor"));
     }
     rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build().map_err(|why| {
         Error::new(ErrorKind::Usage, format!("the threads cannot be started: {why}"))

@@ -10,7 +10,7 @@ use std::{
 };
 
 use numpy::{PyArray1, PyArrayMethods};
-use pontoon::{Result, scene::Scene};
+use pontoon::{Result, run::MOST_THREADS, scene::Scene};
 use pyo3::{
     exceptions::PyRuntimeError,
     prelude::*,
@@ -59,8 +59,9 @@ impl NativeSimulation {
     /// # Errors
     /// `UsageError` if the threads cannot be started.
     pub fn new(py: Python<'_>, world: Box<dyn World>, threads: Option<usize>) -> PyResult<Self> {
-        if threads == Some(0) {
-            return Err(usage(py, "0 threads cannot run anything", "leave threads out to use them all"));
+        if let Some(count) = threads.filter(|count| !(1..=MOST_THREADS).contains(count)) {
+            let what = format!("{count} threads cannot be had: from 1 to {MOST_THREADS}");
+            return Err(usage(py, &what, "leave threads out to use one for each processor"));
         }
         let pool = ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build();
         let pool = pool.map_err(|why| usage(py, &format!("the threads cannot be started: {why}"), "ask for fewer"))?;

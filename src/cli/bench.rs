@@ -22,7 +22,7 @@ pub struct BenchArgs {
     #[arg(long, value_name = "N,..", value_delimiter = ',', default_value = "50000")]
     size: Vec<usize>,
     /// Threads besides 1 [default: one for each processor]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = super::thread_count)]
     threads: Option<usize>,
     /// What each law, a body and dry walls add, instead of the standard works
     #[arg(long)]
@@ -70,8 +70,8 @@ pub fn bench(args: &BenchArgs) -> Result<String> {
         bench::run_fixed_steps(steps, &args.work)?;
         return Ok(String::new());
     }
-    if args.size.iter().any(|&n| !(100..=50_000_000).contains(&n)) || args.threads == Some(0) {
-        return Err(Error::new(ErrorKind::Usage, "sizes are from 100 to 50 million particles, threads from 1"));
+    if args.size.iter().any(|&n| !(100..=50_000_000).contains(&n)) {
+        return Err(Error::new(ErrorKind::Usage, "sizes are from 100 to 50 million particles"));
     }
     if args.devices || args.device.is_some() {
         return on_devices(args);

@@ -24,7 +24,7 @@ pub struct InspectArgs {
     #[command(flatten)]
     scene: SceneArgs,
     /// Threads of the timing [default: one for each processor]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = super::thread_count)]
     threads: Option<usize>,
     /// Leave out the second of stepping that tells how long a run takes on this machine
     #[arg(long)]

@@ -31,7 +31,7 @@ pub struct RunArgs {
     #[arg(long, value_name = "EVERY|off", allow_negative_numbers = true, value_parser = frames)]
     frames: Option<KeyValue>,
     /// Threads [default: one for each processor]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = super::thread_count)]
     threads: Option<usize>,
     /// Device that computes the water: a number of bench --devices, gpu, or part of a name [default: the processor]
     #[arg(long, value_name = "DEVICE")]
@@ -70,7 +70,7 @@ pub struct ResumeArgs {
     #[arg(long, value_name = "KEY=VALUE", value_parser = super::key_value)]
     set: Vec<KeyValue>,
     /// Threads [default: one for each processor]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = super::thread_count)]
     threads: Option<usize>,
     #[command(flatten)]
     log_args: LogArgs,

@@ -24,7 +24,7 @@ pub struct StressArgs {
     #[arg(long, value_name = "FILE")]
     maps: Option<PathBuf>,
     /// Cases that run side by side [default: one for each processor]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = super::thread_count)]
     threads: Option<usize>,
     /// Folder for results
     #[arg(long, value_name = "DIR", default_value = "stress")]
@@ -46,9 +46,6 @@ pub fn stress(args: StressArgs) -> Result<u8> {
     if args.list {
         print_output(&map_list(&all));
         return Ok(0);
-    }
-    if args.threads == Some(0) {
-        return Err(Error::new(ErrorKind::Usage, "0 threads cannot run anything"));
     }
     let mut ledger = StressResults::open(select_maps(all, &args.names, args.quick)?, args.quick, args.out.clone())?;
     let due = ledger.entries.iter().filter(|entry| entry.run.is_none()).count();

@@ -49,7 +49,7 @@ pub struct StudyArgs {
     #[arg(long, value_name = "SECONDS")]
     until: Option<f64>,
     /// Threads of each run [default: one for each processor]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = super::thread_count)]
     threads: Option<usize>,
     /// Folder for runs and results [default: studies/<scene>]
     #[arg(long, value_name = "DIR")]
@@ -177,9 +177,6 @@ pub fn study(args: StudyArgs, command_line: &str) -> Result<u8> {
     let mut sets = args.set.clone();
     sets.extend(args.until.map(|until| ("until".into(), format!("{until:?}"))));
     let scene = found.with_scene_name(Scene::read(found.path(), &sets))?;
-    if args.threads == Some(0) {
-        return Err(Error::new(ErrorKind::Usage, "0 threads cannot run anything"));
-    }
     let name = scene_name(&args.scene);
     let out = args.out.clone().unwrap_or_else(|| PathBuf::from("studies").join(&name));
     let shot = args.png.as_deref().map(|png| picture_options(&args.look, png, &out, scene.until)).transpose()?;

@@ -30,7 +30,7 @@ pub struct ValidateArgs {
     #[arg(long, value_name = "N", default_value_t = 1)]
     repeat: usize,
     /// Threads of each run [default: one for each processor]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = super::thread_count)]
     threads: Option<usize>,
     /// Folder for runs and results
     #[arg(long, value_name = "DIR", default_value = "validation")]
@@ -51,9 +51,6 @@ pub fn validate(args: ValidateArgs, command_line: &str) -> Result<u8> {
     if args.list {
         print_output(&case_list(&validation_cases()?));
         return Ok(0);
-    }
-    if args.threads == Some(0) {
-        return Err(Error::new(ErrorKind::Usage, "0 threads cannot run anything"));
     }
     let cases = select_cases(&args.names, args.full)?;
     let scenes =

@@ -100,3 +100,7 @@ impl<const D: usize> CellGrid<D> {
         (0..D).rev().fold(0, |index, i| index * self.cells[i] + at[i])
     }
 }
+
+#[cfg(test)]
+#[path = "../../tests/unit/neighbours/grid.rs"]
+mod tests;
