@@ -122,10 +122,12 @@ impl Scene {
         built.unwrap_or_else(|| Err(self.other_dimension(D)))
     }
 
+    #[inline(never)]
     fn build_2d(&self) -> Result<BuiltScene<2>> {
         self.parts()?.fill()
     }
 
+    #[inline(never)]
     fn build_3d(&self) -> Result<BuiltScene<3>> {
         self.parts()?.fill()
     }

@@ -1,7 +1,7 @@
 //! The functions of a simulation that do much, as this library compiles them for each dimension.
 //!
 //! A program that calls a generic function compiles it anew, with all that it calls: for a simulation that takes a minute. So the
-//! methods of a [`Simulation`] call these functions by pointers.
+//! methods of a [`Simulation`] call these functions by pointers. `inline(never)` keeps the table of them out of other crates.
 
 use super::{AddedSolid, Setup, Simulation};
 use crate::{
@@ -23,6 +23,7 @@ pub trait Dimension<const D: usize>: HasPairLoop<D> {
 
 #[cfg(feature = "dim2")]
 impl Dimension<2> for Dim<2> {
+    #[inline(never)]
     fn compiled() -> &'static Compiled<2> {
         &Compiled::<2>::ALL
     }
@@ -30,6 +31,7 @@ impl Dimension<2> for Dim<2> {
 
 #[cfg(feature = "dim3")]
 impl Dimension<3> for Dim<3> {
+    #[inline(never)]
     fn compiled() -> &'static Compiled<3> {
         &Compiled::<3>::ALL
     }

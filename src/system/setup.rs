@@ -316,10 +316,12 @@ impl<const D: usize> Setup<D> {
     }
 }
 
+#[inline(never)]
 fn fill_2d((setup, regions): (Setup<2>, Vec<WaterRegion<2>>), level: f64) -> Result<Setup<2>> {
     setup.with_filled(&regions, level)
 }
 
+#[inline(never)]
 fn fill_3d((setup, regions): (Setup<3>, Vec<WaterRegion<3>>), level: f64) -> Result<Setup<3>> {
     setup.with_filled(&regions, level)
 }
