@@ -23,9 +23,9 @@ use pontoon::{
     error::{Error, Result},
     geometry::{Shape, WaterRegion},
     math::{Pose, Vector},
-    model::{Dimension, Model, Walls},
+    model::{Model, Walls},
     probe::{ElevationProbe, Probe},
-    simulation::{Setup, Simulation},
+    simulation::{Dimension, Setup, Simulation},
     solid::{Dim, FreeBody, SolidSpec, hydrostatics::equilibrium_height},
 };
 

@@ -21,10 +21,9 @@ use serde::Serialize;
 
 use crate::{
     error::{Error, ErrorKind, Result},
-    model::Dimension,
     run::{outputs, probe_factory, thread_pool},
     scene::{BuiltScene, Scene},
-    simulation::{Simulation, TimeSpent},
+    simulation::{Dimension, Simulation, TimeSpent},
     solid::Dim,
 };
 

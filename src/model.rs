@@ -491,20 +491,20 @@ impl Model {
 }
 
 /// Dimensions for which the pair loop is compiled.
-pub trait Dimension<const D: usize>: HasEngine<D> {
+pub trait HasPairLoop<const D: usize>: HasEngine<D> {
     /// The pair loop with the terms that `model` names, and no others.
     fn pair_loop(model: &Model) -> Box<dyn PairLoop<D>>;
 }
 
 #[cfg(feature = "dim2")]
-impl Dimension<2> for Dim<2> {
+impl HasPairLoop<2> for Dim<2> {
     fn pair_loop(model: &Model) -> Box<dyn PairLoop<2>> {
         model.build_pair_loop()
     }
 }
 
 #[cfg(feature = "dim3")]
-impl Dimension<3> for Dim<3> {
+impl HasPairLoop<3> for Dim<3> {
     fn pair_loop(model: &Model) -> Box<dyn PairLoop<3>> {
         model.build_pair_loop()
     }

@@ -45,12 +45,11 @@ use resume_point::ResumePoint;
 
 use crate::{
     error::{Error, ErrorKind, Result},
-    model::Dimension,
     output::{Checkpoint, Manifest, manifest::RunStatus},
     plan::ControlChange,
     ranks::Ranks,
     scene::{RenamedName, Scene},
-    simulation::Rollback,
+    simulation::{Dimension, Rollback},
     solid::ConstraintEvent,
     solid::Dim,
 };

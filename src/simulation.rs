@@ -2,6 +2,7 @@
 
 mod accounting;
 mod add_remove;
+mod dimension;
 mod external_bodies;
 #[cfg(feature = "gpu")]
 mod on_device;
@@ -26,6 +27,8 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 pub use add_remove::AddedSolid;
+use dimension::Field;
+pub use dimension::{Compiled, Dimension};
 #[cfg(feature = "gpu")]
 use on_device::OnDevice;
 use rollback::{RollbackControl, StoredState};
@@ -35,7 +38,7 @@ use crate::{
     error::{Error, ErrorCode, ErrorKind, Fault, Result},
     interaction::{PairLoop, RequestedSums},
     math::{Bivector, Vector},
-    model::Dimension,
+    model::HasPairLoop as _,
     ranks::Ranks,
     solid::{ContactForce, Dim, HasEngine as _, Role, SolidSpec, constraint::assembly::Assembly},
     system::{
@@ -51,6 +54,7 @@ use crate::{
 
 /// Water and solids moving through time.
 pub struct Simulation<const D: usize> {
+    compiled: &'static Compiled<D>,
     system: System<D>,
     stepper: Stepper<D>,
     bodies: Bodies<D>,
@@ -129,8 +133,7 @@ impl<const D: usize> Simulation<D> {
     where
         Dim<D>: Dimension<D>,
     {
-        let pair_loop = Dim::<D>::pair_loop(&setup.model);
-        let mut simulation = Self::with_bodies(setup, pair_loop, false, ranks)?;
+        let mut simulation = (Dim::<D>::compiled().set_up)(setup, None, false, ranks)?;
         simulation.gather_water(everyone);
         Ok(simulation)
     }
@@ -143,17 +146,23 @@ impl<const D: usize> Simulation<D> {
     where
         Dim<D>: Dimension<D>,
     {
-        let simulation = Self::with_bodies(setup, pair_loop, false, &Ranks::default())?;
+        let simulation = (Dim::<D>::compiled().set_up)(setup, Some(pair_loop), false, &Ranks::default())?;
         #[cfg(feature = "gpu")]
         let simulation = Self { custom_terms: true, ..simulation };
         Ok(simulation)
     }
 
-    /// Sets up a simulation whose free solids the engine moves, or an `external` program.
-    fn with_bodies(mut setup: Setup<D>, pair_loop: Box<dyn PairLoop<D>>, external: bool, ranks: &Ranks) -> Result<Self>
+    /// Sets up a simulation whose free solids the engine moves, or an `external` program, with its own pair loop or that of the model.
+    fn with_bodies(
+        mut setup: Setup<D>,
+        pair_loop: Option<Box<dyn PairLoop<D>>>,
+        external: bool,
+        ranks: &Ranks,
+    ) -> Result<Self>
     where
         Dim<D>: Dimension<D>,
     {
+        let pair_loop = pair_loop.unwrap_or_else(|| Dim::<D>::pair_loop(&setup.model));
         setup.check()?;
         setup.apply_symmetry()?;
         let (solids, dp) = (&setup.solids, setup.model.dp);
@@ -176,6 +185,7 @@ impl<const D: usize> Simulation<D> {
         let clock = Clock { time: 0.0, dt: 0.0, steps: 0 };
         let (rescue, lost, stepping) = (RollbackControl::default(), Vec::new(), Duration::ZERO);
         let mut simulation = Self {
+            compiled: Dim::<D>::compiled(),
             system,
             stepper,
             bodies,
@@ -206,29 +216,37 @@ impl<const D: usize> Simulation<D> {
     /// # Errors
     /// As [`Simulation::step`].
     pub fn step_to(&mut self, end: f64) -> Result<()> {
+        (self.compiled.step_to)(self, end)
+    }
+
+    fn make_step_to(&mut self, end: f64) -> Result<()> {
         #[cfg(feature = "gpu")]
         if self.device.is_some() {
             on_device::steps(self, (1, end), end, None)?;
             return self.fetch_from_device();
         }
         let outcome = self.step_with_own_water(end);
-        self.gather_water(true);
+        self.complete_water(true);
         outcome
     }
 
     /// Advances by one step, not past time `end` (s). Where ranks share the water, each has its own after that, and all water if the
     /// step fails: see [`Simulation::gather_water`].
     pub(crate) fn step_with_own_water(&mut self, end: f64) -> Result<()> {
-        self.step_with_hook(end, &mut |_| Ok(())).inspect_err(|_| self.gather_water(true))
+        self.make_step_with(end, &mut |_| Ok(())).inspect_err(|_| self.gather_water(true))
     }
 
     /// Completes the water and its sums on the first rank, or on all if `everyone`. All ranks must call this.
     pub(crate) fn gather_water(&mut self, everyone: bool) {
+        (self.compiled.gather_water)(self, everyone);
+    }
+
+    fn complete_water(&mut self, everyone: bool) {
         own_water::gather(&mut self.system, everyone);
     }
 
     /// Advances by one step, calling `hook` when the water has moved and the bodies have not.
-    fn step_with_hook(&mut self, end: f64, hook: &mut Hook<D>) -> Result<()> {
+    fn make_step_with(&mut self, end: f64, hook: &mut Hook<D>) -> Result<()> {
         #[cfg(feature = "gpu")]
         if self.device.is_some() {
             on_device::steps(self, (1, end), end, Some(hook))?;
@@ -463,6 +481,10 @@ impl<const D: usize> Simulation<D> {
 
     /// Computes the rates after the state was changed by hand.
     pub fn update_rates(&mut self) {
+        (self.compiled.update_rates)(self);
+    }
+
+    fn compute_rates(&mut self) {
         self.system.update_rates(RequestedSums::All);
     }
 
@@ -513,6 +535,10 @@ impl<const D: usize> Simulation<D> {
 
     /// Gives free solid number `solid` a velocity of its centre of mass (m/s) and a spin (rad/s), at once.
     pub fn set_velocity(&mut self, solid: usize, velocity: &Vector<D>, spin: &Bivector<D>) {
+        (self.compiled.set_velocity)(self, solid, velocity, spin);
+    }
+
+    fn assign_velocity(&mut self, solid: usize, velocity: &Vector<D>, spin: &Bivector<D>) {
         if let Some(engine) = self.bodies.engine_mut() {
             engine.set_velocity(solid, velocity, spin);
             let kinematics = &mut self.system.solids[solid].kinematics;
@@ -532,6 +558,10 @@ impl<const D: usize> Simulation<D> {
 
     /// Gives each water particle the velocity (m/s) that `field` says for its place (m).
     pub fn set_water_velocity(&mut self, field: impl Fn(&Vector<D>) -> Vector<D> + Sync) {
+        (self.compiled.set_water_velocity)(self, &field);
+    }
+
+    fn assign_water_velocity(&mut self, field: Field<D, Vector<D>>) {
         let fluid = &mut self.system.fluid.particles;
         fluid.v.par_iter_mut().zip(&fluid.r).for_each(|(v, r)| *v = field(r));
         self.system.fluid.update_reflected_images();
@@ -540,6 +570,10 @@ impl<const D: usize> Simulation<D> {
 
     /// Gives each water particle the density (kg/m³) that `field` says for its place (m).
     pub fn set_water_density(&mut self, field: impl Fn(&Vector<D>) -> f64 + Sync) {
+        (self.compiled.set_water_density)(self, &field);
+    }
+
+    fn assign_water_density(&mut self, field: Field<D, f64>) {
         let fluid = &mut self.system.fluid.particles;
         fluid.rho.par_iter_mut().zip(&fluid.r).for_each(|(rho, r)| *rho = field(r));
         self.system.fluid.update_reflected_images();
@@ -556,6 +590,10 @@ impl<const D: usize> Simulation<D> {
     /// # Errors
     /// `Restart` if the engine's state cannot be written.
     pub fn save(&self) -> Result<Vec<u8>> {
+        (self.compiled.save)(self)
+    }
+
+    fn state_bytes(&self) -> Result<Vec<u8>> {
         let cannot = |e: &dyn std::fmt::Display| Error::new(ErrorKind::Restart, format!("cannot write the state: {e}"));
         let state = self.state(self.rollback.log.len())?;
         let length = postcard::experimental::serialized_size(&state).map_err(|e| cannot(&e))?;
@@ -602,6 +640,10 @@ impl<const D: usize> Simulation<D> {
     /// # Errors
     /// `Restart` if the bytes are damaged or belong to another setup; nothing has changed then.
     pub fn restore(&mut self, bytes: &[u8]) -> Result<()> {
+        (self.compiled.restore)(self, bytes)
+    }
+
+    fn restore_state(&mut self, bytes: &[u8]) -> Result<()> {
         let kept = Self::read(bytes)?;
         let planned = self.check_state(&kept)?;
         self.delete_solids(&planned);

@@ -8,10 +8,9 @@ use pontoon::{
     geometry::Shape,
     math::{Vector, expression::Formula},
     model::{
-        Diffusion, Dimension, KernelKind, Model, PairLoopKind, PressureGradient, Shifting, Slip, TimeScheme, Viscosity,
-        Walls,
+        Diffusion, KernelKind, Model, PairLoopKind, PressureGradient, Shifting, Slip, TimeScheme, Viscosity, Walls,
     },
-    simulation::{Setup, Simulation},
+    simulation::{Dimension, Setup, Simulation},
     solid::{Dim, PrescribedMotion, SolidSpec, TimeFunction},
     sph::{
         continuity::Continuity,

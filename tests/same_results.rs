@@ -14,11 +14,10 @@
 use std::{fmt::Write as _, path::Path};
 
 use pontoon::{
-    model::Dimension,
     ranks::Ranks,
     run::{self, Progress, RunOptions},
     scene::{BuiltScene, Scene},
-    simulation::Simulation,
+    simulation::{Dimension, Simulation},
     solid::Dim,
     system::System,
 };

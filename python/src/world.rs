@@ -12,11 +12,10 @@ use pontoon::{
     Result,
     error::{Error, ErrorKind},
     math::{Bivector, Matrix, Pose, Vector},
-    model::Dimension,
     plan::Plan,
     probe::{MotionProbe, Probe, ProbeKind},
     scene::Scene,
-    simulation::{AddedSolid, BodyStep, Simulation},
+    simulation::{AddedSolid, BodyStep, Dimension, Simulation},
     solid::{Dim, Kinematics, Load, MotorCommand, Role, Solid, SolidSpec, SpringParameters},
 };
 

@@ -8,9 +8,8 @@ use super::{BenchCase, missing_dimension};
 use crate::{
     device::Adapter,
     error::{Error, ErrorCode, ErrorKind, Result},
-    model::Dimension,
     scene::BuiltScene,
-    simulation::Simulation,
+    simulation::{Dimension, Simulation},
     solid::Dim,
 };
 

@@ -223,7 +223,8 @@ impl<const D: usize> Bodies<D> {
             Role::Free(_) => solid.kinematics,
         };
         let solids = system.solids.iter().map(at_end).collect();
-        let mut step = BodyStep { bodies: self, system, over, loads, solids, transfers: Vec::new(), advanced: false };
+        let (transfers, advanced, advance) = (Vec::new(), false, BodyStep::advance_once);
+        let mut step = BodyStep { bodies: self, system, over, loads, solids, transfers, advanced, advance };
         if external {
             step.apply_added_mass();
         }
@@ -257,6 +258,8 @@ pub struct BodyStep<'a, const D: usize> {
     pub solids: Vec<Kinematics<D>>,
     transfers: Vec<MomentumTransfer<D>>,
     advanced: bool,
+    /// [`BodyStep::advance_once`], as this library compiles it.
+    advance: fn(&mut Self) -> Result<()>,
 }
 
 impl<const D: usize> BodyStep<'_, D> {
@@ -296,6 +299,10 @@ impl<const D: usize> BodyStep<'_, D> {
     /// # Errors
     /// `Usage` if the bodies are external; `Fault` if a body leaves the valid range.
     pub fn advance_bodies(&mut self) -> Result<()> {
+        (self.advance)(self)
+    }
+
+    fn advance_once(&mut self) -> Result<()> {
         if self.bodies.external {
             return Err(Error::new(
                 ErrorKind::Usage,

@@ -13,7 +13,7 @@ use super::{
 };
 use crate::{
     math::Vector,
-    model::Dimension,
+    model::HasPairLoop,
     solid::{Dim, FreeBody, Kinematics, Load, Role, Solid},
     system::{RemovedParticle, System},
 };
@@ -104,7 +104,7 @@ impl<const D: usize> Accounting<D> {
     /// breakdown every `interval` steps, or no power breakdown if `interval` is `None`.
     pub(crate) fn new(system: &System<D>, energy: bool, interval: Option<u32>) -> Self
     where
-        Dim<D>: Dimension<D>,
+        Dim<D>: HasPairLoop<D>,
     {
         let solids = system.solids().len();
         Self {

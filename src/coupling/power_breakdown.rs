@@ -21,7 +21,7 @@ use serde::{Deserialize, Serialize};
 use crate::{
     interaction::PairLoop,
     math::Vector,
-    model::{Diffusion, Dimension, Model, PressureGradient, Shifting, Viscosity},
+    model::{Diffusion, HasPairLoop, Model, PressureGradient, Shifting, Viscosity},
     neighbours::CHUNK,
     solid::{Dim, Load, Solid},
     system::{FluidRates, System},
@@ -49,7 +49,7 @@ impl<const D: usize> PowerMeter<D> {
     /// Creates the force passes for systems with the given `model`.
     pub(super) fn new(model: &Model) -> Self
     where
-        Dim<D>: Dimension<D>,
+        Dim<D>: HasPairLoop<D>,
     {
         let pressure =
             Model { viscosity: Viscosity::None, diffusion: Diffusion::None, shifting: Shifting::None, ..model.clone() };

@@ -1,6 +1,7 @@
 //! Mathematics without physics: vectors and rotations, time series, tables, formulas, SIMD numbers, number formats.
 
 mod config;
+mod dimension;
 pub mod expression;
 #[doc(hidden)]
 pub mod format;
@@ -12,5 +13,6 @@ pub mod time_series;
 mod vector;
 
 pub use config::{BoxConfig, NumberOrArray};
+pub(crate) use dimension::in_dimension;
 pub(crate) use vector::rotated_tensor;
 pub use vector::{Bivector, Bounds, Matrix, Pose, Vector};

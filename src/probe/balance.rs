@@ -6,8 +6,7 @@ use super::{Probe, ProbeDefinition, ProbeScope, axes, find_solid};
 use crate::{
     coupling::LoadBreakdown,
     error::{Error, Result},
-    model::Dimension,
-    simulation::Simulation,
+    simulation::{Dimension, Simulation},
     solid::{Dim, Load},
     system::System,
 };

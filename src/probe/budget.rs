@@ -4,7 +4,11 @@ use serde::{Deserialize, Serialize};
 
 use super::{EnergyProbe, EnergyReading, Probe, ProbeDefinition, ProbeScope, require_true};
 use crate::{
-    coupling::EnergyBudget, error::Result, model::Dimension, simulation::Simulation, solid::Dim, system::System,
+    coupling::EnergyBudget,
+    error::Result,
+    simulation::{Dimension, Simulation},
+    solid::Dim,
+    system::System,
 };
 
 /// The energy budget of water and bodies.

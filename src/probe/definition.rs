@@ -4,8 +4,7 @@ use super::Probe;
 use crate::{
     error::{Error, Result},
     math::BoxConfig,
-    model::Dimension,
-    simulation::Simulation,
+    simulation::{Dimension, Simulation},
     solid::Dim,
     system::System,
 };

@@ -82,8 +82,7 @@ use serde::{Deserialize, Serialize};
 use crate::{
     error::{Error, ErrorKind, Result},
     math::Vector,
-    model::Dimension,
-    simulation::{Simulation, find_by_name},
+    simulation::{Dimension, Simulation, find_by_name},
     solid::Dim,
     system::System,
 };

@@ -10,12 +10,11 @@ use crate::{
     error::Result,
     geometry::Shape,
     math::Vector,
-    model::Dimension,
     output::manifest::ValueInForce,
     preflight::{self, DEFAULT_SPEED, Finding, Preflight},
     probe,
     scene::{BuiltScene, Scene, SizeEstimate},
-    simulation::Simulation,
+    simulation::{Dimension, Simulation},
     solid::Dim,
 };
 

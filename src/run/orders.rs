@@ -6,12 +6,11 @@ use std::{fs, path::Path};
 use super::{controls::Controls, probe_factory, run_folder};
 use crate::{
     error::{Error, ErrorKind, Result},
-    model::Dimension,
     output::{Checkpoint, checkpoint},
     plan::{ControlChange, Plan},
     ranks::{Ranks, from_words, words_of},
     scene::{BuiltScene, Scene},
-    simulation::{Setup, Simulation},
+    simulation::{Dimension, Setup, Simulation},
     solid::Dim,
 };
 

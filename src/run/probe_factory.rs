@@ -3,10 +3,9 @@
 use crate::{
     analysis::ReferenceCheck,
     error::{Error, ErrorCode, Result, nearest_name},
-    model::Dimension,
     plan::{CheckPlan, Plan, Reference},
     probe::{Probe, ProbePlan},
-    simulation::Simulation,
+    simulation::{Dimension, Simulation},
     solid::Dim,
     system::System,
 };

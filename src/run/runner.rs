@@ -17,7 +17,6 @@ use super::{
 use crate::{
     analysis::{ReferenceCheck, Verdict},
     error::{Error, ErrorKind, Result},
-    model::Dimension,
     output::{
         Checkpoint, Manifest, OutputPositions, checkpoint,
         manifest::{ExchangeFigures, FrameTotals, Machine, ParticleCounts, RunStatus, ValueInForce},
@@ -26,7 +25,7 @@ use crate::{
     preflight,
     ranks::Ranks,
     scene::{BuiltScene, Plan, RenamedName, ResolvedValue, Scene},
-    simulation::Simulation,
+    simulation::{Dimension, Simulation},
     solid::{Dim, HasEngine as _, Role},
 };
 

@@ -23,7 +23,7 @@ use crate::{
         fill::{Filled, Filling, WaterRegion},
         hollow::Enclosure,
     },
-    math::{Bounds, Pose, Vector},
+    math::{Bounds, Pose, Vector, in_dimension},
     model::{Model, TimeScheme},
     plan::{ControlPlan, FramesPlan, Plan},
     simulation::{Driving, OpenBoundary, Setup, TowedFrame},
@@ -118,7 +118,22 @@ impl Scene {
     /// `Usage` if `D` is not the scene's dimension; `Scene` if the scene is wrong, a shape is not valid,
     /// a body sinks that should float, or the particles are too many; `File` if a table cannot be read.
     pub fn build<const D: usize>(&self) -> Result<BuiltScene<D>> {
+        let built = in_dimension((), |()| self.build_2d(), |()| self.build_3d());
+        built.unwrap_or_else(|| Err(self.other_dimension(D)))
+    }
+
+    #[inline(never)]
+    fn build_2d(&self) -> Result<BuiltScene<2>> {
         self.parts()?.fill()
+    }
+
+    #[inline(never)]
+    fn build_3d(&self) -> Result<BuiltScene<3>> {
+        self.parts()?.fill()
+    }
+
+    fn other_dimension(&self, asked: usize) -> Error {
+        Error::new(ErrorKind::Usage, format!("this scene is {}-D, not {asked}-D", self.dimension))
     }
 
     /// Opens the files that the scene names, and returns all parts of the simulation except for the particles.
@@ -127,7 +142,7 @@ impl Scene {
     /// The errors of [`Scene::build`], except for those of the filling.
     pub(crate) fn parts<const D: usize>(&self) -> Result<SceneParts<D>> {
         if self.dimension != D {
-            return Err(Error::new(ErrorKind::Usage, format!("this scene is {}-D, not {D}-D", self.dimension)));
+            return Err(self.other_dimension(D));
         }
         let (scene, _) = self.with_defaults()?;
         let ctx = &scene.context();

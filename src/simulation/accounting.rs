@@ -1,9 +1,9 @@
 //! The load breakdown and the energy budget of a running simulation. Disabled by default; no cost when disabled.
 
-use super::Simulation;
+use super::{Dimension, Simulation};
 use crate::{
     coupling::{Accounting, EnergyBudget, LoadBreakdown},
-    model::{Dimension, Viscosity},
+    model::Viscosity,
     solid::Dim,
     sph::boundary::Slip,
 };
@@ -21,7 +21,7 @@ impl<const D: usize> Simulation<D> {
         let model = self.system.model();
         let drags = model.viscosity != Viscosity::None && model.slip != Slip::Free;
         let (energy, interval) = self.accounted();
-        self.account(energy, if drags { Some(1) } else { interval });
+        (self.compiled.account)(self, energy, if drags { Some(1) } else { interval });
     }
 
     /// Enables the energy budget: [`Simulation::energy_budget`]. Every eighth step takes another force pass.
@@ -30,7 +30,7 @@ impl<const D: usize> Simulation<D> {
         Dim<D>: Dimension<D>,
     {
         let (_, interval) = self.accounted();
-        self.account(true, Some(interval.unwrap_or(INTERVAL)));
+        (self.compiled.account)(self, true, Some(interval.unwrap_or(INTERVAL)));
     }
 
     /// Whether the energy budget is kept already, and the interval of power breakdowns.
@@ -39,7 +39,7 @@ impl<const D: usize> Simulation<D> {
         accounting.map_or((false, None), |accounting| (accounting.has_energy_budget(), accounting.power_interval()))
     }
 
-    fn account(&mut self, energy: bool, interval: Option<u32>)
+    pub(super) fn begin_accounting(&mut self, energy: bool, interval: Option<u32>)
     where
         Dim<D>: Dimension<D>,
     {

@@ -1,11 +1,10 @@
 //! Adding and removing solids during a simulation.
 
-use super::{Simulation, external_bodies::refuse_ballast};
+use super::{Dimension, Simulation, external_bodies::refuse_ballast};
 use crate::{
     coupling::AcousticAddedMass,
     error::{Error, ErrorCode, ErrorKind, Result},
     interaction::RequestedSums,
-    model::Dimension,
     solid::{Constraints, Dim, HasEngine as _, Kinematics, Role, Solid, SolidSpec, containment::depth_inside_mesh},
     system::{Reordering, return_impulse},
 };
@@ -36,6 +35,10 @@ where
     /// `Scene` if the solid cannot be meant, has a name that another has or had, or lies deeper than 0.05 dp inside another:
     /// says which and how deep. Nothing has changed then.
     pub fn add_solid(&mut self, spec: SolidSpec<D>) -> Result<AddedSolid> {
+        (self.compiled.add_solid)(self, spec)
+    }
+
+    pub(super) fn put_in_solid(&mut self, spec: SolidSpec<D>) -> Result<AddedSolid> {
         spec.check()?;
         if self.has_external_bodies() {
             refuse_ballast(&spec)?;
@@ -78,6 +81,10 @@ where
     /// `Restart` if the bytes are damaged or another number of solids had been added: nothing has changed then. `Restart` also if they
     /// belong to another setup, or other solids had been added: the solids have come in then.
     pub fn restore_with_added_solids(&mut self, bytes: &[u8], added: Vec<SolidSpec<D>>) -> Result<()> {
+        (self.compiled.restore_with_added_solids)(self, bytes, added)
+    }
+
+    pub(super) fn restore_state_with_added_solids(&mut self, bytes: &[u8], added: Vec<SolidSpec<D>>) -> Result<()> {
         let kept = Self::read(bytes)?;
         let (own, there) = (self.system.solids().len() + added.len(), kept.system.solid_count());
         if own != there || kept.removed_solids.iter().any(|solid| *solid as usize >= there) {
@@ -154,6 +161,10 @@ impl<const D: usize> Simulation<D> {
     /// # Errors
     /// `Usage` if there is no such solid, or something is tied to it: says what.
     pub fn remove_solid(&mut self, solid: usize) -> Result<()> {
+        (self.compiled.remove_solid)(self, solid)
+    }
+
+    pub(super) fn take_out_solid(&mut self, solid: usize) -> Result<()> {
         let Some(there) = self.system.solids().get(solid) else {
             let last = self.system.solids().len();
             return Err(Error::new(ErrorKind::Usage, format!("there is no solid number {solid}")).help(format!(

@@ -1,9 +1,8 @@
 //! Co-simulation: a hook in each step before the bodies move, and bodies that an external program moves.
 
-use super::{BodyStep, Setup, Simulation};
+use super::{BodyStep, Dimension, Setup, Simulation};
 use crate::{
     error::{Error, Result},
-    model::Dimension,
     ranks::Ranks,
     solid::{Dim, SolidSpec},
 };
@@ -29,8 +28,7 @@ impl<const D: usize> Simulation<D> {
             .help("put them into the world that moves the bodies, and leave setup.links as Links::default()"));
         }
         setup.solids.iter().try_for_each(refuse_ballast)?;
-        let pair_loop = Dim::<D>::pair_loop(&setup.model);
-        Ok(Self::with_bodies(setup, pair_loop, true, &Ranks::default())?.without_rollback())
+        Ok((Dim::<D>::compiled().set_up)(setup, None, true, &Ranks::default())?.without_rollback())
     }
 
     /// Goes one step on, and not past time `end` (s), and calls `hook` once, when the water has moved and the bodies have
@@ -63,7 +61,7 @@ impl<const D: usize> Simulation<D> {
     /// # Errors
     /// As [`Simulation::step`], the error that `hook` returns, and `Usage` if an external body was left without kinematics.
     pub fn step_with(&mut self, end: f64, mut hook: impl FnMut(&mut BodyStep<D>) -> Result<()>) -> Result<()> {
-        self.step_with_hook(end, &mut hook)
+        (self.compiled.step_with)(self, end, &mut hook)
     }
 
     /// Whether an external program moves the free solids.

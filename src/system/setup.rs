@@ -6,9 +6,9 @@ use super::{
     step_check::ParticleLimits,
 };
 use crate::{
-    error::{Error, ErrorCode, Result},
+    error::{Error, ErrorCode, ErrorKind, Result},
     geometry::{Shape, WaterRegion, fill_around},
-    math::{Bounds, Pose, Vector},
+    math::{Bounds, Pose, Vector, in_dimension},
     model::Model,
     solid::{
         Constraints, ContactSpec, ForceSpec, InitialHold, JointSpec, MooringPointSpec, MooringSpec, Role, RopeSpec,
@@ -118,6 +118,12 @@ impl<const D: usize> Setup<D> {
     /// # Errors
     /// As [`crate::geometry::fill()`].
     pub fn fill(self, regions: &[WaterRegion<D>], level: f64) -> Result<Self> {
+        let filled =
+            in_dimension((self, regions.to_vec()), |given| fill_2d(given, level), |given| fill_3d(given, level));
+        filled.unwrap_or_else(|| Err(Error::new(ErrorKind::Usage, format!("water has 2 or 3 dimensions, not {D}"))))
+    }
+
+    fn with_filled(self, regions: &[WaterRegion<D>], level: f64) -> Result<Self> {
         let poses: Vec<Pose<D>> = self.solids.iter().map(|solid| solid.initial_kinematics().pose).collect();
         let rests = |solid: &SolidSpec<D>| !matches!(solid.role, Role::Free(_));
         let solids = self.solids.iter().zip(&poses).map(|(solid, pose)| (&solid.shape, pose, rests(solid)));
@@ -308,6 +314,16 @@ impl<const D: usize> Setup<D> {
         let has_planes = self.symmetry.iter().any(Option::is_some);
         periodic::check(&self.periodic, has_planes, m, &self.solids, &self.constraints)
     }
+}
+
+#[inline(never)]
+fn fill_2d((setup, regions): (Setup<2>, Vec<WaterRegion<2>>), level: f64) -> Result<Setup<2>> {
+    setup.with_filled(&regions, level)
+}
+
+#[inline(never)]
+fn fill_3d((setup, regions): (Setup<3>, Vec<WaterRegion<3>>), level: f64) -> Result<Setup<3>> {
+    setup.with_filled(&regions, level)
 }
 
 /// The acceleration of gravity (m/s²) by the components of `law` at time `t` (s).

@@ -5,9 +5,9 @@ use std::path::Path;
 
 use pontoon::{
     math::Vector,
-    model::{Dimension, Model, PairLoopKind, TimeScheme, Walls},
+    model::{Model, PairLoopKind, TimeScheme, Walls},
     scene::Scene,
-    simulation::{Escape, Setup, Simulation},
+    simulation::{Dimension, Escape, Setup, Simulation},
     solid::{Dim, Role, SolidSpec},
 };
 

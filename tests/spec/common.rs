@@ -10,9 +10,11 @@ use pontoon::{
     Result,
     geometry::Shape,
     math::{Pose, Vector},
-    model::{Dimension, Model},
+    model::Model,
+    preflight::Preflight,
+    run::{InspectOptions, inspect_scene},
     scene::Scene,
-    simulation::{Setup, Simulation},
+    simulation::{Dimension, Setup, Simulation},
     solid::{Dim, Role, SolidSpec},
 };
 
@@ -174,4 +176,10 @@ impl Drop for TestFolder {
     fn drop(&mut self) {
         let _ = fs::remove_dir_all(&self.0);
     }
+}
+
+/// Returns the preflight report of a sound scene.
+pub fn preflight_report(scene: &Scene) -> Preflight {
+    let inspection = inspect_scene(scene, &InspectOptions::default()).expect("a sound scene");
+    inspection.report().expect("a scene of a size that a test can run").preflight
 }

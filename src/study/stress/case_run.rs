@@ -12,9 +12,8 @@ use super::{
 };
 use crate::{
     error::{Error, ErrorKind, Result},
-    model::Dimension,
     run::{missing_dimension, thread_pool},
-    simulation::Simulation,
+    simulation::{Dimension, Simulation},
     solid::Dim,
 };
 

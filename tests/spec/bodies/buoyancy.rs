@@ -9,8 +9,8 @@ use std::f64::consts::TAU;
 use pontoon::{
     geometry::{Shape, WaterRegion, fill},
     math::{Pose, Vector},
-    model::{Dimension, Model, Viscosity, Walls},
-    simulation::Simulation,
+    model::{Model, Viscosity, Walls},
+    simulation::{Dimension, Simulation},
     solid::{Dim, FreeBody, Role, hydrostatics},
     sph::viscosity::Artificial,
 };

@@ -3,8 +3,8 @@
 use pontoon::{
     geometry::Shape,
     math::{Bivector, Pose, Vector, expression::Formula},
-    model::{Diffusion, Dimension, Model, PairLoopKind, TimeScheme, Viscosity, Walls},
-    simulation::{Setup, Simulation},
+    model::{Diffusion, Model, PairLoopKind, TimeScheme, Viscosity, Walls},
+    simulation::{Dimension, Setup, Simulation},
     solid::{Dim, PrescribedMotion, Role, TimeFunction},
 };
 

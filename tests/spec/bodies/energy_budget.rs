@@ -5,10 +5,9 @@ use std::path::Path;
 use pontoon::{
     geometry::Shape,
     math::{Bivector, Vector},
-    model::Dimension,
     probe::{EnergyBudgetProbe, Probe},
     scene::Scene,
-    simulation::Simulation,
+    simulation::{Dimension, Simulation},
     solid::{Dim, Load, Role},
 };
 

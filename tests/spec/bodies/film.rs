@@ -1,6 +1,11 @@
 //! The film of water between a free body and what it touches: it carries the pressure that the water has at its rim.
 
-use pontoon::{Result, math::Vector, model::Dimension, simulation::Simulation, solid::Dim};
+use pontoon::{
+    Result,
+    math::Vector,
+    simulation::{Dimension, Simulation},
+    solid::Dim,
+};
 
 use crate::common::{scene_simulation, time_mean};
 

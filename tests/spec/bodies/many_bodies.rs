@@ -3,8 +3,8 @@
 use pontoon::{
     geometry::Shape,
     math::Vector,
-    model::{Dimension, Model},
-    simulation::Simulation,
+    model::Model,
+    simulation::{Dimension, Simulation},
     solid::{Dim, Role},
 };
 

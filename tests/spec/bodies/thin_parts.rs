@@ -1,6 +1,11 @@
 //! Parts thinner than dp: one layer of boundary particles stands for them, and they have the buoyancy of their volume.
 
-use pontoon::{Result, math::Vector, model::Dimension, simulation::Simulation, solid::Dim};
+use pontoon::{
+    Result,
+    math::Vector,
+    simulation::{Dimension, Simulation},
+    solid::Dim,
+};
 
 use crate::common::{scene_simulation, time_mean};
 

@@ -4,10 +4,9 @@ use std::path::Path;
 
 use pontoon::{
     Result,
-    model::Dimension,
     probe::{EnergyBudgetProbe, MooringProbe, Probe},
     scene::Scene,
-    simulation::Simulation,
+    simulation::{Dimension, Simulation},
     solid::Dim,
 };
 

@@ -109,7 +109,7 @@ fn two_equal_translations_equal_one_of_twice_the_distance_also_after_a_restart()
 /// Kinematics at 1 s of a solid that starts at `at` and has these `motions`.
 fn after_a_second<const D: usize>(at: &str, motions: &str) -> Result<Kinematics<D>>
 where
-    pontoon::solid::Dim<D>: pontoon::model::Dimension<D>,
+    pontoon::solid::Dim<D>: pontoon::simulation::Dimension<D>,
 {
     let corner = vec!["1"; D].join(", ");
     let size = vec!["0.1"; D].join(", ");

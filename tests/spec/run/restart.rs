@@ -7,11 +7,10 @@ use pontoon::{
     Result,
     error::ErrorKind,
     geometry::Shape,
-    model::Dimension,
     output::Checkpoint,
     run::{self, Progress, RunOptions},
     scene::Scene,
-    simulation::Simulation,
+    simulation::{Dimension, Simulation},
     solid::{Dim, SolidSpec},
 };
 

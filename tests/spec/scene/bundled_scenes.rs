@@ -3,10 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use pontoon::{
-    model::Dimension,
     output::frame::particle_bytes,
     scene::{BuiltScene, Scene, bundled_scenes},
-    simulation::Simulation,
+    simulation::{Dimension, Simulation},
     solid::Dim,
 };
 

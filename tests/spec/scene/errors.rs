@@ -6,9 +6,8 @@ use std::path::{Path, PathBuf};
 use pontoon::{
     Error,
     error::ErrorCode,
-    model::Dimension,
     scene::{FramesChoice, Scene},
-    simulation::Simulation,
+    simulation::{Dimension, Simulation},
     solid::Dim,
 };
 use proptest::prelude::*;

@@ -7,15 +7,12 @@ use std::{
 };
 
 use pontoon::{
-    model::Dimension,
-    preflight::{self, BodySummary, Preflight, Severity},
+    preflight::{BodySummary, Finding, Preflight, Severity},
     run::{self, Inspection, Progress, RunOptions},
-    scene::{BuiltScene, Scene, bundled_scenes},
-    simulation::Simulation,
-    solid::Dim,
+    scene::{Scene, bundled_scenes},
 };
 
-use crate::common::TestFolder;
+use crate::common::{TestFolder, preflight_report};
 
 /// A valid scene: a floating box, a paddle and a sill.
 const GOOD: &str = r#"title     = "A box afloat"
@@ -61,18 +58,9 @@ elevation = { x = 1.6 }
 every = 0.01
 "#;
 
-fn preflight_report<const D: usize>(scene: &Scene) -> Preflight
-where
-    Dim<D>: Dimension<D>,
-{
-    let BuiltScene { setup, plan, initial_water, .. } = scene.build::<D>().unwrap();
-    let sim = Simulation::new(setup).unwrap();
-    preflight::preflight(&sim, &plan, initial_water, &[1, 2])
-}
-
 fn report(sets: &[(&str, &str)]) -> Preflight {
     let sets: Vec<(String, String)> = sets.iter().map(|(k, v)| (k.to_string(), v.to_string())).collect();
-    preflight_report::<2>(&Scene::parse(GOOD, Path::new(""), &sets).unwrap())
+    preflight_report(&Scene::parse(GOOD, Path::new(""), &sets).unwrap())
 }
 
 fn topics(of: &Preflight) -> Vec<&'static str> {
@@ -87,7 +75,7 @@ fn body_summary(solid: &str) -> BodySummary {
          [[solid]]\nname = \"tank\"\nfixed = true\nshape = {{ tank = {{ size = [1.4, 1.4, 0.8] }} }}\n\
          [[solid]]\nname = \"float\"\n{solid}\n"
     );
-    preflight_report::<3>(&Scene::parse(&text, Path::new(""), &[]).unwrap()).bodies.remove(0)
+    preflight_report(&Scene::parse(&text, Path::new(""), &[]).unwrap()).bodies.remove(0)
 }
 
 #[track_caller]
@@ -304,7 +292,7 @@ fn walls_that_differ_at_periodic_sides_are_a_warning() {
              [[water]]\nfill = {{ box = {{ min = [0.0, 0.0], max = [1.0, 0.3] }} }}\n\
              [[solid]]\nname = \"bed\"\nfixed = true\nshape = {{ polygon = {{ points = [{points}] }} }}\n"
         );
-        preflight_report::<2>(&Scene::parse(&text, Path::new(""), &[]).unwrap())
+        preflight_report(&Scene::parse(&text, Path::new(""), &[]).unwrap())
     };
     let slope = found("[-0.3, -0.2], [1.3, -0.2], [1.3, 0.13], [-0.3, -0.03]");
     let finding = slope.findings.iter().find(|f| f.topic == "unequal_sides").expect("a bed 0.1 m higher at 1 m");
@@ -326,7 +314,7 @@ fn faces_whose_discharges_do_not_cancel_are_a_warning() {
              [[water]]\nfill = {{ box = {{ min = [0.0, 0.0], max = [2.0, 0.5] }} }}\nvelocity = [0.6, 0.0]\n\
              [[solid]]\nname = \"bed\"\nfixed = true\nshape = {{ box = {{ size = [6.0, 0.3] }} }}\nat = {{ x = 1.0, y = -0.15 }}\n"
         );
-        let report = preflight_report::<2>(&Scene::parse(&text, Path::new(""), &[]).unwrap());
+        let report = preflight_report(&Scene::parse(&text, Path::new(""), &[]).unwrap());
         report.findings.into_iter().find(|f| f.topic == "unequal_discharges")
     };
     let less = found("velocity = 0.6", "velocity = 0.4").expect("0.1 m²/s stay");
@@ -374,7 +362,7 @@ fn more_than_four_findings_of_a_kind_are_shortened_to_three_and_a_count() {
     }
     assert_eq!(found.warnings().len(), if finding.severity == Severity::Warning { 4 } else { 0 });
     // Each kind has its own count, in any order of the findings.
-    let note = preflight::Finding { severity: Severity::Note, ..finding.clone() };
+    let note = Finding { severity: Severity::Note, ..finding.clone() };
     found.findings = [finding, note].into_iter().cycle().take(12).collect();
     let brief = found.brief();
     let more: Vec<&str> = brief.iter().filter(|f| f.what.contains(" more of ")).map(|f| &f.what[..6]).collect();
@@ -407,7 +395,7 @@ fn a_current_too_slow_for_its_surface_is_noted() {
              [[solid]]\nname = \"pier\"\nfixed = true\nshape = {{ box = {{ size = {size} }} }}\nat = {{ x = 1.0, y = {height} }}\n"
         );
         let scene = Scene::parse(&text, Path::new(""), &[]).unwrap();
-        topics(&preflight_report::<2>(&scene)).contains(&"slow_current")
+        topics(&preflight_report(&scene)).contains(&"slow_current")
     };
     let size = "[0.4, 0.2]";
     assert_eq!([noted(0.6, 0.5, size), noted(0.8, 0.5, size), noted(0.6, 0.2, size)], [true, false, false]);
@@ -421,7 +409,7 @@ fn a_current_too_slow_for_its_surface_is_noted() {
              [[solid]]\nname = \"bed\"\nfixed = true\nshape = {{ box = {{ size = [4.0, 0.3] }} }}\nat = {{ x = 1.0, y = -0.15 }}\n"
         );
         let scene = Scene::parse(&text, Path::new(""), &[]).unwrap();
-        topics(&preflight_report::<2>(&scene)).contains(&"slow_current")
+        topics(&preflight_report(&scene)).contains(&"slow_current")
     };
     let held = |discharge: f64| driven(&format!("current = {{ along = \"x\", discharge = {discharge} }}"));
     let towed = |speed: f64| driven(&format!("towed = {{ along = \"x\", velocity = {speed} }}"));
@@ -438,7 +426,7 @@ fn waves_through_a_face_are_told_with_their_length_on_the_current() {
         let sets =
             [("inflow.0.velocity", current), ("outflow.0.velocity", current), ("water.0.velocity", water.as_str())];
         let sets = sets.map(|(key, value)| (key.to_string(), value.to_string()));
-        let found = preflight_report::<2>(&Scene::read(&path, &sets).unwrap());
+        let found = preflight_report(&Scene::read(&path, &sets).unwrap());
         let [wave] = &found.face_waves[..] else { panic!("{:?}", found.face_waves) };
         let u: f64 = current.parse().unwrap();
         let (k, omega) = (TAU / wave.length_m, TAU / wave.period_s);
@@ -458,7 +446,7 @@ fn the_bundled_scenes_have_no_warnings_except_documented_ones() {
     const KNOWN: [(&str, &str); 1] = [("ren-box", "low_waves")];
     for (name, ..) in bundled_scenes() {
         let scene = Scene::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(name), &[]).unwrap();
-        let found = if scene.dimension == 2 { preflight_report::<2>(&scene) } else { preflight_report::<3>(&scene) };
+        let found = preflight_report(&scene);
         let warnings = found.findings.iter().filter(|f| f.severity == Severity::Warning);
         let found_topics: Vec<(&str, &str)> = warnings.map(|f| (*name, f.topic)).collect();
         let known: Vec<(&str, &str)> = KNOWN.into_iter().filter(|(scene, _)| scene == name).collect();
@@ -521,7 +509,7 @@ fn a_finding_about_a_stiff_spring_contains_the_admissible_stiffness() {
     let moored = |stiffness: f64| {
         let spring = "[[spring]]\nname = \"line\"\nbetween = [\"box\"]\nfrom = [1.0, 0.35]\nto = [1.0, 0.0]";
         let text = format!("{GOOD}\n{spring}\nstiffness = {stiffness:?}\n");
-        preflight_report::<2>(&Scene::parse(&text, Path::new(""), &[]).unwrap())
+        preflight_report(&Scene::parse(&text, Path::new(""), &[]).unwrap())
     };
     let stiff = moored(1e9);
     let finding = stiff.findings.iter().find(|f| f.topic == "stiff_spring").expect("1e9 N/m on 10 kg is stiff");
@@ -538,7 +526,7 @@ fn a_winch_that_does_not_start_with_its_tension_is_noted() {
         let line = "[[line_type]]\nname = \"chain\"\ndiameter = 0.004\nmass_per_length = 0.1\nstiffness = 500.0\n\
                     [[mooring]]\nname = \"hawser\"\nbetween = [\"box\"]\nfrom = [1.0, 0.35]\nto = [1.1, 0.0]\nlength = 0.4\nline = \"chain\"";
         let text = format!("{GOOD}\n{line}\nwinch = {{ hold_tension = {tension:?}, rate_limit = 0.1 }}\n");
-        preflight_report::<2>(&Scene::parse(&text, Path::new(""), &[]).unwrap())
+        preflight_report(&Scene::parse(&text, Path::new(""), &[]).unwrap())
     };
     let other = moored(50.0);
     assert!(topics(&other).contains(&"winch_starts"));
@@ -552,7 +540,7 @@ fn a_mooring_line_that_breaks_at_the_start_is_told() {
         let line = "[[line_type]]\nname = \"chain\"\ndiameter = 0.004\nmass_per_length = 0.1\nstiffness = 500.0\n\
                     [[mooring]]\nname = \"hawser\"\nbetween = [\"box\"]\nfrom = [1.0, 0.35]\nto = [1.1, 0.0]\nlength = 0.4\nline = \"chain\"";
         let text = format!("{GOOD}\n{line}\nbreaks = {{ tension = {breaks:?} }}\n");
-        preflight_report::<2>(&Scene::parse(&text, Path::new(""), &[]).unwrap())
+        preflight_report(&Scene::parse(&text, Path::new(""), &[]).unwrap())
     };
     let strong = moored(100.0);
     assert!(!topics(&strong).contains(&"breaks_at_start"), "{:?}", strong.findings);
@@ -569,7 +557,7 @@ fn a_paddle_with_a_list_of_motions_has_the_report_of_a_single_motion() {
     let whole = "{ along = [1.0, 0.0], distance = { formula = \"0.04*(1-cos(2*pi*t))\" } }";
     let text = GOOD.replace(whole, &format!("{{ motions = [{half}, {half}] }}"));
     assert_ne!(text, GOOD);
-    let listed = preflight_report::<2>(&Scene::parse(&text, Path::new(""), &[]).unwrap());
+    let listed = preflight_report(&Scene::parse(&text, Path::new(""), &[]).unwrap());
     assert_eq!(topics(&listed), topics(&alone));
     let [one, other] = [&alone, &listed].map(|found| found.waves.first().expect("the paddle generates waves"));
     // The motions are equal up to round-off.

@@ -2,8 +2,8 @@
 
 use pontoon::{
     math::Vector,
-    model::{Dimension, PairLoopKind},
-    simulation::{Setup, Simulation},
+    model::PairLoopKind,
+    simulation::{Dimension, Setup, Simulation},
     solid::Dim,
 };
 

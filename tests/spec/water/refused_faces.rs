@@ -4,9 +4,8 @@ use std::path::Path;
 
 use pontoon::{
     error::Error,
-    preflight::{self, FaceWave, Finding},
-    scene::{BuiltScene, Scene},
-    simulation::Simulation,
+    preflight::{FaceWave, Finding},
+    scene::Scene,
 };
 
 use crate::common;
@@ -107,9 +106,7 @@ fn report(wave: &str, velocity: f64) -> (Vec<Finding>, Vec<FaceWave>) {
 
 fn report_of(faces: &str) -> (Vec<Finding>, Vec<FaceWave>) {
     let scene = Scene::parse(&channel(faces, false, 0.04), Path::new(""), &[]).expect("a sound scene");
-    let BuiltScene { setup, plan, initial_water, .. } = scene.build::<2>().expect("a sound scene");
-    let sim = Simulation::new(setup).expect("a sound setup");
-    let report = preflight::preflight(&sim, &plan, initial_water, &[1]);
+    let report = common::preflight_report(&scene);
     (report.findings, report.face_waves)
 }
 

@@ -5,12 +5,11 @@ use pontoon::{
     interaction::{self, PairLoopInput, PairSums, RequestedSums},
     math::{Pose, Vector, expression::Formula, simd},
     model::{
-        Diffusion, Dimension, KernelKind, Model, PairLoopKind, PressureGradient, Shifting, Slip, TimeScheme, Viscosity,
-        Walls,
+        Diffusion, KernelKind, Model, PairLoopKind, PressureGradient, Shifting, Slip, TimeScheme, Viscosity, Walls,
     },
     neighbours::NeighbourLists,
     particles::Particles,
-    simulation::{Setup, Simulation},
+    simulation::{Dimension, Setup, Simulation},
     solid::{Dim, PrescribedMotion, Role, TimeFunction},
     sph::{
         Units,

@@ -6,9 +6,9 @@ use pontoon::{
     Result,
     geometry::Shape,
     math::{Bivector, Matrix, Pose, Vector},
-    model::{Dimension, Model, PairLoopKind, TimeScheme, Walls},
+    model::{Model, PairLoopKind, TimeScheme, Walls},
     scene::Scene,
-    simulation::{Setup, Simulation},
+    simulation::{Dimension, Setup, Simulation},
     solid::{Constraints, Dim, FreeBody, HasEngine, Kinematics, Load, Role, SolidSpec},
 };
 

@@ -5,10 +5,10 @@ use std::{collections::BTreeMap, path::Path};
 use pontoon::{
     Result,
     math::Vector,
-    model::{Dimension, PairLoopKind},
+    model::PairLoopKind,
     probe::{EnergyBudgetProbe, Probe},
     scene::Scene,
-    simulation::{Setup, Simulation},
+    simulation::{Dimension, Setup, Simulation},
     solid::Dim,
 };
 

@@ -5,7 +5,6 @@ use std::{f64::consts::TAU, path::Path};
 use pontoon::{
     Error,
     math::Vector,
-    preflight,
     scene::{BuiltScene, Scene},
     simulation::Simulation,
 };
@@ -42,8 +41,12 @@ const PERIOD: f64 = 1.175;
 
 const ABSORBER: &str = "driven = { along = [1.0, 0.0], wave = { absorb = { period = 1.175 } } }";
 
+fn scene(end: &str) -> Result<Scene, Error> {
+    Scene::parse(&BASIN.replace("END", end), Path::new(""), &[])
+}
+
 fn built(end: &str) -> Result<BuiltScene<2>, Error> {
-    Scene::parse(&BASIN.replace("END", end), Path::new(""), &[])?.build()
+    scene(end)?.build()
 }
 
 fn basin(end: &str) -> Simulation<2> {
@@ -140,10 +143,7 @@ fn invalid_absorption_keys_are_refused_with_the_key_and_a_remedy() {
 
 #[test]
 fn preflight_reports_the_absorbing_paddles() {
-    let absorbers = |end: &str| {
-        let BuiltScene { setup, plan, initial_water, .. } = built(end).unwrap();
-        preflight::preflight(&Simulation::new(setup).unwrap(), &plan, initial_water, &[]).absorbers
-    };
+    let absorbers = |end: &str| common::preflight_report(&scene(end).unwrap()).absorbers;
     assert!(absorbers("fixed = true").is_empty());
     let own = &absorbers(ABSORBER)[0];
     // The gauge stands one support radius before the face: 2 · 2 dp.

@@ -5,11 +5,10 @@ use std::{f64::consts::TAU, path::Path};
 use pontoon::{
     Error,
     math::Vector,
-    model::{Dimension, Model, TimeScheme, Viscosity},
-    preflight::{self, Finding, GeneratedWave, Preflight},
+    model::{Model, TimeScheme, Viscosity},
+    preflight::{Finding, GeneratedWave, Preflight},
     scene::{BuiltScene, DrivenConfig, ProbeConfig, Scene, ShapeConfig, SolidConfig, SpongeLayerConfig, WaveConfig},
     simulation::{Setup, Simulation},
-    solid::Dim,
     system::SpongeLayer,
     wavemaker::TheoryRegion,
 };
@@ -50,16 +49,12 @@ fn built(text: &str) -> Result<BuiltScene<2>, Error> {
     Scene::parse(text, Path::new(""), &[])?.build()
 }
 
-fn preflight_report<const D: usize>(built: BuiltScene<D>) -> Preflight
-where
-    Dim<D>: Dimension<D>,
-{
-    let BuiltScene { setup, plan, initial_water, .. } = built;
-    preflight::preflight(&Simulation::new(setup).unwrap(), &plan, initial_water, &[])
+fn report_of(text: &str) -> Preflight {
+    common::preflight_report(&Scene::parse(text, Path::new(""), &[]).unwrap())
 }
 
 fn report(driven: &str) -> Preflight {
-    preflight_report(built(&flume(driven)).unwrap())
+    report_of(&flume(driven))
 }
 
 fn wave(driven: &str) -> GeneratedWave {
@@ -75,7 +70,7 @@ fn number(text: &str, key: &str) -> f64 {
 
 /// The finding of this topic about a scene, if any.
 fn finding(text: &str, topic: &str) -> Option<Finding> {
-    preflight_report(built(text).unwrap()).findings.into_iter().find(|f| f.topic == topic)
+    report_of(text).findings.into_iter().find(|f| f.topic == topic)
 }
 
 #[test]
@@ -146,7 +141,7 @@ fn a_wave_built_in_rust_equals_the_same_wave_of_a_scene() {
     let flap = paddle(DrivenConfig::flap([0.0, -0.1], WaveConfig::jonswap(0.06, 1.4, 7)))
         .damping(SpongeLayerConfig::between([4.0, 0.0], [5.0, 0.0]))
         .probe(ProbeConfig::motion("paddle"));
-    assert_eq!(preflight_report(flap.build::<2>().unwrap()).waves[0].kind, Some("sea"));
+    assert_eq!(common::preflight_report(&flap).waves[0].kind, Some("sea"));
 }
 
 #[test]
@@ -194,7 +189,7 @@ fn a_finding_about_a_wave_contains_the_value_that_removes_it() {
     let sea = "along = [1.0, 0.0], wave = { jonswap = { height = 0.12, peak_period = 1.2 } }";
     assert!(topics(sea).contains(&"breaking_waves"));
     let low = flume(PISTON).replace("size = [0.1, 0.6] }", "size = [0.1, 0.33] }");
-    assert!(preflight_report(built(&low).unwrap()).findings.iter().any(|f| f.topic == "overtopped_paddle"));
+    assert!(report_of(&low).findings.iter().any(|f| f.topic == "overtopped_paddle"));
 }
 
 #[test]
@@ -249,7 +244,7 @@ fn a_paddle_placed_or_sized_against_wavemaker_theory_is_a_finding() {
 fn the_motion_of_a_paddle_does_not_depend_on_the_end_of_the_run() {
     let short = |driven: &str| {
         let text = flume(driven).replacen("until     = 6.0", "until     = 0.3", 1);
-        preflight_report(built(&text).unwrap()).waves.remove(0)
+        report_of(&text).waves.remove(0)
     };
     let solitary = "along = [1.0, 0.0], wave = { solitary = { height = 0.1 } }";
     for driven in [PISTON, solitary] {
@@ -268,7 +263,7 @@ fn the_first_reflection_comes_from_the_nearest_obstacle() {
             "\n[[solid]]\nname = \"wall\"\nfixed = true\nshape = {{ box = {{ size = [0.1, {height:?}] }} }}\n\
              at = {{ x = 2.05, bottom = 0.1 }}\n\n[[damping]]\nfrom = [1.5, 0.0]\nto = [4.0, 0.0]\n"
         );
-        preflight_report(built(&format!("{FLUME}{wall}")).unwrap()).waves.remove(0)
+        report_of(&format!("{FLUME}{wall}")).waves.remove(0)
     };
     let first = wall(0.4);
     assert!(first.answers.as_deref() == Some("wall") && (first.reach_m - 2.0).abs() < 1e-6, "{first:?}");

@@ -1,7 +1,7 @@
 use super::*;
 use crate::{
     geometry::Shape,
-    model::{Dimension, Model},
+    model::{HasPairLoop as _, Model},
     ranks::Ranks,
     solid::{Dim, LineEnd, LineType, MooringSpec, SolidSpec},
     system::{Setup, spread_impulses},

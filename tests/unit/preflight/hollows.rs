@@ -3,10 +3,9 @@
 use std::path::Path;
 
 use crate::{
-    model::Dimension,
     preflight::{BodySummary, Preflight, preflight},
     scene::{BuiltScene, Scene},
-    simulation::Simulation,
+    simulation::{Dimension, Simulation},
     solid::Dim,
 };
 
