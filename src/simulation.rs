@@ -2,6 +2,7 @@
 
 mod accounting;
 mod add_remove;
+mod change_by_hand;
 mod dimension;
 mod external_bodies;
 #[cfg(feature = "gpu")]
@@ -23,11 +24,10 @@ pub use crate::system::{
 pub(crate) use constraints::find_by_name;
 pub use rollback::Rollback;
 
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 pub use add_remove::AddedSolid;
-use dimension::Field;
+use dimension::OwnPairLoop;
 pub use dimension::{Compiled, Dimension};
 #[cfg(feature = "gpu")]
 use on_device::OnDevice;
@@ -153,12 +153,7 @@ impl<const D: usize> Simulation<D> {
     }
 
     /// Sets up a simulation whose free solids the engine moves, or an `external` program, with its own pair loop or that of the model.
-    fn with_bodies(
-        mut setup: Setup<D>,
-        pair_loop: Option<Box<dyn PairLoop<D>>>,
-        external: bool,
-        ranks: &Ranks,
-    ) -> Result<Self>
+    fn with_bodies(mut setup: Setup<D>, pair_loop: OwnPairLoop<D>, external: bool, ranks: &Ranks) -> Result<Self>
     where
         Dim<D>: Dimension<D>,
     {
@@ -538,46 +533,14 @@ impl<const D: usize> Simulation<D> {
         (self.compiled.set_velocity)(self, solid, velocity, spin);
     }
 
-    fn assign_velocity(&mut self, solid: usize, velocity: &Vector<D>, spin: &Bivector<D>) {
-        if let Some(engine) = self.bodies.engine_mut() {
-            engine.set_velocity(solid, velocity, spin);
-            let kinematics = &mut self.system.solids[solid].kinematics;
-            (kinematics.velocity, kinematics.spin) = (*velocity, *spin);
-            self.system.place_boundary(solid);
-            self.note_change_by_hand();
-        }
-    }
-
-    /// The state was changed by hand: a device gets it before the next step.
-    fn note_change_by_hand(&mut self) {
-        #[cfg(feature = "gpu")]
-        if let Some(own) = &mut self.device {
-            own.host_changed = true;
-        }
-    }
-
     /// Gives each water particle the velocity (m/s) that `field` says for its place (m).
     pub fn set_water_velocity(&mut self, field: impl Fn(&Vector<D>) -> Vector<D> + Sync) {
         (self.compiled.set_water_velocity)(self, &field);
     }
 
-    fn assign_water_velocity(&mut self, field: Field<D, Vector<D>>) {
-        let fluid = &mut self.system.fluid.particles;
-        fluid.v.par_iter_mut().zip(&fluid.r).for_each(|(v, r)| *v = field(r));
-        self.system.fluid.update_reflected_images();
-        self.note_change_by_hand();
-    }
-
     /// Gives each water particle the density (kg/m³) that `field` says for its place (m).
     pub fn set_water_density(&mut self, field: impl Fn(&Vector<D>) -> f64 + Sync) {
         (self.compiled.set_water_density)(self, &field);
-    }
-
-    fn assign_water_density(&mut self, field: Field<D, f64>) {
-        let fluid = &mut self.system.fluid.particles;
-        fluid.rho.par_iter_mut().zip(&fluid.r).for_each(|(rho, r)| *rho = field(r));
-        self.system.fluid.update_reflected_images();
-        self.note_change_by_hand();
     }
 
     /// Contact forces in the last step, pair by pair.

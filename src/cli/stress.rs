@@ -3,7 +3,7 @@
 use std::{path::PathBuf, sync::atomic::Ordering};
 
 use crate::{
-    error::{Error, ErrorKind, Result},
+    error::Result,
     math::format::duration,
     study::stress::{CaseOutcome, CaseResult, StressMap, StressResults, maps, select_maps, summary_line},
 };

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::{
-    error::{Error, ErrorKind, Result},
+    error::Result,
     study::{JobState, Validation, ValidationCase, select_cases, validation_cases},
 };
 use clap::Args;

@@ -3,7 +3,7 @@
 //! A program that calls a generic function compiles it anew, with all that it calls: for a simulation that takes a minute. So the
 //! methods of a [`Simulation`] call these functions by pointers. `inline(never)` keeps the table of them out of other crates.
 
-use super::{AddedSolid, Setup, Simulation};
+use super::{AddedSolid, Setup, Simulation, change_by_hand};
 use crate::{
     coupling::Hook,
     error::Result,
@@ -40,11 +40,14 @@ impl Dimension<3> for Dim<3> {
 /// A field: its value at a place, m.
 pub(super) type Field<'a, const D: usize, T> = &'a (dyn Fn(&Vector<D>) -> T + Sync);
 
+/// A pair loop of a program's own terms; `None` for that of the model.
+pub(super) type OwnPairLoop<const D: usize> = Option<Box<dyn PairLoop<D>>>;
+
 /// Functions of a [`Simulation`], by the names of the methods that call them.
 #[doc(hidden)]
 #[derive(Debug)]
 pub struct Compiled<const D: usize> {
-    pub(super) set_up: fn(Setup<D>, Option<Box<dyn PairLoop<D>>>, bool, &Ranks) -> Result<Simulation<D>>,
+    pub(super) set_up: fn(Setup<D>, OwnPairLoop<D>, bool, &Ranks) -> Result<Simulation<D>>,
     pub(super) step_to: fn(&mut Simulation<D>, f64) -> Result<()>,
     pub(super) step_with: fn(&mut Simulation<D>, f64, &mut Hook<D>) -> Result<()>,
     pub(super) gather_water: fn(&mut Simulation<D>, bool),
@@ -70,9 +73,9 @@ where
         step_with: Simulation::make_step_with,
         gather_water: Simulation::complete_water,
         update_rates: Simulation::compute_rates,
-        set_velocity: Simulation::assign_velocity,
-        set_water_velocity: Simulation::assign_water_velocity,
-        set_water_density: Simulation::assign_water_density,
+        set_velocity: change_by_hand::set_velocity,
+        set_water_velocity: change_by_hand::set_water_velocity,
+        set_water_density: change_by_hand::set_water_density,
         account: Simulation::begin_accounting,
         add_solid: Simulation::put_in_solid,
         remove_solid: Simulation::take_out_solid,
