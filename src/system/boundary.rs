@@ -53,7 +53,7 @@ pub(crate) struct Boundary<const D: usize> {
     /// The films of water between solids.
     pub(super) films: Films<D>,
     /// The parts thinner than dp.
-    pub(super) thin: ThinLayers,
+    pub(super) thin: ThinLayers<D>,
     /// Poses of the solids when the neighbour lists were built; `None` if they must be built anew.
     pub(super) poses_at_rebuild: Option<Vec<Pose<D>>>,
     /// Whether a device has the particles: the host places none.

@@ -7,7 +7,8 @@
 //!   P*_i = Σ_j P*_j / |x_i − x_j|ᴰ⁻¹ / Σ_j 1 / |x_i − x_j|ᴰ⁻¹,   p_i = max(0, P*_i + ρ₀ g·x_i),
 //!
 //! over the particles j at the rim, is this function exactly for a strip (D = 2) and for a disc (D = 3, Poisson's integral).
-//! Rims in air have p = 0. The film presses on the face of each boundary particle, dpᴰ⁻¹ in size, along the normal of the other
+//! Rims in air have p = 0, also where the particles there see the water on the other side of a film of few rows, and a film of one row
+//! has the mean of its two sides. The film presses on the face of each boundary particle, dpᴰ⁻¹ in size, along the normal of the other
 //! solid, and on the other solid with the opposite force at the same place. It fades where water flows in: over gaps of half a dp to
 //! one, and where the water is.
 //!
@@ -42,20 +43,49 @@ const ONE_SIDED: f64 = 0.25;
 /// Distance from a rim, away from the film, at which water or air must have room, dp.
 const OUTSIDE: f64 = 1.25;
 
+/// Where the rim of a film is.
+#[derive(Clone, Copy)]
+enum Rim<const D: usize> {
+    /// Not at this particle.
+    Elsewhere,
+    /// At this particle, towards this unit vector.
+    Towards(Vector<D>),
+    /// All around this particle, which is alone between faces with this unit normal.
+    Around(Vector<D>),
+}
+
+impl<const D: usize> Rim<D> {
+    /// Share (–) of the pressure of the water near the particle that the rim has, with the unit vector `away` from that water: none
+    /// where the water is on the other side of the film, a half where it is on one side of a particle alone.
+    fn share(&self, away: &Vector<D>) -> f64 {
+        match self {
+            Self::Elsewhere => 1.0,
+            Self::Towards(outwards) => (1.0 - 2.0 * away.dot(outwards)).clamp(0.0, 1.0),
+            Self::Around(normal) => 1.0 - (away - normal * normal.dot(away)).norm().min(0.5),
+        }
+    }
+}
+
 /// A boundary particle of a free solid whose face looks at the other solid across a narrow gap.
-struct FilmParticle {
+struct FilmParticle<const D: usize> {
     /// Its index.
     boundary: u32,
     /// Its place among the boundary particles near water, if it is one of them.
     near_water: Option<u32>,
-    at_rim: bool,
+    rim: Rim<D>,
+}
+
+impl<const D: usize> FilmParticle<D> {
+    fn at_rim(&self) -> bool {
+        !matches!(self.rim, Rim::Elsewhere)
+    }
 }
 
 /// One film: a connected part of the gap between two solids.
-struct Film {
+struct Film<const D: usize> {
     solid: usize,
     other: usize,
-    particles: Vec<FilmParticle>,
+    particles: Vec<FilmParticle<D>>,
 }
 
 /// The water near a boundary particle.
@@ -65,13 +95,13 @@ struct WaterNearby<const D: usize> {
     away: Vector<D>,
     /// Weight of the water over that before a flat face under water, –.
     cover: f64,
-    /// Pressure of the water, extrapolated to the particle, P/ρ₀ in m²/s²; 0 without water.
+    /// Pressure of the water, extrapolated to the particle, times [`Rim::share`], P/ρ₀ in m²/s²; 0 without water.
     pressure: f64,
 }
 
 /// The films between all solids.
 pub(super) struct Films<const D: usize> {
-    films: Vec<Film>,
+    films: Vec<Film<D>>,
     /// The water near each particle of each film at the last force pass.
     water: Vec<Vec<WaterNearby<D>>>,
     /// Whether walls have the pressure of the water before them.
@@ -106,23 +136,24 @@ pub(super) fn find<const D: usize>(system: &mut System<D>, r: &[Vector<D>]) {
 /// Reads the water near the films from `fits`, one for each boundary particle near water.
 pub(super) fn update_water<const D: usize>(system: &mut System<D>, fits: &[WallExtrapolation<f64, D>]) {
     let depths = system.boundary.depths.as_deref().unwrap_or_default();
-    let of = |solid: usize, particle: &FilmParticle| {
+    let of = |solid: usize, particle: &FilmParticle<D>| {
         let Some(place) = particle.near_water else {
             return WaterNearby { away: Vector::zeros(), cover: 0.0, pressure: 0.0 };
         };
         let (fit, i) = (&fits[place as usize], particle.boundary as usize);
+        let away = fit.direction().into();
         WaterNearby {
-            away: fit.direction().into(),
+            away,
             cover: system.boundary.coverage.cover(fit.weight_sum, depths[i]).share,
-            pressure: system.extrapolated_pressure(fit, solid, i).max(0.0),
+            pressure: system.extrapolated_pressure(fit, solid, i).max(0.0) * particle.rim.share(&away),
         }
     };
-    let of_film = |film: &Film| film.particles.iter().map(|particle| of(film.solid, particle)).collect();
+    let of_film = |film: &Film<D>| film.particles.iter().map(|particle| of(film.solid, particle)).collect();
     system.boundary.films.water = system.boundary.films.films.iter().map(of_film).collect();
 }
 
 /// The films between free solid `i` and solid `j`.
-fn films_between<const D: usize>(system: &System<D>, i: usize, j: usize, r: &[Vector<D>]) -> Vec<Film> {
+fn films_between<const D: usize>(system: &System<D>, i: usize, j: usize, r: &[Vector<D>]) -> Vec<Film<D>> {
     let (dp, Some(poses)) = (system.model.dp, &system.boundary.poses_at_rebuild) else { return Vec::new() };
     let (solid, other) = (&system.solids[i], &system.solids[j]);
     let reach = FADING[1] * dp + 2.0 * system.neighbours.margin();
@@ -140,12 +171,13 @@ fn films_between<const D: usize>(system: &System<D>, i: usize, j: usize, r: &[Ve
         return Vec::new();
     }
     let depths = system.boundary.depths.as_deref().unwrap_or_default();
+    let normal = |x: &Vector<D>| other_pose.rotation * other.spec.shape.outward_normal(&to_other(x), 0.05 * dp);
     let faces_other = |b: &usize| {
         let x = &r[*b];
         if depths[*b] > FIRST_ROW * dp || distance(x) > reach + depths[*b] {
             return false;
         }
-        let normal = other_pose.rotation * other.spec.shape.outward_normal(&to_other(x), 0.05 * dp);
+        let normal = normal(x);
         solid.spec.shape.signed_distance(&pose.local(&(x - normal * (FIRST_ROW * dp)))) > 0.0
     };
     let range = system.home_boundary_at(i, &poses[i]);
@@ -163,20 +195,23 @@ fn films_between<const D: usize>(system: &System<D>, i: usize, j: usize, r: &[Ve
         near
     };
     let around: Vec<Vec<usize>> = (0..points.len()).map(neighbours).collect();
-    let at_rim = |k: usize| {
+    let rim = |k: usize| {
         let arms = around[k].iter().map(|&m| points[k] - points[m]);
         let (sum, length) = arms.fold((Vector::zeros(), 0.0), |(sum, length), arm| (sum + arm, length + arm.norm()));
         let outwards: Option<Vector<D>> = sum.try_normalize(ONE_SIDED * length);
         match outwards {
-            None => around[k].is_empty(),
-            Some(outwards) => has_room(system, &(points[k] + outwards * (OUTSIDE * dp)), poses),
+            None if around[k].is_empty() => Rim::Around(normal(&points[k])),
+            Some(outwards) if has_room(system, &(points[k] + outwards * (OUTSIDE * dp)), poses) => {
+                Rim::Towards(outwards)
+            }
+            _ => Rim::Elsewhere,
         }
     };
     let wet = system.neighbours.boundary_near_fluid();
     let particle = |k: usize| FilmParticle {
         boundary: found[k] as u32,
         near_water: wet.binary_search(&(found[k] as u32)).ok().map(|place| place as u32),
-        at_rim: at_rim(k),
+        rim: rim(k),
     };
     let connected = connected_parts(&around).into_iter();
     let film = |part: Vec<usize>| Film { solid: i, other: j, particles: part.into_iter().map(particle).collect() };
@@ -213,14 +248,14 @@ pub(crate) fn loads<const D: usize>(system: &System<D>) -> Vec<Load<D>> {
 /// The forces (N; N/m in 2-D) of `film` on its solid, with the place (m) of each on the solid and on the other one.
 fn forces<const D: usize>(
     system: &System<D>,
-    film: &Film,
+    film: &Film<D>,
     water: &[WaterNearby<D>],
 ) -> Vec<([Vector<D>; 2], Vector<D>)> {
     let (dp, rho0, gravity) = (system.model.dp, system.properties.rho0, system.properties.gravity);
     let (solid, other) = (&system.solids[film.solid], &system.solids[film.other]);
     let Boundary { particles, depths, .. } = &system.boundary;
     let depths = depths.as_deref().unwrap_or_default();
-    let rim = film.particles.iter().zip(water).filter(|(particle, _)| particle.at_rim);
+    let rim = film.particles.iter().zip(water).filter(|(particle, _)| particle.at_rim());
     let rim: Vec<(Vector<D>, f64)> =
         rim.map(|(particle, water)| (particles.r[particle.boundary as usize], water.pressure)).collect();
     // The head at which air stays out of the film, from the part of the rim that is in water.
@@ -240,7 +275,7 @@ fn forces<const D: usize>(
     };
     let spread = dp * film.particles.len() as f64 / rim.len() as f64;
     let pose = system.home_pose(film.other);
-    let force = |(particle, water): (&FilmParticle, &WaterNearby<D>)| {
+    let force = |(particle, water): (&FilmParticle<D>, &WaterNearby<D>)| {
         let i = particle.boundary as usize;
         let x = particles.r[i];
         let at_home = system.fluid.images.wrapped(&x);
@@ -254,7 +289,7 @@ fn forces<const D: usize>(
         let on_solid = system.place_on_solid(film.solid, i);
         let inflow = (velocity_at(solid, &on_solid) - velocity_at(other, &on_other)).dot(&normal).max(0.0) * spread
             / gap.max(FADING[0] * dp);
-        let still = if particle.at_rim { water.pressure } else { inside(&x) };
+        let still = if particle.at_rim() { water.pressure } else { inside(&x) };
         let pressure = (still - 0.5 * inflow * inflow).max(0.0);
         let size = dp.powi(D as i32 - 1);
         ([on_solid, on_other], normal * (rho0 * pressure * share * size))

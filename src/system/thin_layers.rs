@@ -5,10 +5,14 @@
 //! as far as water is around: by the weight of the water over that on both sides of a layer under water. So a plate has half of it
 //! with water on one side, and nothing in air. Only the buoyancy in water at rest is corrected; the added mass of a plate hardly
 //! depends on its thickness.
+//!
+//! Across the faces of a layer this is the pressure at the places of the faces; along them it is what the pressure on the lower end of
+//! the layer has in excess over that on the upper end. Where a fixed or driven part stands on another such solid there is no water
+//! below its end: the part along the faces is then a load of what it stands on, whose face the layer covers.
 
 use super::System;
 use crate::{
-    geometry::{Shape, thin::thin_place},
+    geometry::{Shape, cells::PointCells, thin::thin_place},
     math::Vector,
     model::{Model, Walls},
     solid::{Load, Solid},
@@ -17,25 +21,51 @@ use crate::{
 /// Depth of a particle below its face, dp, from which on its part is not thinner than dp.
 const THICK: f64 = 0.499;
 
+/// Distance between neighbours in a layer, dp: along the axes and the diagonals of its faces.
+const NEIGHBOURS: f64 = 1.6;
+
+/// Step of the search for the end of a part, and where it is given up, dp.
+const SEARCH: [f64; 2] = [0.05, 1.5];
+
+/// Slope of a layer, –, up to which it has no lower end.
+const LEVEL: f64 = 1e-3;
+
+/// Gap below the end of a part from which on water is below it, dp.
+const OPEN: f64 = 0.25;
+
 /// A boundary particle in the middle of a thin part.
-#[derive(Clone, Copy)]
-struct ThinParticle {
+struct ThinParticle<const D: usize> {
     /// Its place among the particles of a copy of its solid.
     place: u32,
     /// Volume (m³; m² in 2-D) for which the water makes way in excess.
     excess: f64,
+    /// Outward unit normal of one of its faces, in the frame of its solid.
+    normal: Vector<D>,
+    /// Places in this list of those next to it.
+    beside: Vec<u32>,
+}
+
+/// What a part stands on.
+#[derive(Clone, Copy)]
+struct Foot<const D: usize> {
+    /// Number of the solid below.
+    on: usize,
+    /// Place (m) of the end of the part on that solid.
+    at: Vector<D>,
+    /// Share of the end without water below it, –.
+    closed: f64,
 }
 
 /// The boundary particles in the middle of thin parts.
-pub(super) struct ThinLayers {
-    of_solid: Vec<Vec<ThinParticle>>,
+pub(super) struct ThinLayers<const D: usize> {
+    of_solid: Vec<Vec<ThinParticle<D>>>,
     /// Share of the surroundings that is water, of each particle of each copy, at the last force pass.
     wet: Vec<f64>,
     /// Whether walls have the weight of the water before them.
     possible: bool,
 }
 
-impl ThinLayers {
+impl<const D: usize> ThinLayers<D> {
     pub(super) fn new(model: &Model) -> Self {
         Self { of_solid: Vec::new(), wet: Vec::new(), possible: model.walls == Walls::RelaxedAdami }
     }
@@ -46,13 +76,25 @@ impl ThinLayers {
     }
 
     /// Adds a solid of this `shape` with boundary particles at `places` (m, in its frame), `depths` (m) below its face.
-    pub(super) fn append<const D: usize>(&mut self, shape: &Shape<D>, places: &[Vector<D>], depths: &[f64], dp: f64) {
+    pub(super) fn append(&mut self, shape: &Shape<D>, places: &[Vector<D>], depths: &[f64], dp: f64) {
         let thin = |(place, (x, depth)): (usize, (&Vector<D>, &f64))| {
             let candidate = self.possible && *depth < THICK * dp;
             let found = candidate.then(|| thin_place(shape, x, dp, 1e-3 * dp)).flatten()?;
-            Some(ThinParticle { place: place as u32, excess: (dp - found.thickness) * dp.powi(D as i32 - 1) })
+            let excess = (dp - found.thickness) * dp.powi(D as i32 - 1);
+            Some(ThinParticle { place: place as u32, excess, normal: found.normal, beside: Vec::new() })
         };
-        let found = places.iter().zip(depths).enumerate().filter_map(thin).collect();
+        let mut found: Vec<_> = places.iter().zip(depths).enumerate().filter_map(thin).collect();
+        let points: Vec<_> = found.iter().map(|particle| places[particle.place as usize]).collect();
+        let cells = PointCells::new(&points, NEIGHBOURS * dp);
+        for (k, particle) in found.iter_mut().enumerate() {
+            let near = |x: &Vector<D>| (x - points[k]).norm() < NEIGHBOURS * dp;
+            cells.visit_near(&points[k], NEIGHBOURS * dp, |m, x| {
+                if m != k && near(x) {
+                    particle.beside.push(m as u32);
+                }
+            });
+            particle.beside.sort_unstable();
+        }
         self.of_solid.push(found);
     }
 
@@ -64,19 +106,23 @@ impl ThinLayers {
         self.wet.clear();
     }
 
-    /// Number of the solid, index and excess volume of each particle of each copy.
-    fn each<'a, const D: usize>(&'a self, solids: &'a [Solid<D>]) -> impl Iterator<Item = (usize, usize, f64)> + 'a {
+    /// Number of the solid, first boundary particle and thin particles of each copy.
+    fn each<'a>(&'a self, solids: &'a [Solid<D>]) -> impl Iterator<Item = (usize, usize, &'a [ThinParticle<D>])> + 'a {
         self.of_solid.iter().zip(solids).enumerate().flat_map(|(number, (particles, solid))| {
-            let starts = (0..solid.copies()).map(|copy| solid.boundary_of_copy(copy).start);
-            starts.flat_map(move |start| particles.iter().map(move |p| (number, start + p.place as usize, p.excess)))
+            (0..solid.copies()).map(move |copy| (number, solid.boundary_of_copy(copy).start, &particles[..]))
         })
+    }
+
+    /// Indices of all thin particles.
+    fn indices<'a>(&'a self, solids: &'a [Solid<D>]) -> impl Iterator<Item = usize> + 'a {
+        self.each(solids).flat_map(|(_, start, particles)| particles.iter().map(move |p| start + p.place as usize))
     }
 }
 
 /// The boundary particles in the middle of thin parts.
 #[cfg(feature = "gpu")]
 pub(super) fn particles<const D: usize>(system: &System<D>) -> impl Iterator<Item = u32> + '_ {
-    system.boundary.thin.each(&system.solids).map(|(_, i, _)| i as u32)
+    system.boundary.thin.indices(&system.solids).map(|i| i as u32)
 }
 
 /// Reads the water around the thin parts from the `weight` (–) of that around a boundary particle, if there is any.
@@ -84,7 +130,7 @@ pub(super) fn update_water<const D: usize>(system: &mut System<D>, weight: impl 
     let thin = &system.boundary.thin;
     let both_sides = 2.0 * system.boundary.coverage.full_weight(0.5 * system.model.dp);
     let share = |i: usize| weight(system, i as u32).map_or(0.0, |weight| (weight / both_sides).min(1.0));
-    let wet = thin.each(&system.solids).map(|(_, i, _)| share(i)).collect();
+    let wet = thin.indices(&system.solids).map(share).collect();
     system.boundary.thin.wet = wet;
 }
 
@@ -96,12 +142,89 @@ pub(super) fn loads<const D: usize>(system: &System<D>) -> Vec<Load<D>> {
     }
     let weight = system.properties.gravity * system.properties.rho0;
     let mut loads = vec![Load::zero(); system.solids.len()];
-    for ((number, i, excess), wet) in thin.each(&system.solids).zip(&thin.wet) {
-        let (solid, r) = (&system.solids[number], &system.boundary.particles.r[i]);
-        if system.is_between_sides(r) {
+    let mut wet = thin.wet.iter();
+    for (number, start, particles) in thin.each(&system.solids) {
+        let (solid, feet) = (&system.solids[number], feet(system, number, start, particles));
+        for ((k, particle), wet) in particles.iter().enumerate().zip(&mut wet) {
+            let i = start + particle.place as usize;
+            let r = &system.boundary.particles.r[i];
+            if !system.is_between_sides(r) {
+                continue;
+            }
             let arm = system.place_on_solid(number, i) - solid.kinematics.centre;
-            loads[number] += Load::from_force_at(&arm, weight * (excess * wet * system.computed_share(solid, r)));
+            let force = weight * (particle.excess * wet * system.computed_share(solid, r));
+            loads[number] += Load::from_force_at(&arm, force);
+            if let Some(Foot { on, at, closed }) = feet.get(k).copied().flatten() {
+                let along = along_faces(&force, solid, particle) * closed;
+                loads[number] += Load::from_force_at(&arm, -along);
+                loads[on] += Load::from_force_at(&(at - system.solids[on].kinematics.centre), along);
+            }
         }
     }
     loads
+}
+
+/// The part of `x` along the faces beside `particle` of `solid`.
+fn along_faces<const D: usize>(x: &Vector<D>, solid: &Solid<D>, particle: &ThinParticle<D>) -> Vector<D> {
+    let normal = solid.kinematics.pose.rotation * particle.normal;
+    x - normal * normal.dot(x)
+}
+
+/// What each of the `particles` of solid number `number`, whose boundary particles begin at `start`, stands on; an empty list if
+/// nothing does. A film presses on the foot of a free body.
+fn feet<const D: usize>(
+    system: &System<D>,
+    number: usize,
+    start: usize,
+    particles: &[ThinParticle<D>],
+) -> Vec<Option<Foot<D>>> {
+    let (solid, gravity) = (&system.solids[number], system.properties.gravity);
+    if solid.is_free() {
+        return Vec::new();
+    }
+    let r = |k: usize| &system.boundary.particles.r[start + particles[k].place as usize];
+    let drop: Vec<f64> = (0..particles.len()).map(|k| gravity.dot(r(k))).collect();
+    let mut downwards: Vec<usize> = (0..particles.len()).collect();
+    downwards.sort_by(|&a, &b| drop[b].total_cmp(&drop[a]));
+    let mut feet = vec![None; particles.len()];
+    // The lowest come first: each has the foot of its lowest neighbour.
+    for k in downwards {
+        let beside = particles[k].beside.iter().map(|&m| m as usize);
+        let lowest = beside.max_by(|&a, &b| drop[a].total_cmp(&drop[b])).filter(|&m| drop[m] > drop[k]);
+        feet[k] = lowest.map_or_else(|| foot(system, number, start, &particles[k]), |m| feet[m]);
+    }
+    feet
+}
+
+/// What the lowest particle of a thin part of solid number `number` stands on.
+fn foot<const D: usize>(
+    system: &System<D>,
+    number: usize,
+    start: usize,
+    particle: &ThinParticle<D>,
+) -> Option<Foot<D>> {
+    let (solid, dp) = (&system.solids[number], system.model.dp);
+    let gravity = system.properties.gravity;
+    let down: Vector<D> = along_faces(&gravity, solid, particle).try_normalize(LEVEL * gravity.norm())?;
+    let x = system.boundary.particles.r[start + particle.place as usize];
+    let on_solid = system.place_on_solid(number, start + particle.place as usize);
+    let is_outside = |way: &f64| {
+        let local = solid.kinematics.pose.local(&(on_solid + down * *way));
+        solid.spec.shape.signed_distance(&local) > 0.0
+    };
+    let [step, most] = SEARCH.map(|x| x * dp);
+    let way = (1..=(most / step) as usize).map(|n| n as f64 * step).find(is_outside)?;
+    let end = system.fluid.images.wrapped(&(x + down * way));
+    let below = |(on, other): (usize, &Solid<D>)| {
+        let pose = system.home_pose(on);
+        let local = pose.local(&end);
+        if on == number || other.is_free() || !system.boundary.local_bounds[on].grown(dp).contains(&local) {
+            return None;
+        }
+        let gap = other.spec.shape.signed_distance(&local);
+        let closed = (1.0 - gap / (OPEN * dp)).clamp(0.0, 1.0);
+        (closed > 0.0).then(|| Foot { on, at: end + other.kinematics.pose.position - pose.position, closed })
+    };
+    let feet = system.solids.iter().enumerate().filter_map(below);
+    feet.max_by(|a, b| a.closed.total_cmp(&b.closed))
 }

@@ -107,3 +107,54 @@ free = { density = 500.0, locked = ["x", "turn"] }
     assert!((rest - start).abs() < 0.5 * 0.01, "it moves by {} m", rest - start);
     Ok(())
 }
+
+/// A plate 0.6 m high and `thickness` (m) thick on the bed of a tank, with water `depths` (m) deep on its left and right, dp = 20 mm.
+fn standing(role: &str, thickness: f64, depths: [f64; 2]) -> String {
+    let sides = [[0.0, 0.41, depths[0]], [0.41, 0.82, depths[1]]];
+    let water = sides.iter().filter(|side| side[2] > 0.0).map(|[from, to, depth]| {
+        format!("[[water]]\nfill = {{ box = {{ min = [{from}, 0.0], max = [{to}, {depth}] }} }}\n")
+    });
+    format!(
+        r#"dimension = 2
+dp = 0.02
+until = 1.5
+{}
+[[solid]]
+name = "tank"
+fixed = true
+shape = {{ tank = {{ size = [0.82, 0.7] }} }}
+[[solid]]
+name = "plate"
+shape = {{ box = {{ size = [{thickness}, 0.6] }} }}
+at = {{ x = 0.41, y = 0.3 }}
+{role}
+"#,
+        water.collect::<String>()
+    )
+}
+
+/// Its faces are upright and nothing is below its foot: no vertical force. Bound: 3 % of what presses on its faces, because rows of
+/// water at rest hold to the rows of boundary particles beside them. The buoyancy of its layer, with nothing below the foot, would be
+/// 38 to 49 N/m with water on one side, 55 to 71 N/m on both. Along x ½ ρ g (d₁² − d₂²) holds within half a dp of each depth.
+#[test]
+fn a_thin_plate_on_the_bed_has_no_vertical_force() -> Result<()> {
+    let fixed = "fixed = true";
+    let driven = r#"driven = { along = [1.0, 0.0], distance = { formula = "1e-6*(1-cos(t))" } }"#;
+    for (role, thickness, depths) in [
+        (fixed, 0.002, [0.4, 0.0]),
+        (fixed, 0.006, [0.4, 0.0]),
+        (fixed, 0.006, [0.4, 0.2]),
+        (fixed, 0.006, [0.4, 0.4]),
+        (driven, 0.006, [0.4, 0.0]),
+    ] {
+        let [left, right] = depths;
+        let force = mean_force::<2>(&standing(role, thickness, depths), 0.7, 1.5)?;
+        let (exact, bound) =
+            (0.5 * 1000.0 * G * (left * left - right * right), 1000.0 * G * 0.5 * 0.02 * (left + right));
+        let friction = 0.03 * 0.5 * 1000.0 * G * (left * left + right * right);
+        println!("{thickness} m, {depths:?}: {} N/m of {exact}, upwards {}", force[0], force[1]);
+        assert!((force[0] - exact).abs() < bound, "{thickness} m, {depths:?}: {} N/m, exact {exact} N/m", force[0]);
+        assert!(force[1].abs() < friction, "{thickness} m, {depths:?}: {} N/m upwards", force[1]);
+    }
+    Ok(())
+}
