@@ -97,7 +97,7 @@ fn a_disc_driven_in_sway_meets_the_added_mass_and_damping_of_linear_theory() -> 
 }
 
 /// A box of 0.2 m × 0.1 m, half immersed in 0.3 m of water, driven by `law`: its loads (s; N/m, N/m, N m/m) over three periods of
-/// `omega` (rad/s). The front of its waves is back from the walls at 3.5 s.
+/// `omega` (rad/s). The waves of that period are back from the walls at 3.5 s, long ones of the start sooner.
 fn driven_box(law: &str, omega: f64) -> Result<Vec<(f64, [f64; 3])>> {
     let scene = format!(
         r#"dimension = 2
@@ -141,10 +141,11 @@ fn a_box_driven_in_sway_meets_the_added_mass_and_damping_of_linear_theory() -> R
     let law = format!("along = [1.0, 0.0], distance = {{ formula = \"{amplitude}*min(t,1)*sin({omega}*t)\" }}");
     let samples = driven_box(&law, omega)?;
     let [added_mass, damping] = coefficients(&samples, 0, [amplitude, omega, 0.0]);
-    // Five rows of draft. Potential flow turns round the sharp edges at any speed, which the particles do not: -18 % and +13 %, with dp
-    // = 5 mm -16 % and +10 %. The bounds of the project for a disc, 10 % and 8 %, are missed.
-    assert!((added_mass / 6.592 - 1.0).abs() < 0.2, "added mass {added_mass} kg/m, exact 6.592");
-    assert!((damping / 48.94 - 1.0).abs() < 0.15, "damping {damping} kg/(m s), exact 48.94");
+    // Linear theory of this start in this tank (tests/references/sway_in_a_tank.py 8 0.0025); waves that have gone on for ever in open
+    // water give 6.592 and 48.94. Rows of particles under pressure resist sliding, and the kernel is cut off at the surface: -14 % and
+    // +9 % (record 132). The bounds of the project for a disc, 10 % and 8 %, are missed.
+    assert!((added_mass / 6.290 - 1.0).abs() < 0.16, "added mass {added_mass} kg/m, exact 6.290");
+    assert!((damping / 50.99 - 1.0).abs() < 0.11, "damping {damping} kg/(m s), exact 50.99");
     Ok(())
 }
 
