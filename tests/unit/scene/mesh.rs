@@ -173,6 +173,17 @@ fn binary_files_that_begin_as_text_or_say_a_wrong_number_are_read_or_refused() {
     assert_parts(&refusal("stl", quad.as_bytes(), Completion::default()), &["line 8", "4 corners, not 3"]);
     plain("stl", text.replace('\n', "\r\n").to_uppercase().as_bytes(), 0.008);
     plain("stl", text.replace('\n', " ").replacen("solid a", "solid a\n", 1).as_bytes(), 0.008);
+    // On one line, also with two solids and names of words of the format; with the line ends of old Macintosh computers.
+    plain("stl", text.replace('\n', " ").as_bytes(), 0.008);
+    plain("stl", text.replace('\n', "\r").as_bytes(), 0.008);
+    let other = solid("solid facet of b", &facets([0.5, -0.1, -0.05], [0.7, 0.1, 0.05]));
+    let two = plain("stl", (solid("a", &hull()) + &other).replace('\n', " ").as_bytes(), 0.012);
+    assert_parts(&two, &["its 2 solids are read as one"]);
+    let line = text.replace('\n', " ");
+    assert_parts(&refusal("stl", &line.as_bytes()[..line.len() / 2], Completion::default()), &["cut short"]);
+    let comma = line.replacen("-0.2", "-0,2", 1);
+    assert_parts(&refusal("stl", comma.as_bytes(), Completion::default()), &["comma in place of"]);
+    plain("obj", obj(&[block([-0.2, -0.1, -0.05], [0.2, 0.1, 0.05])]).replace('\n', "\r").as_bytes(), 0.008);
 }
 
 #[test]
