@@ -3,6 +3,8 @@
 mod completion;
 #[cfg(feature = "dim3")]
 mod crossings;
+#[cfg(feature = "dim3")]
+mod exposed;
 mod shells;
 mod surface;
 mod tree;
@@ -31,7 +33,10 @@ pub struct Mesh {
     points: Vec<Vector<3>>,
     facets: Vec<[u32; 3]>,
     bounds: Bounds<3>,
+    /// The facets that bound the solid.
     tree: FacetTree,
+    /// Triangles of the surface, if facets lie back to back, as where parts touch; their common area is no surface.
+    exposed: Option<Vec<[Vector<3>; 3]>>,
 }
 
 /// The geometry of a mesh that other bodies contact. The water always interacts with the mesh itself. Scene key
@@ -70,8 +75,9 @@ impl Mesh {
         Ok(Self::checked(points, facets, 0.0)?.0)
     }
 
-    /// Returns the solid inside a closed surface, and a sentence about crossings of a depth of at most `tolerance` (m).
-    fn checked(points: Vec<Vector<3>>, facets: Vec<[u32; 3]>, tolerance: f64) -> Result<(Self, Option<String>)> {
+    /// Returns the solid inside a closed surface, and sentences about crossings of a depth of at most `tolerance` (m) and facets
+    /// back to back.
+    fn checked(points: Vec<Vector<3>>, facets: Vec<[u32; 3]>, tolerance: f64) -> Result<(Self, Vec<String>)> {
         let volume = moments(&points, &facets).volume;
         let bounds = Bounds::around(&points);
         if volume <= 1e-12 * bounds.size().product() {
@@ -84,13 +90,29 @@ impl Mesh {
             });
         }
         let tree = FacetTree::new(&points, &facets)?;
-        let mesh = Self { points, facets, bounds, tree };
+        let mesh = Self { points, facets, bounds, tree, exposed: None };
         #[cfg(feature = "dim3")]
         let crossings = crossings::check(&mesh, tolerance)?;
         #[cfg(not(feature = "dim3"))]
         let crossings = (tolerance < 0.0).then(String::new);
         shells::check_orientation(&mesh.points, &mesh.facets)?;
-        Ok((mesh, crossings))
+        let sentences: Vec<String> = crossings.into_iter().collect();
+        #[cfg(feature = "dim3")]
+        let (mesh, sentences) = mesh.without_hidden_areas(tolerance, sentences)?;
+        Ok((mesh, sentences))
+    }
+
+    /// Takes the areas where facets lie back to back out of the surface, and adds a sentence about them.
+    #[cfg(feature = "dim3")]
+    fn without_hidden_areas(mut self, overlap: f64, mut sentences: Vec<String>) -> Result<(Self, Vec<String>)> {
+        if let Some(exposed) = exposed::exposed(&self, overlap) {
+            let number = exposed.hidden;
+            sentences
+                .push(format!("{number} facets of parts that touch lie back to back; their common area is no surface"));
+            self.tree = FacetTree::of_triangles(&exposed.triangles, exposed.reach)?;
+            self.exposed = Some(exposed.triangles);
+        }
+        Ok((self, sentences))
     }
 
     /// Returns the corners, m.
@@ -115,10 +137,7 @@ impl Mesh {
 
     /// Returns the area of the surface, m².
     pub(crate) fn surface_area(&self) -> f64 {
-        (0..self.facets.len())
-            .map(|i| self.facet_corners(i))
-            .map(|[a, b, c]| 0.5 * (b - a).cross(&(c - a)).norm())
-            .sum()
+        self.exposed_triangles::<3>().into_iter().map(|[a, b, c]| 0.5 * (b - a).cross(&(c - a)).norm()).sum()
     }
 
     /// Returns the signed distance (m) of `x` (m) from the surface, negative inside, and the unit vector in which the
@@ -137,6 +156,13 @@ impl Mesh {
         all.map(|corners| std::array::from_fn(|i| corner(&corners[i]))).collect()
     }
 
+    /// Returns the triangles of the surface without areas back to back; an empty list in 2-D.
+    pub(super) fn exposed_triangles<const D: usize>(&self) -> Vec<Facet<D>> {
+        let Some(exposed) = self.exposed.as_ref().filter(|_| D == 3) else { return self.triangles() };
+        let corner = |p: &Vector<3>| Vector::from_fn(|i, _| p[i]);
+        exposed.iter().map(|corners| std::array::from_fn(|i| corner(&corners[i]))).collect()
+    }
+
     fn facet_corners(&self, facet: usize) -> [Vector<3>; 3] {
         self.facets[facet].map(|p| self.points[p as usize])
     }
@@ -152,6 +178,12 @@ impl std::fmt::Debug for Mesh {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
         write!(f, "Mesh of {} facets", self.facets.len())
     }
+}
+
+/// Returns the unit normal of a facet, or `None` if the facet has no area.
+#[cfg(feature = "dim3")]
+fn facet_normal([a, b, c]: &[Vector<3>; 3]) -> Option<Vector<3>> {
+    (b - a).cross(&(c - a)).try_normalize(0.0)
 }
 
 /// Returns the signed sum of the tetrahedra between the facets and the mean of all corners.

@@ -91,7 +91,7 @@ fn facets_of_size(shape: &Shape<3>, size: f64) -> Vec<Facet<3>> {
             let high = (0..across).rev().map(|i| (radius * part(i, across), 0.5 * length));
             shape.turned_facets(&low.chain(side).chain(high).collect::<Vec<_>>(), *axis, segments(*radius))
         }
-        _ => shape.facets(),
+        _ => shape.outer_facets(),
     }
 }
 

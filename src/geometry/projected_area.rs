@@ -13,7 +13,7 @@ const OFFSET: f64 = 1e-6;
 pub(crate) fn surface_facets<const D: usize>(shape: &Shape<D>) -> Vec<Facet<D>> {
     exposed_facets(shape, &|part| match part {
         Shape::Ball { radius } => Shape::Capsule { length: 0.0, radius: *radius, axis: D - 1 }.facets(),
-        _ => part.facets(),
+        _ => part.outer_facets(),
     })
 }
 

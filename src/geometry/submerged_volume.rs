@@ -81,6 +81,11 @@ impl<const D: usize> Shape<D> {
         }
     }
 
+    /// Returns the same facets, without the areas of a mesh where two lie back to back.
+    pub(super) fn outer_facets(&self) -> Vec<Facet<D>> {
+        if let Shape::Mesh { mesh, .. } = self { mesh.exposed_triangles() } else { self.facets() }
+    }
+
     /// Returns the facets of a shape of revolution from its profile of (radius, height along `axis`), with `segments`
     /// edges of a circle. The function scales the facets across the axis so that they enclose the exact volume.
     pub(super) fn turned_facets(&self, profile: &[(f64, f64)], axis: usize, segments: usize) -> Vec<Facet<D>> {

@@ -22,6 +22,7 @@ mod run_size;
 mod sound_speed;
 mod wavemaker_site;
 mod driven_motion;
+mod driven_paths;
 mod expected_errors;
 mod face_waves;
 mod thickness;
@@ -227,6 +228,7 @@ pub fn preflight<const D: usize>(
     open_boundaries::check(&look, &mut findings);
     look.check_probes(&sound, &mut findings);
     lifetimes::check(&look, &mut findings);
+    driven_paths::check(&look, &mut findings);
     let (waves, absorbers) = (look.generated_waves(&mut findings), look.absorbers());
     let face_waves = face_waves::face_waves(&look, &mut findings);
     let flows = reynolds::body_flows(&look, &waves, &mut findings);

@@ -9,7 +9,7 @@ use super::{
 use crate::{
     math::{
         Vector,
-        format::{three_digits, two_digits_down, two_digits_up},
+        format::{coordinates, three_digits, two_digits_down, two_digits_up},
     },
     plan::StatisticKind,
     scene::world_bounds,
@@ -25,6 +25,9 @@ const HIGHEST: f64 = 1.86;
 
 /// Share of the run that a ramp may take.
 const RAMP: f64 = 0.5;
+
+/// Distance of a hinge from the box around its flap, over its depth, beyond which the flap's heave is no more small.
+const ASIDE: f64 = 0.1;
 
 /// How far the depth that a wave is made for may be above that of the water, and a period beside that of the paddle.
 const DEEPER: f64 = 0.01;
@@ -74,6 +77,10 @@ impl<const D: usize> PreflightContext<'_, D> {
             let bed = 1e-6 * (1e6 * (level - depth)).round();
             findings.push(Finding::warning("lifted_paddle", what, format!("bottom = {}", three_digits(bed))));
         }
+        if let Paddle::Flap { arm } = law.paddle() {
+            findings.extend(self.open_below(solid, &site, under));
+            findings.extend(hinge_aside(name, motion, &site, arm));
+        }
         if law.depth() > depth * (1.0 + DEEPER) || law.depth() < depth * (1.0 - SHALLOWER) - self.dp() {
             let what = format!(
                 "the wave of \"{name}\" is made for {} m of water, and there are {} m before it",
@@ -82,6 +89,36 @@ impl<const D: usize> PreflightContext<'_, D> {
             );
             findings.push(Finding::warning("wrong_depth", what, format!("wave.depth = {}", three_digits(depth))));
         }
+    }
+
+    /// A flap whose lower edge is `under` (m) above the bed, with more than a dp of open height there: no solid stands below it.
+    fn open_below(&self, flap: &Solid<D>, site: &WavemakerSite<D>, under: f64) -> Option<Finding> {
+        if under <= self.dp() {
+            return None;
+        }
+        let (dp, others) = (self.dp(), || self.solids().iter().filter(|other| !std::ptr::eq(*other, flap)));
+        let bottom = world_bounds(&flap.spec.shape, &flap.kinematics.pose).min[D - 1];
+        let deep = site.thickness();
+        let heights = (under / (0.25 * dp)).round() as usize;
+        let across = (deep / (0.25 * dp)).ceil() as usize;
+        let is_wall = |x: &Vector<D>| {
+            others().any(|other| other.spec.shape.signed_distance(&other.kinematics.pose.local(x)) < 1e-6 * dp)
+        };
+        let is_open = |k: &usize| {
+            let mut x = site.face;
+            x[D - 1] = bottom - (*k as f64 + 0.5) * under / heights as f64;
+            !(0..=across).any(|i| is_wall(&(x - site.direction * (deep * i as f64 / across as f64))))
+        };
+        let open = under / heights as f64 * (0..heights).filter(is_open).count() as f64;
+        (open > dp * (1.0 + 1e-6)).then(|| {
+            let what = format!(
+                "below the flap \"{}\" {} m are open to the bed: water goes under it, and theory is for a flap on a wall",
+                flap.spec.name,
+                three_digits(open)
+            );
+            let mend = "let it reach the bed, or put a fixed solid of its thickness below its hinge".into();
+            Finding::warning("lifted_paddle", what, mend)
+        })
     }
 
     /// A paddle before whose face the water begins further off than half a dp, and a dp for a face between two rows.
@@ -255,4 +292,27 @@ impl<const D: usize> PreflightContext<'_, D> {
             ));
         }
     }
+}
+
+/// A flap with a hinge before or behind it, `arm` (m) below the still level: it also goes up and down.
+fn hinge_aside<const D: usize>(
+    name: &str,
+    motion: &PrescribedMotion<D>,
+    site: &WavemakerSite<D>,
+    arm: f64,
+) -> Option<Finding> {
+    let hinge = motion.hinged()?;
+    let ahead = (hinge - site.face).dot(&site.direction);
+    let aside = ahead.max(-ahead - site.thickness());
+    (aside > ASIDE * arm).then(|| {
+        let mut foot = site.face;
+        foot[D - 1] = hinge[D - 1];
+        let what = format!(
+            "the hinge of the flap \"{name}\" is {} m {} it: the flap goes up and down as it swings, and theory is for a hinge \
+             below its face",
+            three_digits(aside),
+            if ahead > 0.0 { "before" } else { "behind" }
+        );
+        Finding::warning("hinge_aside", what, format!("hinge = {}", coordinates(&foot)))
+    })
 }

@@ -44,6 +44,11 @@ impl<const D: usize> WavemakerSite<D> {
         Self { bounds: *bounds, direction: way, face }
     }
 
+    /// From its back to its face, m.
+    pub(super) fn thickness(&self) -> f64 {
+        support(&self.bounds, &self.direction) + support(&self.bounds, &-self.direction)
+    }
+
     /// How far (m) `x` (m) lies before the face; none if the waves pass beside it.
     pub(super) fn distance_ahead(&self, x: &Vector<D>) -> Option<f64> {
         let off = x - self.face;

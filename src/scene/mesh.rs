@@ -21,7 +21,7 @@ use crate::{
 /// Size of the largest mesh or drawing, B.
 const MOST_BYTES: u64 = 64 << 20;
 
-/// Longest line of a mesh in text, B.
+/// Longest word of a mesh in text, B.
 const LONGEST: usize = 10_000;
 
 /// Largest shift of corners by single precision without a warning, dp.
@@ -139,11 +139,12 @@ fn damaged(path: &Path, why: impl std::fmt::Display) -> Error {
     Error::scene(format!("{} cannot be read: {why}", path.display())).help("export it again; a mesh is STL or OBJ")
 }
 
-/// Returns the text of the file, and a note about its encoding.
+/// Returns the text of the file, without carriage returns as the only line ends, and a note about its encoding.
 fn text(path: &Path, bytes: &[u8]) -> Result<(String, Vec<String>)> {
     let Text { text, encoding } = file_content::decode(bytes);
-    if text.split('\n').any(|line| line.len() > LONGEST) {
-        return Err(damaged(path, format!("it has a line of more than {LONGEST} bytes")));
+    let text = if text.contains('\n') { text } else { text.replace('\r', "\n") };
+    if text.split_ascii_whitespace().any(|word| word.len() > LONGEST) {
+        return Err(damaged(path, format!("it has a word of more than {LONGEST} bytes")));
     }
     Ok((text, encoding.map(|encoding| format!("it is {encoding}")).into_iter().collect()))
 }

@@ -303,6 +303,9 @@ impl Deck {
                 let _ = writeln!(text, "# not taken over: {name} = {value}");
             }
         }
+        for (p, point) in self.points.iter().enumerate() {
+            self.write_left_out(&mut text, p, point);
+        }
         for kind in &self.types {
             self.write_type(&mut text, kind);
         }
@@ -346,6 +349,24 @@ impl Deck {
             let _ = writeln!(text, "length = {length:?}\nline = \"{}\"\nsegments = {segments}", file_name(kind));
         }
         Ok(text)
+    }
+
+    /// Writes what a scene does not take over of point number `p`: all of one without a line, and the body of one that is held.
+    fn write_left_out(&self, text: &mut String, p: usize, point: &DeckPoint) {
+        let DeckPoint { id, attachment, body, .. } = point;
+        if self.lines_at(p) == 0 {
+            let _ = writeln!(text, "# not taken over: point {id}, in which no line ends");
+            return;
+        }
+        if *attachment == Attachment::Free {
+            return;
+        }
+        let given = ["M", "V", "CdA", "CA"].into_iter().zip(body).filter(|(_, x)| **x != 0.0);
+        let given: Vec<String> = given.map(|(name, x)| format!("{name} = {x:?}")).collect();
+        if !given.is_empty() {
+            let whose = if *attachment == Attachment::Coupled { "; add it to the solid" } else { "" };
+            let _ = writeln!(text, "# not taken over: of the {attachment:?} point {id}: {}{whose}", given.join(", "));
+        }
     }
 
     fn write_type(&self, text: &mut String, kind: &DeckType) {

@@ -23,6 +23,12 @@ const UNEVEN: f64 = 0.01;
 const TIME_UNITS: [&str; 15] =
     ["ms", "msec", "us", "µs", "min", "minute", "minutes", "h", "hr", "hrs", "hour", "hours", "d", "day", "days"];
 
+/// Values by which loggers mark missing ones.
+const MISSING: [f64; 6] = [-999.0, -9999.0, -99999.0, 999.0, 9999.0, 99999.0];
+
+/// A marked value is so many times larger than all others.
+const FAR_OFF: f64 = 10.0;
+
 /// The law outside the span of its record.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Outside {
@@ -88,6 +94,7 @@ impl Record<'_> {
         let time = self.table.time_column(&self.time, &self.column);
         let series = self.table.series(time.clone(), self.column.clone())?;
         note_layout(self.ctx, self.key, self.file, &self.table);
+        self.note_missing(&series);
         let unit = self.table.unit(time.clone())?;
         if self.scaling.time_factor == 1.0 {
             let factor = unit.as_deref().filter(|unit| TIME_UNITS.contains(unit)).and_then(table::si_factor);
@@ -113,6 +120,33 @@ impl Record<'_> {
             ));
         }
         Ok(series)
+    }
+
+    /// Adds a warning if samples have a value by which loggers mark missing values, far from all other samples.
+    fn note_missing(&self, series: &TimeSeries) {
+        let values = series.values();
+        let Some(code) = MISSING.into_iter().find(|code| values.contains(code)) else { return };
+        let others = values.iter().filter(|x| **x != code).fold(0.0, |most: f64, x| most.max(x.abs()));
+        let marked: Vec<f64> =
+            series.times().iter().zip(values).filter(|(_, x)| **x == code).map(|(t, _)| *t).collect();
+        if code.abs() <= FAR_OFF * others || marked.len() == values.len() {
+            return;
+        }
+        self.ctx.add_note(FileNote {
+            is_warning: true,
+            topic: "record_missing",
+            what: format!(
+                "column \"{}\" of {} ({}) has the value {code} at {} of its {} times, the first {}: loggers write it for a missing \
+                 value, and it is used as it is",
+                self.column,
+                self.file,
+                self.ctx.shown_key(self.key),
+                marked.len(),
+                values.len(),
+                rounded(marked[0]),
+            ),
+            remedy: "remove the lines with it: the law goes on between those around them".into(),
+        });
     }
 
     /// Returns the factor from the values of the column to radians, if they are angles: columns in degrees are known by

@@ -213,6 +213,13 @@ impl<'a, 'i> Search<'a, 'i> {
             Some("visible") => place.is_hidden = false,
             _ => {}
         }
+        for name in ["clip-path", "mask"] {
+            if let Some(value) = style.get(&node, name).filter(|value| value.trim() != "none") {
+                let tag = node.tag_name().name();
+                let why = format!("the {name} \"{value}\" of its <{tag}> hides a part of it, and is not applied");
+                place.unread = place.unread.or(Some(why));
+            }
+        }
         match style.transform(&node) {
             Ok(transform) => place.transform *= transform,
             Err(why) => place.unread = place.unread.or(Some(why)),

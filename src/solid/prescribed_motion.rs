@@ -156,7 +156,7 @@ impl<const D: usize> PrescribedMotion<D> {
     }
 
     /// World point (m) about which it turns; none of a slide, or of several motions.
-    fn hinged(&self) -> Option<&Vector<D>> {
+    pub(crate) fn hinged(&self) -> Option<&Vector<D>> {
         match &self.stages[..] {
             [Stage { path: Path::Hinge { centre, .. }, .. }] => Some(centre),
             _ => None,

@@ -4,7 +4,7 @@ use std::collections::{BTreeSet, HashMap};
 
 use rayon::prelude::*;
 
-use super::{Mesh, shells::solid_angle, tree::FacetTree, welding::format_position};
+use super::{Mesh, facet_normal, shells::solid_angle, tree::FacetTree, welding::format_position};
 use crate::{
     error::{Error, Result},
     math::Vector,
@@ -115,7 +115,7 @@ pub(crate) fn crossing(mesh: &Mesh, size: f64, one: usize, other: usize) -> Opti
     let (a, b) = (mesh.facet_corners(one), mesh.facet_corners(other));
     let longest = |f: &[Vector<3>; 3]| (0..3).map(|i| (f[(i + 1) % 3] - f[i]).norm()).fold(0.0, f64::max);
     let least = (THROUGH * longest(&a).min(longest(&b))).max(THROUGH_OF_MESH * size);
-    let (na, nb) = (normal(&a)?, normal(&b)?);
+    let (na, nb) = (facet_normal(&a)?, facet_normal(&b)?);
     // A shared corner lies in both planes, without round-off.
     let heights = |corners: &[Vector<3>; 3], facet: &[u32; 3], other: &[u32; 3], n: &Vector<3>, x: &Vector<3>| {
         [0, 1, 2].map(|i| if other.contains(&facet[i]) { 0.0 } else { n.dot(&(corners[i] - x)) })
@@ -132,10 +132,6 @@ pub(crate) fn crossing(mesh: &Mesh, size: f64, one: usize, other: usize) -> Opti
     let line = na.cross(&nb).try_normalize(1e-12)?;
     let ((a0, a1), (b0, b1)) = (interval(&a, &ha, &line)?, interval(&b, &hb, &line)?);
     (a1.min(b1) - a0.max(b0) > least).then_some(Crossing { depth: la.min(lb), overlaps: false })
-}
-
-fn normal([a, b, c]: &[Vector<3>; 3]) -> Option<Vector<3>> {
-    (b - a).cross(&(c - a)).try_normalize(0.0)
 }
 
 /// Returns how far a facet with these heights over a plane reaches through the plane; negative if it does not.

@@ -136,6 +136,16 @@ pub(super) fn solid_angle(facet: &[Vector<3>; 3], x: &Vector<3>) -> f64 {
     if cosine < 0.0 && sine.abs() < ON * all { f64::NAN } else { 2.0 * sine.atan2(cosine) }
 }
 
+/// Returns the number of each facet's shell, and the volume (m³) inside that shell: negative for the wall of a hollow.
+#[cfg(feature = "dim3")]
+pub(super) fn shell_volumes(points: &[Vector<3>], facets: &[[u32; 3]]) -> Vec<(usize, f64)> {
+    let mut of_facet = vec![(0, 0.0); facets.len()];
+    for (number, shell) in shells(points, facets).into_iter().enumerate() {
+        shell.numbers.iter().for_each(|&i| of_facet[i] = (number, shell.volume));
+    }
+    of_facet
+}
+
 /// Returns the shells of a closed surface.
 fn shells(points: &[Vector<3>], facets: &[[u32; 3]]) -> Vec<Shell> {
     let sides = |(i, &[a, b, c]): (usize, &[u32; 3])| {

@@ -1,7 +1,7 @@
 //! STL files: text in double precision, or binary in single precision, each with one or more solids. The normals in the
 //! file are not used.
 
-use std::path::Path;
+use std::{path::Path, str::SplitAsciiWhitespace};
 
 use super::{MeshFile, coordinate, damaged, text};
 use crate::error::{Error, Result};
@@ -72,28 +72,41 @@ fn counted(bytes: &[u8]) -> Option<(usize, &[u8])> {
     Some((u32::from_le_bytes(count) as usize, &bytes[HEADER..]))
 }
 
+/// Skips the name of a solid, up to the next facet of the line. Returns whether there is one.
+fn skip_to_facet(words: &mut SplitAsciiWhitespace) -> bool {
+    let mut ahead = words.clone();
+    while let Some(word) = ahead.next() {
+        let is_facet = word.eq_ignore_ascii_case("facet");
+        if is_facet && ahead.clone().next().is_some_and(|next| next.eq_ignore_ascii_case("normal")) {
+            return true;
+        }
+        *words = ahead.clone();
+    }
+    false
+}
+
 fn parse_text(path: &Path, bytes: &[u8]) -> Result<MeshFile> {
     let (text, notes) = text(path, bytes)?;
     let mut file = MeshFile { notes, ..MeshFile::default() };
     let (mut solids, mut ended) = (0, false);
     let mut corners: Vec<[f64; 3]> = Vec::new();
     let last = text.lines().count();
-    let cut = |line: usize, error: Error| match line == last {
-        true => damaged(path, format!("it is cut short: it ends within line {line}")),
-        false => error,
-    };
     for (line, text) in text.lines().enumerate().map(|(i, text)| (i + 1, text)) {
         let mut words = text.split_ascii_whitespace();
+        let cut = |rest: &SplitAsciiWhitespace, error: Error| match line == last && rest.clone().next().is_none() {
+            true => damaged(path, format!("it is cut short: it ends within line {line}")),
+            false => error,
+        };
         while let Some(word) = words.next() {
             match word.to_ascii_lowercase().as_str() {
-                // The rest of the line is a name.
+                // A name follows.
                 "solid" => {
                     (solids, ended) = (solids + 1, false);
-                    break;
+                    skip_to_facet(&mut words);
                 }
                 "endsolid" => {
-                    ended = true;
-                    break;
+                    ended = !skip_to_facet(&mut words);
+                    solids += u32::from(!ended);
                 }
                 // The normal is not used.
                 "facet" => {
@@ -104,7 +117,7 @@ fn parse_text(path: &Path, bytes: &[u8]) -> Result<MeshFile> {
                     let _ = words.next();
                 }
                 "vertex" => {
-                    let mut next = || coordinate(path, line, words.next()).map_err(|e| cut(line, e));
+                    let mut next = || coordinate(path, line, words.next()).map_err(|e| cut(&words, e));
                     corners.push([next()?, next()?, next()?]);
                 }
                 "endloop" => match corners[..] {
@@ -119,8 +132,10 @@ fn parse_text(path: &Path, bytes: &[u8]) -> Result<MeshFile> {
                 },
                 "endfacet" => {}
                 // An extension of some programs.
-                "color" => break,
-                _ => return Err(cut(line, damaged(path, format!("line {line}: \"{word}\" is no word of STL")))),
+                "color" => {
+                    skip_to_facet(&mut words);
+                }
+                _ => return Err(cut(&words, damaged(path, format!("line {line}: \"{word}\" is no word of STL")))),
             }
         }
     }

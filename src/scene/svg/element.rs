@@ -19,8 +19,8 @@ const ARCS: f64 = 1e-6;
 pub(super) fn element_path(node: &Node, style: &Style) -> Result<BezPath, String> {
     let element = Element { node, style };
     match node.tag_name().name() {
-        "polygon" => Ok(through(node.attribute("points"), true)),
-        "polyline" => Ok(through(node.attribute("points"), false)),
+        "polygon" => element.through_points(true),
+        "polyline" => element.through_points(false),
         "line" => {
             let end = |x: &str, y: &str| Ok::<_, String>(Point::new(element.number(x)?, element.number(y)?));
             let mut path = BezPath::new();
@@ -40,18 +40,6 @@ pub(super) fn element_path(node: &Node, style: &Style) -> Result<BezPath, String
         }
         _ => BezPath::from_svg(node.attribute("d").unwrap_or("")).map_err(|why| why.to_string()),
     }
-}
-
-/// Returns the line through the points of a list.
-fn through(points: Option<&str>, closed: bool) -> BezPath {
-    let mut path = BezPath::new();
-    for (i, (x, y)) in svgtypes::PointsParser::from(points.unwrap_or("")).enumerate() {
-        path.push(if i == 0 { PathEl::MoveTo(Point::new(x, y)) } else { PathEl::LineTo(Point::new(x, y)) });
-    }
-    if closed {
-        path.push(PathEl::ClosePath);
-    }
-    path
 }
 
 struct Element<'a> {
@@ -88,6 +76,29 @@ impl Element<'_> {
             Some((rx, ry)) if rx < 0.0 || ry < 0.0 => Err("it has a negative radius".into()),
             radii => Ok(radii),
         }
+    }
+
+    /// Returns the line through the points of the element. A viewer draws points up to the first fault, so a fault is refused.
+    fn through_points(&self, closed: bool) -> Result<BezPath, String> {
+        let name = self.node.tag_name().name();
+        let mut numbers = Vec::new();
+        for number in svgtypes::NumberListParser::from(self.node.attribute("points").unwrap_or("")) {
+            let fault =
+                |_| format!("after {} numbers the points of its <{name}> have one that cannot be read", numbers.len());
+            numbers.push(number.map_err(fault)?);
+        }
+        if numbers.len() % 2 == 1 {
+            return Err(format!("the points of its <{name}> are {} numbers, an x without a y", numbers.len()));
+        }
+        let mut path = BezPath::new();
+        for (i, pair) in numbers.chunks_exact(2).enumerate() {
+            let at = Point::new(pair[0], pair[1]);
+            path.push(if i == 0 { PathEl::MoveTo(at) } else { PathEl::LineTo(at) });
+        }
+        if closed {
+            path.push(PathEl::ClosePath);
+        }
+        Ok(path)
     }
 
     fn ellipse(&self, rx: f64, ry: f64) -> Result<BezPath, String> {

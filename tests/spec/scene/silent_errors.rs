@@ -349,3 +349,28 @@ fn a_statistic_after_the_run_is_found_and_a_crate_on_a_raft_does_not_capsize() {
     let afloat = on_top.replace("x = 1.0, bottom = 0.65", "x = 0.3, draft = \"equilibrium\"");
     assert_found("afloat", &scene(REST, &afloat), &[], &["\"crate\" will turn over"]);
 }
+
+#[test]
+fn a_law_that_takes_a_solid_out_of_the_scene_is_a_finding() {
+    // The gate is 0.7 m above the water. The tank has walls of 4 dp: with the gate the scene is about 2.4 × 1.6 m.
+    let law = |law: &str| GOOD.replace("LAW", law);
+    let file = |text: &'static str| [("r.csv", text)];
+    let record = "{ file = \"r.csv\", column = \"x_m\" }";
+    let marked = file("t_s,x_m\n0,0\n0.2,0.002\n0.4,-9999\n0.6,0.005\n2,0.007\n");
+    assert_found("jump", &law(record), &marked, &["\"gate\"", "away from its start at 0.4 s", "m large"]);
+    assert_found("missing", &law(record), &marked, &["-9999 at 1 of its 5 times, the first 0.4", "missing value"]);
+    // 30 m/s × 0.1 m to and fro, within the scene; c₀ = 10 √(9.81 × 0.5) = 22 m/s.
+    assert_found(
+        "fast",
+        &law("{ formula = \"0.1*sin(300*t)\" }"),
+        &[],
+        &["\"gate\"", "30 m/s", "sound goes at 22.1 m/s"],
+    );
+    let slow = inspected("slow", &law("{ formula = \"0.1*sin(30*t)\" }"), &[]).unwrap();
+    assert!(!slow.iter().any(|(_, text)| text.contains("the law of")), "{slow:?}");
+    // Values of the same size are values.
+    let large = file("t_s,x_m\n0,-990\n1,-999\n2,-995\n");
+    let scaled = "{ file = \"r.csv\", column = \"x_m\", scale = 1e-6 }";
+    let found = inspected("large", &law(scaled), &large).unwrap();
+    assert!(!found.iter().any(|(_, text)| text.contains("missing value")), "{found:?}");
+}

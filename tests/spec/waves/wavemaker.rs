@@ -241,6 +241,34 @@ fn a_paddle_placed_or_sized_against_wavemaker_theory_is_a_finding() {
 }
 
 #[test]
+fn a_flap_without_a_wall_below_or_with_a_hinge_aside_is_a_finding() {
+    // The flap stands 0.1 m above the bed, on a wall of 0.1 × `wall` m, if there is one.
+    let flap = |hinge: [f64; 2], bottom: f64, wall: Option<f64>| {
+        let paddle = format!("[0.1, 0.6] }} }}\nat     = {{ x = -0.05, bottom = {bottom:?}");
+        let motion = format!("hinge = {hinge:?}, wave = {{ regular = {{ height = 0.04, period = 1.2 }} }}");
+        let text = flume(&motion).replacen("[0.1, 0.6] } }\nat     = { x = -0.05, bottom = 0.0", &paddle, 1);
+        let below = |high: f64| {
+            format!(
+                "[[solid]]\nname = \"sill\"\nfixed = true\nshape = {{ box = {{ size = [0.1, {high:?}] }} }}\nat = {{ x = -0.05, bottom = 0.0 }}\n"
+            )
+        };
+        format!("{text}\n{}", wall.map(below).unwrap_or_default())
+    };
+    let open = finding(&flap([0.0, 0.1], 0.1, None), "lifted_paddle").expect("0.1 m are open below it");
+    assert!(open.what.contains("0.1 m are open"), "{open:?}");
+    assert_eq!(finding(&flap([0.0, 0.1], 0.1, Some(0.1)), "lifted_paddle"), None, "the wall closes it");
+    let low = finding(&flap([0.0, 0.1], 0.1, Some(0.05)), "lifted_paddle").expect("0.05 m are open above the wall");
+    assert!(low.what.contains("0.05 m are open"), "{low:?}");
+    assert_eq!(finding(&flap([0.0, 0.0], 0.0, None), "lifted_paddle"), None, "it reaches the bed");
+    // 0.3 m deep: a hinge behind the paddle by a tenth of it or less is one of its own.
+    let aside = finding(&flap([0.5, 0.0], 0.0, None), "hinge_aside").expect("the hinge is 0.5 m before the face");
+    assert!(aside.what.contains("0.5 m before") && aside.mend.contains("hinge = [0, 0]"), "{aside:?}");
+    let behind = finding(&flap([-0.5, 0.0], 0.0, None), "hinge_aside").expect("the hinge is 0.4 m behind the back");
+    assert!(behind.what.contains("0.4 m behind"), "{behind:?}");
+    assert_eq!(finding(&flap([-0.12, 0.0], 0.0, None), "hinge_aside"), None);
+}
+
+#[test]
 fn the_motion_of_a_paddle_does_not_depend_on_the_end_of_the_run() {
     let short = |driven: &str| {
         let text = flume(driven).replacen("until     = 6.0", "until     = 0.3", 1);

@@ -3,10 +3,14 @@
 use std::{
     f64::consts::PI,
     fs,
-    sync::atomic::{AtomicUsize, Ordering},
+    sync::{
+        Arc,
+        atomic::{AtomicUsize, Ordering},
+    },
 };
 
 use super::*;
+use crate::geometry::{ContactGeometry, Shape};
 
 /// Particle spacing of the tests, m.
 const DP: f64 = 0.02;
@@ -169,6 +173,17 @@ fn binary_files_that_begin_as_text_or_say_a_wrong_number_are_read_or_refused() {
     assert_parts(&refusal("stl", quad.as_bytes(), Completion::default()), &["line 8", "4 corners, not 3"]);
     plain("stl", text.replace('\n', "\r\n").to_uppercase().as_bytes(), 0.008);
     plain("stl", text.replace('\n', " ").replacen("solid a", "solid a\n", 1).as_bytes(), 0.008);
+    // On one line, also with two solids and names of words of the format; with the line ends of old Macintosh computers.
+    plain("stl", text.replace('\n', " ").as_bytes(), 0.008);
+    plain("stl", text.replace('\n', "\r").as_bytes(), 0.008);
+    let other = solid("solid facet of b", &facets([0.5, -0.1, -0.05], [0.7, 0.1, 0.05]));
+    let two = plain("stl", (solid("a", &hull()) + &other).replace('\n', " ").as_bytes(), 0.012);
+    assert_parts(&two, &["its 2 solids are read as one"]);
+    let line = text.replace('\n', " ");
+    assert_parts(&refusal("stl", &line.as_bytes()[..line.len() / 2], Completion::default()), &["cut short"]);
+    let comma = line.replacen("-0.2", "-0,2", 1);
+    assert_parts(&refusal("stl", comma.as_bytes(), Completion::default()), &["comma in place of"]);
+    plain("obj", obj(&[block([-0.2, -0.1, -0.05], [0.2, 0.1, 0.05])]).replace('\n', "\r").as_bytes(), 0.008);
 }
 
 #[test]
@@ -380,4 +395,59 @@ fn a_sheet_becomes_a_plate_of_its_thickness() {
     assert_volume("stl", solid("a", &hull()).as_bytes(), plate(0.01), hollow, 1e-12);
     assert_parts(&refusal("obj", sheet.as_bytes(), Completion::default()), &["the mesh is open", "cap = \"z\""]);
     assert_parts(&refusal("obj", angle.as_bytes(), Completion::default()), &["thickness = 0.01"]);
+}
+
+#[test]
+fn parts_that_touch_have_the_surface_of_their_union() {
+    // Two halves of a box of 0.5 × 0.4 × 0.4 m, whose quads share the plane x = 0 with other diagonals; apart by 1 nm; overlapping
+    // by 1 nm. 0.08 m³; the outer surface is 2 (0.4 × 0.4) + 4 (0.5 × 0.4) = 1.12 m².
+    let whole = Shape::Box { size: Vector::from([0.5, 0.4, 0.4]) };
+    for shift in [0.0, 1e-9, -1e-9] {
+        let turned = |(points, sides): Quads| (points, sides.into_iter().map(|[a, b, c, d]| [b, c, d, a]).collect());
+        let halves =
+            [block([-0.25, -0.2, -0.2], [0.0, 0.2, 0.2]), turned(block([shift, -0.2, -0.2], [0.25, 0.2, 0.2]))];
+        let (mesh, notes) = read_as("obj", obj(&halves).as_bytes(), &options(Completion::default())).unwrap();
+        assert!(notes.iter().any(|note| note.what.contains("back to back")), "{notes:?}");
+        assert!((mesh.surface_area() - 1.12).abs() < 1e-8, "{} m²", mesh.surface_area());
+        assert_same_distances(mesh, &whole);
+    }
+}
+
+#[test]
+fn a_part_that_touches_a_part_of_a_face_hides_it() {
+    // A keel of 0.1 × 0.2 m below a box of 0.5 × 0.2 m, 0.4 m long: as a polygon of the same section, midway along it. The
+    // distance to the ends is 0.2 m or more than the nearest side's.
+    let parts = [block([-0.25, -0.2, 0.0], [0.25, 0.2, 0.2]), block([-0.03, -0.2, -0.2], [0.07, 0.2, 0.0])];
+    let (mesh, _) = read_as("obj", obj(&parts).as_bytes(), &options(Completion::default())).unwrap();
+    // Ends: 2 (0.1 + 0.02); perimeter of the section: 2 (0.5 + 0.4).
+    assert!((mesh.surface_area() - (0.24 + 1.8 * 0.4)).abs() < 1e-12, "{} m²", mesh.surface_area());
+    let outline =
+        [[-0.25, 0.0], [-0.03, 0.0], [-0.03, -0.2], [0.07, -0.2], [0.07, 0.0], [0.25, 0.0], [0.25, 0.2], [-0.25, 0.2]];
+    let section = Shape::<2>::Polygon { points: outline.map(Vector::from).to_vec() };
+    for i in 0..60 {
+        for j in 0..60 {
+            let (x, z) = (0.01 * f64::from(i) - 0.2951, 0.01 * f64::from(j) - 0.2951);
+            let exact = section.signed_distance(&Vector::from([x, z]));
+            let (found, _) = mesh.distance_and_normal(&Vector::from([x, 0.0, z]));
+            assert!((found - exact).abs() < 1e-12, "{found}, not {exact} m, at {x}, {z}");
+        }
+    }
+}
+
+/// Asserts that a mesh has the distances, normals and particles of `whole` to within 2 nm.
+fn assert_same_distances(mesh: Mesh, whole: &Shape<3>) {
+    let drawn = Shape::Mesh { mesh: Arc::new(mesh), contact: ContactGeometry::default() };
+    for i in 0..14_i32 {
+        for j in 0..14_i32 {
+            for x in [-0.31, -0.13, -0.011, -1e-7, 0.0, 1e-7, 0.004, 0.17, 0.26] {
+                let x = Vector::from([x, 0.047 * f64::from(i) - 0.3, 0.047 * f64::from(j) - 0.3]);
+                let (found, exact) = (drawn.signed_distance(&x), whole.signed_distance(&x));
+                assert!((found - exact).abs() < 2e-9, "{found}, not {exact} m, at {x:?}");
+            }
+        }
+    }
+    let dp = 0.05;
+    let count = |shape: &Shape<3>| shape.boundary_points(dp, 3).len() as f64;
+    // Filled: 10 × 8 × 8 cells but 4 × 2 × 2 in the middle.
+    assert!((count(&drawn) / count(whole) - 1.0).abs() < 0.01, "{} particles, not {}", count(&drawn), count(whole));
 }

@@ -129,6 +129,16 @@ fn no_part_of_a_deck_is_lost_without_a_word() {
     let told = sections(&with("------- SYNTHETIC ROPES ------\na\nb\nrope 1 2 3")).unwrap();
     assert!(told.contains("# not taken over: the section SYNTHETIC ROPES"), "{told}");
     assert!(sections(&DECK.replacen("1.674e6 ", "inf ", 1)).unwrap_err().to_string().contains("EA"));
+    // The body of a free point becomes keys of it; that of a held one has none.
+    let heavy = DECK.replacen("-1.0   0     0      0     0", "-1.0   500   0.2    0     0", 1);
+    let told = sections(&heavy).unwrap();
+    assert!(told.contains("# not taken over: of the Coupled point 4: M = 500.0, V = 0.2"), "{told}");
+    let anchor = DECK.replacen("-20.0   10.0  -15.0   0 ", "-20.0   10.0  -15.0   70 ", 1);
+    let told = sections(&anchor).unwrap();
+    assert!(told.contains("# not taken over: of the Fixed point 1: M = 70.0\n"), "{told}");
+    let idle = DECK.replacen("---------------------- LINES", "5 Free 1 1 -1 7 0 0 0\n---------------------- LINES", 1);
+    assert!(sections(&idle).unwrap().contains("# not taken over: point 5, in which no line ends"));
+    assert!(!sections(DECK).unwrap().contains("over: of the"), "the points of the deck are taken over whole");
     let points = DECK.replacen("3   hawser    3", "3   hawser    Point3", 1);
     assert_eq!(sections(&points), sections(DECK), "Point3 is point 3");
 }

@@ -231,3 +231,49 @@ fn files_of_another_kind_are_named() {
     let marked = format!("\u{feff}{}", drawing("", RECTANGLE));
     assert_200_by_100(&marked, None, Some(LengthUnit::Mm));
 }
+
+#[test]
+fn points_that_are_not_pairs_of_numbers_are_refused() {
+    let shape = |name: &str, points: &str| drawing("", &format!("<{name} points='{points}'/>"));
+    // 200 × 100 units of 1 mm; commas, spaces and signs separate.
+    for points in [
+        "0,0 200,0 200,100 0,100",
+        " 0 0,200,0 200 100 0 100 ",
+        "-100-50 100-50 100,50-100,50",
+        "0,0,2e2,0\n2e2,1e2\t0,1e2",
+    ] {
+        assert_200_by_100(&shape("polygon", points), None, Some(LengthUnit::Mm));
+    }
+    for name in ["polygon", "polyline"] {
+        let odd = refusal(&shape(name, "0,0 200,0 200,100 0,100 0"), None);
+        assert!(odd.contains(&format!("<{name}> are 9 numbers, an x without a y")), "{odd}");
+        for points in ["0,0 200,0 200,100 0,100 junk", "0,0 200,0 200,100 0,1oo 0,0", "0,0 200,0 200;100 0,100"] {
+            let junk = refusal(&shape(name, points), None);
+            assert!(
+                junk.contains(&format!("the points of its <{name}> have one that cannot be read")),
+                "{points}: {junk}"
+            );
+        }
+    }
+}
+
+#[test]
+fn outlines_that_are_clipped_or_masked_are_refused() {
+    let definitions =
+        "<clipPath id='c'><rect width='10' height='10'/></clipPath><mask id='m'><rect width='10' height='10'/></mask>";
+    let with = |content: &str| drawing("", &format!("{definitions}{content}"));
+    let cut = RECTANGLE.replacen("id='hull'", "id='hull' clip-path='url(#c)'", 1);
+    let masked = RECTANGLE.replacen("id='hull'", "id='hull' style='mask: url(#m)'", 1);
+    for (content, word) in [
+        (cut.clone(), "clip-path"),
+        (masked, "mask"),
+        (format!("<g clip-path='url(#c)'>{RECTANGLE}</g>"), "clip-path"),
+        (format!("<defs>{RECTANGLE}</defs><use href='#hull' mask='url(#m)'/>"), "mask"),
+    ] {
+        let refused = refusal(&with(&content), None);
+        assert!(refused.contains(word) && refused.contains("is not applied"), "{content}: {refused}");
+    }
+    // One that is not chosen, and the value "none".
+    let other = format!("{cut}<path id='own' d='M 10,10 h 200 v 100 h -200 z' clip-path='none'/>");
+    assert_200_by_100(&with(&other), Some("own"), Some(LengthUnit::Mm));
+}
