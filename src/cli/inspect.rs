@@ -357,6 +357,14 @@ fn bodies(bodies: &[BodySummary], dimension: usize) -> String {
             let [start, largest] = [body.mass_kg, largest].map(three_digits);
             let _ = writeln!(ties, "  {}: {start} kg at the start, {largest} kg at most with its ballast", body.name);
         }
+        if let Some(water) = body.afloat.as_ref().and_then(|afloat| afloat.enclosed_water_kg) {
+            let _ = writeln!(
+                ties,
+                "  {}: {} kg of water inside heave with it; GM is that of both, with the inner free surface; roll is without it",
+                body.name,
+                three_digits(water)
+            );
+        }
         // Each assembly once, with its first body.
         if !body.tied_to.is_empty() && !bodies[..i].iter().any(|other| body.tied_to.contains(&other.name)) {
             let _ = writeln!(

@@ -1,5 +1,6 @@
 //! Equilibrium of each free body: draft, metacentric height and periods, and whether particles of this size can support
-//! it.
+//! it. Water of its own in a hull is part of the mass that heaves and of the displacement of GM, which its free surface lowers by
+//! ρ₀ I_inner/Δ; it is not part of the inertia in roll.
 //!
 //!   heave  T = 2π √((m + m_a)/(ρ₀ g A)),    roll  T = 2π √(I/(m g GM))
 //!
@@ -22,17 +23,30 @@ use super::{
     thickness::thinnest_part,
 };
 use crate::{
-    math::format::{three_digits, two_digits_down, two_digits_up},
+    math::{
+        Matrix,
+        format::{three_digits, two_digits_down, two_digits_up},
+    },
     scene::world_bounds,
     solid::{
         FreeBody, Solid, SolidSpec,
         joint_groups::JointGroups,
+        righting::{Floating, Turn},
         statics::{StaticBody, StaticSystem, Support, WaterAtRest},
     },
 };
 
 /// Heel (rad) from equilibrium below which no finding is reported: half a degree.
 const LEVEL: f64 = 0.5 * PI / 180.0;
+
+/// Number of intervals of a run at whose ends the metacentric height of a body with ballast is computed.
+const BALLAST_TIMES: u32 = 50;
+
+/// Turn (rad) to rest beyond which a body turns over.
+const OVER: f64 = 0.5 * PI;
+
+/// Largest heel (degrees) that is estimated for small angles.
+const LARGEST_ESTIMATE: f64 = 45.0;
 
 /// Metacentric height over the least extent of a body below which it is neutral: facets and round-off give a
 /// homogeneous ball a small one; its true one is 0.
@@ -84,6 +98,9 @@ pub struct BodySummary {
 pub struct Equilibrium {
     /// Draft at rest, m.
     pub draft_m: f64,
+    /// Mass of the water of its own in its hollows, which moves with it, kg; absent without any.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub enclosed_water_kg: Option<f64>,
     /// Area of its waterplane, m²; in 2-D the breadth of the waterplane, m.
     pub waterplane_m2: f64,
     /// Period of heave without added mass, s.
@@ -96,8 +113,11 @@ pub struct Equilibrium {
     pub first_swing_error: f64,
     /// Tilts that are not locked: one in 2-D; in 3-D the tilts about the horizontal axes of least and greatest GM.
     pub tilts: Vec<Tilt>,
-    /// Heel of the initial orientation from equilibrium, degrees; absent if the body capsizes.
+    /// Turn from the initial orientation to rest, degrees. Absent if it floods on its way, and if it is an estimate and GM is
+    /// negative.
     pub heel_deg: Option<f64>,
+    /// Whether `heel_deg` is an estimate for small angles, at most 45°: of tied bodies, and of open hulls that start turned.
+    pub heel_is_estimate: bool,
 }
 
 /// A tilt (roll or pitch) of a floating body.
@@ -109,6 +129,14 @@ pub struct Tilt {
     pub gm_m: f64,
     /// Period of roll without added inertia, s; absent unless GM is positive.
     pub period_s: Option<f64>,
+}
+
+/// Returns the heel (rad) of an assembly from rest by its levers and metacentric heights as it starts.
+fn linear_heel<const D: usize>(statics: &StaticSystem<D>, number: usize, tilts: &[Tilt]) -> f64 {
+    let along = |axis: &[f64]| statics.lever(number, axis, 0.0).iter().zip(axis).map(|(l, a)| l * a).sum::<f64>();
+    // A body of revolution on its side has GM = 0 and no heel.
+    let heel = |t: &Tilt| if t.gm_m == 0.0 { 0.0 } else { along(&t.axis) / t.gm_m };
+    tilts.iter().fold(0.0, |sum: f64, t| sum.hypot(heel(t)))
 }
 
 impl<const D: usize> PreflightContext<'_, D> {
@@ -130,6 +158,7 @@ impl<const D: usize> PreflightContext<'_, D> {
             let touches = (0..specs.len()).any(|j| touching[j] && groups.jointed[j] == groups.jointed[i]);
             self.flotation_findings(&bodies[first], (&statics, first), touches, findings);
             self.ballast_findings(i, &bodies[first], findings);
+            findings.extend(self.unstable_ballast((&statics, first), i, &bodies[first]));
             self.resolution_findings(&bodies[first], findings);
         }
         self.thin_bodies(&bodies, findings);
@@ -225,20 +254,53 @@ impl<const D: usize> PreflightContext<'_, D> {
         let (mass, stiffness) = statics.heaving_mass_and_stiffness(number);
         let heave = |mass: f64| TAU * (mass / (rho0 * self.g * area + stiffness)).sqrt();
         let tilts = self.tilts(statics, number);
-        let along = |axis: &[f64]| statics.lever(number, axis, 0.0).iter().zip(axis).map(|(l, a)| l * a).sum::<f64>();
-        // A body of revolution on its side has GM = 0 and no heel.
-        let heel = |t: &Tilt| if t.gm_m > 0.0 { along(&t.axis) / t.gm_m } else { 0.0 };
-        let turned = tilts.iter().map(|t| heel(t).powi(2)).sum::<f64>().sqrt();
+        let turn = self.turn(statics, number);
+        let heel_deg = match turn {
+            Some(Turn::Rests(angle)) => Some(angle.to_degrees()),
+            Some(Turn::Floods(_)) => None,
+            None => tilts
+                .iter()
+                .all(|t| t.gm_m >= 0.0)
+                .then(|| linear_heel(statics, number, &tilts).to_degrees().min(LARGEST_ESTIMATE)),
+        };
         let draft = level - world_bounds(&solid.spec.shape, &statics.pose(number)).min[D - 1];
         Equilibrium {
             draft_m: draft,
+            enclosed_water_kg: Some(statics.enclosed_water(number)).filter(|water| *water > 0.0),
             waterplane_m2: area,
             heave_s: heave(mass),
             heave_added_kg: added,
             heave_with_added_s: heave(mass + added),
             first_swing_error: heave_error::<D>(area, draft, self.dp()),
-            heel_deg: tilts.iter().all(|t| t.gm_m >= 0.0).then(|| turned.to_degrees()),
+            heel_deg,
+            heel_is_estimate: turn.is_none() && !tilts.is_empty(),
             tilts,
+        }
+    }
+
+    /// Returns the turn of body `number` to its rest; `None` if it is tied, or an open hull that starts turned.
+    fn turn(&self, statics: &StaticSystem<D>, number: usize) -> Option<Turn> {
+        let floating = self.floating(statics, number, statics.bodies[number].body);
+        // The space below the rim of a hull that starts turned is not all of that below its rim when it is upright.
+        let opens = floating.hull.rim_height(&floating.pose).is_finite();
+        let is_turned = (floating.pose.rotation - Matrix::identity()).norm() > 1e-6;
+        if statics.floats_alone(number) && !(opens && is_turned) { floating.turn() } else { None }
+    }
+
+    /// Returns body `number` at its rest, as free of ties, with the mass of `body`.
+    fn floating<'a>(&self, statics: &'a StaticSystem<D>, number: usize, body: &'a FreeBody<D>) -> Floating<'a, D> {
+        let hull = &statics.bodies[number].hull;
+        let axes = if D == 2 { 0..1 } else { 0..2 };
+        let unit = |axis: usize| (0..if D == 2 { 1 } else { 3 }).map(|k| f64::from(k == axis)).collect::<Vec<f64>>();
+        let free = axes.filter(|axis| !statics.is_tilt_locked(number, &unit(*axis))).collect();
+        Floating {
+            hull,
+            body,
+            pose: statics.pose(number),
+            rho0: self.system.model().rho0,
+            level: self.still_water.level,
+            free,
+            neutral: NEUTRAL * hull.shape.bounds().size().min(),
         }
     }
 
@@ -289,6 +351,35 @@ impl<const D: usize> PreflightContext<'_, D> {
         findings.push(Finding::warning("ballast_sinks", what, "give it less ballast, or make it larger".into()));
     }
 
+    /// Returns a finding about a body without ties that is stable at the start, and unstable later by its ballast.
+    fn unstable_ballast(
+        &self,
+        (statics, number): (&Option<StaticSystem<D>>, usize),
+        i: usize,
+        body: &BodySummary,
+    ) -> Option<Finding> {
+        let (statics, afloat) = (statics.as_ref()?, body.afloat.as_ref()?);
+        let spec = &self.solids()[i].spec;
+        if spec.ballast.is_empty() || !statics.floats_alone(number) || afloat.tilts.iter().any(|t| t.gm_m < 0.0) {
+            return None;
+        }
+        let heights = (0..=BALLAST_TIMES).filter_map(|k| {
+            let t = self.plan.until * f64::from(k) / f64::from(BALLAST_TIMES);
+            let with_ballast = spec.body_at(t)?;
+            let floating = self.floating(statics, number, &with_ballast);
+            let height = floating.least_metacentric_height()?;
+            (height < -floating.neutral).then_some((t, height))
+        });
+        let (t, least) = heights.min_by(|a, b| a.1.total_cmp(&b.1))?;
+        let what = format!(
+            "\"{}\" will turn over by its ballast: its metacentric height falls to {} m at t = {} s",
+            body.name,
+            three_digits(least),
+            three_digits(t)
+        );
+        Some(Finding::warning("capsizes", what, "give it less ballast, or place it lower".into()))
+    }
+
     /// Adds findings about the equilibrium of a body, of an assembly with its first body.
     fn flotation_findings(
         &self,
@@ -313,24 +404,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         // A body in the air that lies on another does not float.
         let is_carried = touches && body.displaced_kg <= 0.0;
         if statics.assembly_of(number).next() == Some(number) && !is_carried {
-            let least = afloat.tilts.iter().map(|t| t.gm_m).fold(f64::INFINITY, f64::min);
-            if least < 0.0 {
-                let what = format!("{name} will turn over: {its} metacentric height is {} m", three_digits(least));
-                let mend = format!(
-                    "lower {its} centre of mass by {} m or more (centre_offset), or lock {its} turn",
-                    two_digits_up(-least)
-                );
-                findings.push(Finding::warning("capsizes", what, mend));
-            } else if afloat.heel_deg.is_some_and(|heel| heel > LEVEL.to_degrees()) {
-                let heel = afloat.heel_deg.unwrap_or_default();
-                // The metacentric height holds for small tilts only.
-                let far = if heel > 45.0 { "more than 45".into() } else { format!("about {}", three_digits(heel)) };
-                let rests = if verb == "s" { "it rests" } else { "they rest" };
-                let what = format!("{name} start{verb} {far}° out of the trim in which {rests}");
-                let mend =
-                    "turn it by so much (angle_deg, turn_deg), or put its centre of mass under its buoyancy".into();
-                findings.push(Finding::note("lists", what, mend));
-            }
+            findings.extend(self.turn_finding(afloat, (statics, number), (&name, verb, its)));
         }
         // A body that rests on another solid need not float at equilibrium.
         let off = body.draft_m - afloat.draft_m;
@@ -352,6 +426,64 @@ impl<const D: usize> PreflightContext<'_, D> {
                 }
             };
             findings.push(Finding::note("off_draft", what, mend));
+        }
+    }
+
+    /// Returns a finding about the turn of an assembly from its start to its rest; `called`: its name, and the endings of words
+    /// about it.
+    fn turn_finding(
+        &self,
+        afloat: &Equilibrium,
+        (statics, number): (&StaticSystem<D>, usize),
+        (name, verb, its): (&str, &str, &str),
+    ) -> Option<Finding> {
+        let least = afloat.tilts.iter().map(|t| t.gm_m).fold(f64::INFINITY, f64::min);
+        let turn = self.turn(statics, number);
+        let level_it = "turn it by so much (angle_deg, turn_deg), or put its centre of mass under its buoyancy";
+        let lower = || {
+            format!(
+                "lower {its} centre of mass by {} m or more (centre_offset), or lock {its} turn",
+                two_digits_up(-least)
+            )
+        };
+        match turn {
+            Some(Turn::Floods(angle)) => {
+                let at = three_digits(angle.to_degrees());
+                let what = format!("{name} floods as it turns: {at}° from its start the still water stands at its rim");
+                Some(Finding::warning("hull_floods", what, level_it.into()))
+            }
+            Some(Turn::Rests(angle)) => {
+                let is_unstable = least < 0.0 && linear_heel(statics, number, &afloat.tilts) < LEVEL;
+                let rest = three_digits(angle.to_degrees());
+                if angle > OVER || (is_unstable && angle > LEVEL) {
+                    let height = match is_unstable {
+                        true => format!(": its metacentric height is {} m", three_digits(least)),
+                        false => String::new(),
+                    };
+                    let what = format!("{name} will turn over, to rest at {rest}° from its start{height}");
+                    let mend = match is_unstable {
+                        true => lower(),
+                        false => "put its centre of mass under its buoyancy (centre_offset), or lock its turn".into(),
+                    };
+                    return Some(Finding::warning("capsizes", what, mend));
+                }
+                (angle > LEVEL)
+                    .then(|| Finding::note("lists", format!("{name} turns by {rest}° to its rest"), level_it.into()))
+            }
+            None if least < 0.0 => {
+                let what = format!("{name} will turn over: {its} metacentric height is {} m", three_digits(least));
+                Some(Finding::warning("capsizes", what, lower()))
+            }
+            None => {
+                let heel = afloat.heel_deg.filter(|heel| *heel > LEVEL.to_degrees())?;
+                let far = if heel < LARGEST_ESTIMATE { "about" } else { "more than" };
+                let rests = if verb == "s" { "it rests" } else { "they rest" };
+                let what = format!(
+                    "{name} start{verb} {far} {}° out of the trim in which {rests}, estimated for small angles",
+                    three_digits(heel)
+                );
+                Some(Finding::note("lists", what, level_it.into()))
+            }
         }
     }
 

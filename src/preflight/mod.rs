@@ -228,6 +228,7 @@ pub fn preflight<const D: usize>(
     open_boundaries::check(&look, &mut findings);
     look.check_probes(&sound, &mut findings);
     lifetimes::check(&look, &mut findings);
+    lifetimes::check_strength(&look, &mut findings);
     driven_paths::check(&look, &mut findings);
     let (waves, absorbers) = (look.generated_waves(&mut findings), look.absorbers());
     let face_waves = face_waves::face_waves(&look, &mut findings);

@@ -409,6 +409,12 @@ impl<const D: usize> SceneParts<D> {
         let moves = scene.water.iter().any(|water| water.velocity.is_some() || water.pressure.is_some());
         let (velocity, pressure): (Vec<Vector<D>>, Vec<f64>) =
             filled.r.iter().zip(&origins).filter(|_| moves).map(flow).unzip();
+        for (x, body) in filled.r.iter().zip(&origins).filter(|_| moves) {
+            let number = body.and_then(|body| water.iter().position(|own| std::ptr::eq(own, body)));
+            if let Some(number) = number.filter(|number| *number < scene.water.len()) {
+                water[number].flow.require_possible(ctx, &format!("water.{number}"), x, model.c0)?;
+            }
+        }
         if let Some(towed) = &driving.towed {
             note_start_of_tow(ctx, towed, &velocity);
         }

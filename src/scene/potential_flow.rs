@@ -118,6 +118,9 @@ pub struct PanelledBody {
     pub reference_point_m: [f64; 3],
     /// Mass of a free solid, kg.
     pub mass_kg: Option<f64>,
+    /// Mass of the water of its own in its hollows, which moves with it and is not part of `mass_kg`, kg; absent without any.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub enclosed_water_kg: Option<f64>,
     /// Inertia of a free solid about its centre of mass along the axes of the scene, kg m².
     pub inertia_kg_m2: Option<[[f64; 3]; 3]>,
     /// Hydrostatic stiffness about the reference point: N/m, N and N m. Rows are loads and columns motions, in the order surge, sway,
@@ -195,7 +198,8 @@ impl SceneParts<3> {
     fn panelled_body(&self, i: usize, gravity: f64, panel_count: usize) -> PanelledBody {
         let (spec, level): (&SolidSpec<3>, f64) = (&self.placed.specs[i], self.still.level);
         let (shape, pose) = (&spec.shape, &spec.pose);
-        let hull = self.placed.hull_at(i, pose, level, &self.water);
+        let hull = self.placed.hull_at(i, pose, level, &self.water).with_own_water_at(pose);
+        let enclosed = self.model.rho0 * hull.enclosed_volume(pose);
         let (displaced, buoyancy) = self.displaced(i);
         let is_wet = |x: &Vector<3>| match &self.placed.enclosures[i] {
             Some(enclosure) => match enclosure.place(shape, x) {
@@ -233,6 +237,7 @@ impl SceneParts<3> {
             centre_of_buoyancy_m: from_level(&buoyancy),
             reference_point_m: from_level(&reference),
             mass_kg: body.as_ref().map(|body| body.mass),
+            enclosed_water_kg: (enclosed > 0.0).then_some(enclosed),
             inertia_kg_m2: body.as_ref().map(|body| {
                 let inertia = rotation * body.inertia * rotation.transpose();
                 std::array::from_fn(|i| std::array::from_fn(|j| inertia[(i, j)]))
@@ -242,3 +247,7 @@ impl SceneParts<3> {
         }
     }
 }
+
+#[cfg(all(test, feature = "dim3"))]
+#[path = "../../tests/unit/scene/potential_flow.rs"]
+mod tests;

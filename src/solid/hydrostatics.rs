@@ -17,6 +17,14 @@ pub(crate) enum HollowWater {
 }
 
 impl HollowWater {
+    /// Volume (m³; m² in 2-D) of the water in `hollow` at `pose`.
+    fn volume<const D: usize>(self, hollow: &Hollow<D>, pose: &Pose<D>) -> f64 {
+        match self {
+            Self::Volume(volume) => volume,
+            Self::Level(level) => hollow.volume_and_moment_below(pose, level).0,
+        }
+    }
+
     /// Volume (m³; m² in 2-D) of the water in `hollow` at `pose`, and its first moment.
     fn volume_and_moment<const D: usize>(self, hollow: &Hollow<D>, pose: &Pose<D>) -> (f64, Vector<D>) {
         match self {
@@ -59,6 +67,17 @@ impl<'a, const D: usize> Hull<'a, D> {
             (all, first) = (all - volume, first - moment);
         }
         if any && all != 0.0 { (all, first / all) } else { (all, centroid) }
+    }
+
+    /// Volume (m³; m² in 2-D) of the water of its own in its hollows at `pose`, which moves with the hull.
+    pub(crate) fn enclosed_volume(&self, pose: &Pose<D>) -> f64 {
+        self.filled.iter().map(|(hollow, water)| water.volume(hollow, pose)).sum()
+    }
+
+    /// The same hull with the volumes of its own water at `pose`, which stay as it moves.
+    pub(crate) fn with_own_water_at(mut self, pose: &Pose<D>) -> Self {
+        self.filled.iter_mut().for_each(|(hollow, water)| *water = HollowWater::Volume(water.volume(hollow, pose)));
+        self
     }
 
     /// The hollows in which water does not stand as high as outside.
@@ -116,6 +135,39 @@ impl<'a, const D: usize> Hull<'a, D> {
             }
         }
         Ok(0.5 * (under + over))
+    }
+
+    /// The same rise by interpolation, to 1e-12 of the volume that it displaces, `volume` (m³; m² in 2-D); `None` if it sinks or
+    /// floods.
+    pub(crate) fn rise_afloat(&self, pose: &Pose<D>, volume: f64, level: f64) -> Option<f64> {
+        let more = |rise: f64| {
+            let mut pose = *pose;
+            pose.position[D - 1] += rise;
+            self.submerged_volume(&pose, level).0 - volume
+        };
+        let [low, high] = self.floating_extent(pose);
+        let (mut under, mut over) = (level - high, level - low);
+        let (mut most, mut least) = (more(under), -volume);
+        if !(most > 0.0 && volume > 0.0) {
+            return None;
+        }
+        let (mut middle, mut sank) = (under, None);
+        for _ in 0..100 {
+            middle = (most * over - least * under) / (most - least);
+            let found = more(middle);
+            if found.abs() < 1e-12 * volume || over - under < 1e-14 * (high - low + level.abs()) {
+                break;
+            }
+            // An end that stays twice counts half, or the interpolation would be slow (Illinois).
+            let again = sank == Some(found > 0.0);
+            if found > 0.0 {
+                (under, most, least) = (middle, found, if again { 0.5 * least } else { least });
+            } else {
+                (over, least, most) = (middle, found, if again { 0.5 * most } else { most });
+            }
+            sank = Some(found > 0.0);
+        }
+        Some(middle)
     }
 
     fn sinking_error(&self, pose: &Pose<D>, mass: f64, whole: f64) -> Error {

@@ -12,6 +12,7 @@ mod load;
 pub(crate) mod mooring;
 pub(crate) mod prescribed_motion;
 pub(crate) mod rapier;
+pub(crate) mod righting;
 pub(crate) mod statics;
 pub(crate) mod tie_loads;
 pub(crate) mod wind;

@@ -1,5 +1,5 @@
-//! Static equilibrium of free bodies that joints, ropes, springs and steady forces tie together, in their initial
-//! orientation.
+//! Static equilibrium of free bodies that joints, ropes, springs, motors of sliders and steady forces tie together, in their
+//! initial orientation.
 //!
 //! Bodies that a joint keeps from rising against one another rise together; each such group has one unknown, its rise.
 //! Newton's method finds the rises at which buoyancy, weight, lines and forces balance. A rope is a stiff spring that
@@ -84,6 +84,20 @@ struct SteadyForce<const D: usize> {
     torque: Bivector<D>,
 }
 
+/// The motor of a slider between two bodies, or a body and the ground.
+struct Drive {
+    /// Numbers of the bodies; `None`: the ground. It drives the second.
+    bodies: [Option<usize>; 2],
+    /// Upward part of its direction, –.
+    steep: f64,
+    /// Force (N) where the joint starts.
+    force: f64,
+    /// Stiffness, N/m.
+    stiffness: f64,
+    /// Largest force, N.
+    largest: f64,
+}
+
 /// Free bodies with their ties.
 pub(crate) struct StaticSystem<'a, const D: usize> {
     pub(crate) bodies: Vec<StaticBody<'a, D>>,
@@ -96,6 +110,7 @@ pub(crate) struct StaticSystem<'a, const D: usize> {
     joints: Vec<JointSpec<D>>,
     lines: Vec<Line<D>>,
     forces: Vec<SteadyForce<D>>,
+    drives: Vec<Drive>,
     water: WaterAtRest,
     /// Rise of each group from the start to rest, m.
     rise: Vec<f64>,
@@ -168,9 +183,21 @@ impl<'a, const D: usize> StaticSystem<'a, D> {
             spec.ends.iter().zip(forces).filter_map(pull).collect::<Vec<_>>()
         });
         let forces = constraints.forces.iter().filter_map(force).chain(moored).collect();
+        let drive = |joint: &JointSpec<D>| {
+            let (along, force, stiffness, largest) = joint.steady_drive()?;
+            let bodies = joint.between.map(number);
+            (force != 0.0 || stiffness != 0.0).then_some(Drive {
+                bodies,
+                steep: along[D - 1],
+                force,
+                stiffness,
+                largest,
+            })
+        };
+        let drives = constraints.joints.iter().filter_map(drive).collect();
         let (rise, held) = (vec![0.0; solids.len()], groups.held);
         let joints = constraints.joints.clone();
-        let mut made = Self { bodies, group, assembly, held, joints, lines, forces, water, rise };
+        let mut made = Self { bodies, group, assembly, held, joints, lines, forces, drives, water, rise };
         made.find_rest();
         made
     }
@@ -178,8 +205,9 @@ impl<'a, const D: usize> StaticSystem<'a, D> {
     /// Finds the rises of all groups, those that lines connect at once.
     fn find_rest(&mut self) {
         let mut linked: Vec<usize> = (0..self.rise.len()).collect();
-        for line in &self.lines {
-            if let [Some(a), Some(b)] = line.bodies {
+        let pairs = self.lines.iter().map(|line| line.bodies).chain(self.drives.iter().map(|drive| drive.bodies));
+        for pair in pairs {
+            if let [Some(a), Some(b)] = pair {
                 merge(&mut linked, self.group[a], self.group[b]);
             }
         }
@@ -230,7 +258,27 @@ impl<'a, const D: usize> StaticSystem<'a, D> {
                 }
             }
         }
+        for drive in &self.drives {
+            let (lift, stiffness) = self.lift(drive);
+            let ends = drive.bodies.map(|end| end.and_then(place));
+            for (end, other, sign) in [(ends[0], ends[1], -1.0), (ends[1], ends[0], 1.0)] {
+                let Some(k) = end else { continue };
+                force[k] += sign * lift;
+                slope[k][k] -= stiffness;
+                if let Some(other) = other {
+                    slope[k][other] += stiffness;
+                }
+            }
+        }
         (force, slope)
+    }
+
+    /// Returns the upward force (N) of a motor on its second body, and its stiffness (N/m) against a rise.
+    fn lift(&self, drive: &Drive) -> (f64, f64) {
+        let [first, second] = drive.bodies.map(|end| end.map_or(0.0, |i| self.rise[self.group[i]]));
+        let force = drive.force - drive.stiffness * drive.steep * (second - first);
+        let stiffness = if force.abs() < drive.largest { drive.stiffness * drive.steep * drive.steep } else { 0.0 };
+        (force.clamp(-drive.largest, drive.largest) * drive.steep, stiffness)
     }
 
     /// Returns the force (N) of a line on its first end, and its stiffness (N/m) against a rise of an end.
@@ -274,8 +322,12 @@ impl<'a, const D: usize> StaticSystem<'a, D> {
                 break;
             }
             slope.iter_mut().flatten().for_each(|x| *x = -*x);
-            (0..groups.len()).for_each(|k| slope[k][k] = slope[k][k].max(least));
-            // With `least` on its diagonal the matrix has an inverse.
+            // Lines couple groups and leave the common rise of those in deep water free: with `least` beside what the lines give
+            // the matrix has an inverse.
+            for (k, row) in slope.iter_mut().enumerate() {
+                let others: f64 = row.iter().enumerate().filter(|(l, _)| *l != k).map(|(_, x)| x).sum();
+                row[k] = row[k].max(least - others);
+            }
             let matrix = DMatrix::from_fn(groups.len(), groups.len(), |k, l| slope[k][l]);
             let Some(mut step) = matrix.lu().solve(&DVector::from_vec(force)) else { break };
             let longest = step.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
@@ -308,8 +360,14 @@ impl<'a, const D: usize> StaticSystem<'a, D> {
         let i = own.next()?;
         let tied = own.next().is_some()
             || self.lines.iter().any(|line| line.bodies.contains(&Some(i)))
-            || self.forces.iter().any(|force| force.body == i);
+            || self.forces.iter().any(|force| force.body == i)
+            || self.drives.iter().any(|drive| drive.bodies.contains(&Some(i)));
         (!tied).then_some(i)
+    }
+
+    /// Returns whether body `i` floats without joints to other bodies, lines and steady forces.
+    pub(crate) fn floats_alone(&self, i: usize) -> bool {
+        self.assembly_of(i).count() == 1 && self.untied(self.group[i]).is_some()
     }
 
     fn size(&self, i: usize) -> f64 {
@@ -351,13 +409,18 @@ impl<'a, const D: usize> StaticSystem<'a, D> {
         (0..self.bodies.len()).filter(move |j| self.group[*j] == own)
     }
 
-    /// Returns the load (N, downward) of lines and steady forces on body `i` at rest.
+    /// Returns the load (N, downward) of lines, motors and steady forces on body `i` at rest.
     pub(crate) fn tie_load(&self, i: usize) -> f64 {
         let mut load = 0.0;
         for line in &self.lines {
             let pull = self.pull(line).0[D - 1];
             load -=
                 if line.bodies[0] == Some(i) { pull } else { 0.0 } - if line.bodies[1] == Some(i) { pull } else { 0.0 };
+        }
+        for drive in &self.drives {
+            let lift = self.lift(drive).0;
+            let of = |end: usize| if drive.bodies[end] == Some(i) { lift } else { 0.0 };
+            load += of(0) - of(1);
         }
         load - self.forces.iter().filter(|own| own.body == i).map(|own| own.force[D - 1]).sum::<f64>()
     }
@@ -397,10 +460,16 @@ impl<'a, const D: usize> StaticSystem<'a, D> {
         self.group_of(i).map(area).sum()
     }
 
-    /// Returns the mass (kg) that heaves with body `i`: of bodies that rise with it and of those that hang on ropes or
-    /// springs below it, and the stiffness (N/m) of lines to the ground.
+    /// Returns the mass (kg) of the water of its own in the hollows of body `i`.
+    pub(crate) fn enclosed_water(&self, i: usize) -> f64 {
+        self.water.rho0 * self.bodies[i].hull.enclosed_volume(&self.pose(i))
+    }
+
+    /// Returns the mass (kg) that heaves with body `i`: of bodies that rise with it, with the water inside, and of those that hang
+    /// on ropes or springs below it, and the stiffness (N/m) of lines and motors to the ground.
     pub(crate) fn heaving_mass_and_stiffness(&self, i: usize) -> (f64, f64) {
-        let (mut mass, mut stiffness) = (self.group_of(i).map(|j| self.bodies[j].body.mass).sum::<f64>(), 0.0);
+        let with_water = |j: usize| self.bodies[j].body.mass + self.enclosed_water(j);
+        let (mut mass, mut stiffness) = (self.group_of(i).map(with_water).sum::<f64>(), 0.0);
         for line in &self.lines {
             let (pull, stiff) = self.pull(line);
             for (own, other) in [(0, 1), (1, 0)] {
@@ -410,17 +479,23 @@ impl<'a, const D: usize> StaticSystem<'a, D> {
                 match line.bodies[other] {
                     None => stiffness += stiff,
                     Some(j) if self.group[j] != self.group[i] && self.support(j) == Support::Lines => {
-                        mass += self.bodies[j].body.mass;
+                        mass += with_water(j);
                     }
                     Some(_) => (),
                 }
+            }
+        }
+        for drive in &self.drives {
+            match drive.bodies {
+                [Some(j), None] | [None, Some(j)] if self.group[j] == self.group[i] => stiffness += self.lift(drive).1,
+                _ => (),
             }
         }
         (mass, stiffness)
     }
 
     /// Returns the righting lever (m, axial components) of the assembly of body `i`, turned from rest by `angle` (rad)
-    /// about the horizontal `axis` and afloat again.
+    /// about the horizontal `axis` and afloat again. Water inside is part of its weight, and runs to the lower side.
     pub(crate) fn lever(&self, i: usize, axis: &[f64], angle: f64) -> Vec<f64> {
         let WaterAtRest { rho0, g, level } = self.water;
         let members: Vec<usize> = self.assembly_of(i).collect();
@@ -478,7 +553,8 @@ impl<'a, const D: usize> StaticSystem<'a, D> {
         for own in self.forces.iter().filter(|own| self.assembly[own.body] == self.assembly[i]) {
             torque = torque + own.torque;
         }
-        torque.axial().iter().map(|t| t / (rho0 * g * whole)).collect()
+        let enclosed: f64 = members.iter().map(|j| self.enclosed_water(*j)).sum();
+        torque.axial().iter().map(|t| t / (g * (rho0 * whole + enclosed))).collect()
     }
 
     /// Returns the metacentric height (m) of the assembly of body `i` for tilts about the horizontal `axis`.
@@ -488,7 +564,7 @@ impl<'a, const D: usize> StaticSystem<'a, D> {
     }
 
     /// Returns the inertia (kg m²) of the assembly of body `i` about the horizontal `axis` through its centre of mass,
-    /// and the displaced mass (kg).
+    /// without water inside, and the displaced mass (kg) with it.
     pub(crate) fn inertia_and_displacement(&self, i: usize, axis: &[f64]) -> (f64, f64) {
         let members: Vec<(usize, Pose<D>)> = self.assembly_of(i).map(|j| (j, self.pose(j))).collect();
         let centre_of = |(j, pose): &(usize, Pose<D>)| pose.point(&self.bodies[*j].body.centre);
@@ -506,6 +582,7 @@ impl<'a, const D: usize> StaticSystem<'a, D> {
                 _ => local.dot(&(body.inertia * local)) + body.mass * (arm.norm_squared() - arm.dot(&axis).powi(2)),
             };
             displaced += self.water.rho0 * self.bodies[own.0].hull.submerged_volume(&own.1, self.water.level).0;
+            displaced += self.enclosed_water(own.0);
         }
         (inertia, displaced)
     }

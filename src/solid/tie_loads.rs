@@ -1,5 +1,5 @@
 //! Loads that free bodies carry at rest through their ties, for placing them at their equilibrium: bodies that are joined
-//! to them or hang on them, springs as they are at the start, and steady forces.
+//! to them or hang on them, springs and motors of sliders as they are at the start, and steady forces.
 //!
 //! A body that hangs on several lines divides its load among them by the balance of forces and moments, with the lines as they
 //! are at the start; of several such tensions the least count. Where no tensions balance it, each line gets the same part.
@@ -72,6 +72,13 @@ impl TieLoads {
         for force in &constraints.forces {
             if let Some((steady, _)) = force.steady_load() {
                 made.add(state, force.solid, -steady[D - 1] / state.g);
+            }
+        }
+        for joint in &constraints.joints {
+            let Some((along, force, _, largest)) = joint.steady_drive() else { continue };
+            let lift = force.clamp(-largest, largest) * along[D - 1] / state.g;
+            for (end, sign) in joint.between.iter().zip([1.0, -1.0]) {
+                end.iter().for_each(|i| made.add(state, *i, sign * lift));
             }
         }
         (0..n).for_each(|i| made.add(state, i, (state.moored)(i)));

@@ -53,6 +53,7 @@ class PanelledBody:
         mass: kg; None unless the solid is free.
         inertia: about the centre of mass along the axes of the scene, kg m²: (3, 3); None unless the solid is free.
         stiffness: hydrostatic stiffness about the reference point, N/m, N and N m: (6, 6), in the order of `MOTIONS`.
+        enclosed_water: mass of the water inside of the hull, which moves with it and is not part of `mass`, kg.
     """
 
     name: str
@@ -64,6 +65,7 @@ class PanelledBody:
     mass: float | None
     inertia: Floats | None
     stiffness: Floats
+    enclosed_water: float = 0.0
 
 
 class PanelledBodies:
@@ -104,6 +106,7 @@ class PanelledBodies:
             mass=content["mass_kg"],
             inertia=None if inertia is None else np.array(inertia),
             stiffness=np.array(content["hydrostatic_stiffness"]),
+            enclosed_water=content.get("enclosed_water_kg", 0.0),
         )
 
     def __getitem__(self, solid: str) -> PanelledBody:
@@ -238,7 +241,7 @@ class PotentialFlow:
             raise usage(f"{body.name!r} is {body.role}: it has no mass and no RAO", "export a free solid")
         chosen = [_number(name) for name in self.motions]
         inertia = np.zeros((6, 6))
-        inertia[:3, :3], inertia[3:, 3:] = body.mass * np.eye(3), body.inertia
+        inertia[:3, :3], inertia[3:, 3:] = (body.mass + body.enclosed_water) * np.eye(3), body.inertia
         inertia, stiffness = (matrix[np.ix_(chosen, chosen)] for matrix in (inertia, body.stiffness))
         omega = self.omega[:, None, None]
         impedance = stiffness - omega**2 * (inertia + self._matrix("added_mass"))

@@ -5,9 +5,9 @@ use serde::{Deserialize, Serialize};
 
 use super::shape::{PlacementConfig, ShapeConfig, vector, world_bounds};
 use crate::{
-    error::{Error, Result},
+    error::{Error, ErrorCode, Result},
     geometry::{Shape, WaterRegion},
-    math::{Bounds, BoxConfig, Pose, Vector, expression::ScalarField},
+    math::{Bounds, BoxConfig, Pose, Vector, expression::ScalarField, format::three_digits},
     scene::{context::Context, untagged::FieldFormulaConfig},
 };
 
@@ -133,6 +133,30 @@ impl<const D: usize> InitialFlow<D> {
         Self { velocity: None, pressure: None }
     }
 
+    /// Refuses a velocity (m/s) that is not finite or not below the speed of sound `c0` (m/s), and a pressure (Pa) that is not
+    /// finite, at the particle at `r` (m); `key`: of its water.
+    pub(crate) fn require_possible(&self, ctx: &Context, key: &str, r: &Vector<D>, c0: f64) -> Result<()> {
+        let (velocity, pressure) = self.at(r);
+        let place = || r.iter().map(|x| three_digits(*x)).collect::<Vec<_>>().join(", ");
+        let speed = velocity.norm();
+        if !speed.is_finite() || speed >= c0 {
+            let [shown, sound] = [speed, c0].map(three_digits);
+            let what = match speed.is_finite() {
+                true => format!("the water moves at {shown} m/s at [{}], and sound at {sound} m/s", place()),
+                false => format!("the velocity has no finite value at [{}]", place()),
+            };
+            let help =
+                "write a velocity that is finite in all of this water, and far below the speed of sound (model.c0)";
+            return Err(ctx.error_with_help(&format!("{key}.velocity"), what, help).with_code(ErrorCode::OutOfRange));
+        }
+        if !pressure.is_finite() {
+            let what = format!("the pressure is {pressure} Pa at [{}]", place());
+            let help = "write a pressure that is finite in all of this water";
+            return Err(ctx.error_with_help(&format!("{key}.pressure"), what, help).with_code(ErrorCode::OutOfRange));
+        }
+        Ok(())
+    }
+
     /// Velocity (m/s) and pressure beyond the hydrostatic one (Pa) at `r` (m).
     pub(crate) fn at(&self, r: &Vector<D>) -> (Vector<D>, f64) {
         let velocity = self.velocity.as_ref();
@@ -228,3 +252,7 @@ pub(crate) fn require_near_origin<const D: usize>(ctx: &Context, water: &[WaterB
         None => Ok(()),
     }
 }
+
+#[cfg(all(test, feature = "dim2"))]
+#[path = "../../../tests/unit/scene/water.rs"]
+mod tests;

@@ -342,6 +342,14 @@ impl<const D: usize> JointSpec<D> {
         free.map(|mode| frame.column(mode - first).dot(direction).powi(2)).sum()
     }
 
+    /// Returns the steady load of the motor of a slider: the direction in which it drives the second solid, its force (N) where the
+    /// joint starts, its stiffness (N/m) and its largest force (N).
+    pub(in crate::solid) fn steady_drive(&self) -> Option<(Vector<D>, f64, f64, f64)> {
+        let motor = self.motor.as_ref().filter(|_| self.coordinate_mode() == Some(0))?;
+        let (force, stiffness) = motor.steady_force()?;
+        Some((self.axis.normalize(), force, stiffness, motor.max_force))
+    }
+
     /// The modes that have end stops, with these, in the order of the engine.
     pub(in crate::solid) fn end_stops(&self) -> Vec<(usize, [f64; 2])> {
         let of = |mode: usize| match self.coordinate_mode() == Some(mode) {

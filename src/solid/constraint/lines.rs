@@ -103,6 +103,17 @@ impl<const D: usize> SpringSpec<D> {
         Self { tension_only: true, ..self }
     }
 
+    /// Tension (N) between the places of its ends at the start; negative if it pushes.
+    pub(crate) fn start_tension(&self) -> f64 {
+        let stretch = start_length(&self.ends) - self.rest_length.unwrap_or_else(|| start_length(&self.ends));
+        self.stiffness * if self.tension_only { stretch.max(0.0) } else { stretch }
+    }
+
+    /// Whether it breaks in the first step.
+    pub(crate) fn breaks_at_start(&self) -> bool {
+        self.lifetime.contains(0.0) && self.start_tension() > self.lifetime.strength
+    }
+
     /// The same spring with this lifetime.
     pub fn lifetime(self, lifetime: Lifetime) -> Self {
         Self { lifetime, ..self }

@@ -41,11 +41,11 @@ pub struct Constraints<const D: usize> {
 }
 
 impl<const D: usize> Constraints<D> {
-    /// The constraints that act at the start.
+    /// The constraints that act at the start, without springs that break then.
     pub(crate) fn at_start(&self) -> Self {
         let mut made = self.clone();
         made.joints.retain(|joint| joint.lifetime.contains(0.0));
-        made.springs.retain(|spring| spring.lifetime.contains(0.0));
+        made.springs.retain(|spring| spring.lifetime.contains(0.0) && !spring.breaks_at_start());
         made.ropes.retain(|rope| rope.lifetime.contains(0.0));
         made.moorings.retain(|mooring| mooring.lifetime.contains(0.0));
         made.forces.retain(|force| force.lifetime.contains(0.0));

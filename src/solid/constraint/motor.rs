@@ -95,6 +95,15 @@ impl Motor {
         Self { max_force, ..self }
     }
 
+    /// Its force (N or N m) where the coordinate is 0, F₀ + k x*, and its stiffness k (N/m or N m/rad), if they do not change with
+    /// time; its damping bears no load at rest.
+    pub(in crate::solid) fn steady_force(&self) -> Option<(f64, f64)> {
+        let stiffness = self.stiffness.steady_value()?;
+        // Without a stiffness the target does not matter.
+        let pull = if stiffness == 0.0 { 0.0 } else { stiffness * self.position.steady_value()? };
+        Some((self.force.steady_value()? + pull, stiffness))
+    }
+
     /// The command at time `t` (s).
     pub fn command_at(&self, t: f64) -> MotorCommand {
         let (position, rate) = self.position.value_and_rate(t);

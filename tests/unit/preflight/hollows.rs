@@ -92,9 +92,9 @@ fn water_by_the_name_of_the_hull_stays_in_it_and_weighs_on_it() {
     assert!((found.bodies[0].draft_m - 0.16).abs() < 1e-3, "{}", found.bodies[0].draft_m);
     let rest = found.bodies[0].afloat.as_ref().unwrap();
     assert!((rest.draft_m - 0.16).abs() < 1e-3, "{}", rest.draft_m);
-    // Outer waterplane less the free surface inside, over the volume that carries the barge without the ballast:
-    // 1/12 − 0.8³/12 over 0.144 m², and the moments of 0.16 m² at 0.08 m, 0.016 m² at 0.11 m and 144 kg/m at 0.1611 m.
-    let gm = (1.0 - 0.512) / 12.0 / 0.144 + (0.16 * 0.08 - 0.016 * 0.11) / 0.144 - 0.029 / 0.18;
+    // Outer waterplane less the free surface inside, over the displacement of barge and ballast:
+    // 1/12 − 0.8³/12 over 0.16 m², and the moments of 0.16 m² at 0.08 m, 0.016 m² at 0.11 m and 144 kg/m at 0.1611 m.
+    let gm = ((1.0 - 0.512) / 12.0 + 0.16 * 0.08 - 0.016 * 0.11 - 0.144 * 0.029 / 0.18) / 0.16;
     assert!((rest.tilts[0].gm_m - gm).abs() < 0.02 * gm, "GM {}, exact {gm}", rest.tilts[0].gm_m);
 }
 
@@ -158,4 +158,44 @@ fn a_key_that_has_no_effect_is_refused() {
                 free = { density = 500.0 }\ndry = true\n";
     let error = Scene::parse(text, Path::new(""), &[]).unwrap().build::<2>().err().unwrap();
     assert!(error.to_string().contains("encloses no space"), "{error}");
+}
+
+#[test]
+fn the_heel_of_a_hull_that_starts_turned_is_an_estimate() {
+    let scene = |turn: &str| {
+        judged::<2>(&format!(
+            "dimension = 2\ndp = 0.02\nuntil = 1.0\n\
+             [[water]]\nfill = {{ box = {{ min = [0.0, 0.0], max = [3.0, 0.6] }} }}\n\
+             [[solid]]\nname = \"tank\"\nfixed = true\nshape = {{ tank = {{ size = [3.0, 1.0] }} }}\n\
+             [[solid]]\nname = \"barge\"\ndry = true\nfree = {{ density = 800.0 }}\n\
+             shape = {{ polygon = [[0.0, 0.0], [1.0, 0.0], [1.0, 0.5], [0.9, 0.5], [0.9, 0.1], [0.1, 0.1], [0.1, 0.5], [0.0, 0.5]] }}\n\
+             at = {{ x = 1.0, draft = \"equilibrium\", angle_deg = {turn} }}\n"
+        ))
+        .0
+    };
+    let rest = |turn: &str| scene(turn).bodies[0].afloat.clone().unwrap();
+    assert!(!rest("0.0").heel_is_estimate && rest("0.0").heel_deg.unwrap() < 0.01);
+    let turned = rest("5.0");
+    assert!(turned.heel_is_estimate && (turned.heel_deg.unwrap() - 5.0).abs() < 0.3, "{:?}", turned.heel_deg);
+}
+
+#[test]
+fn water_inside_heaves_with_a_hull_and_lowers_its_metacentric_height() {
+    let (found, _) = barge(
+        "dry = true\n[[water]]\ninside = \"barge\"\nfill = { box = { min = [0.0, 0.0], max = [3.0, 0.58] } }",
+        0.02,
+    );
+    let body = &found.bodies[0];
+    let rest = body.afloat.as_ref().unwrap();
+    let water = rest.enclosed_water_kg.unwrap();
+    // Whole rows over 0.8 m.
+    let all = 144.0 + water;
+    assert!((rest.draft_m - 0.001 * all).abs() < 1e-3, "draft {} m with {water} kg of water", rest.draft_m);
+    let heave = std::f64::consts::TAU * (all / 9810.0).sqrt();
+    assert!((rest.heave_s - heave).abs() < 2e-3 * heave, "{} s, exact {heave} s", rest.heave_s);
+    // Δ = 144 kg/m and the water; its free surface has I = 0.8³/12 m⁴/m.
+    let (draft, depth) = (0.001 * all, water / 800.0);
+    let heights = (144.0 * 0.029 / 0.18 + water * (0.1 + 0.5 * depth)) / all;
+    let gm = 0.5 * draft + (1.0 - 0.8f64.powi(3)) / 12.0 / draft - heights;
+    assert!((rest.tilts[0].gm_m - gm).abs() < 0.02 * gm, "GM {} m, exact {gm} m", rest.tilts[0].gm_m);
 }
