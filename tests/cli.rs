@@ -149,8 +149,9 @@ fn wrong_commands_are_refused_with_a_remedy() {
     folder.pontoon(&["run", "bathtub"]).assert_refused(2, &["\"bathtub\"", "pontoon scenes"]);
     folder.pontoon(&["run", "raft", "--dp", "-1"]).assert_refused(2, &["dp must be a positive number, not -1"]);
     folder.pontoon(&["run", "raft", "--until", "0"]).assert_refused(2, &["until"]);
-    folder.pontoon(&["run", "raft", "--threads", "0"]).assert_refused(2, &["threads are from 1 to 4096"]);
-    folder.pontoon(&["study", "raft", "--threads", "1000000"]).assert_refused(2, &["threads are from 1 to 4096"]);
+    folder.pontoon(&["run", "raft", "--threads", "0"]).assert_refused(2, &["threads are from 1 to 1024"]);
+    folder.pontoon(&["inspect", "raft", "--threads", "1025"]).assert_refused(2, &["threads are from 1 to 1024"]);
+    folder.pontoon(&["study", "raft", "--threads", "1000000"]).assert_refused(2, &["threads are from 1 to 1024"]);
     folder.pontoon(&["run", "raft", "--set", "dp"]).assert_refused(2, &["write key=value"]);
     folder.pontoon(&["run", "raft", "--set", "solid.boot.free.density=1"]).assert_refused(2, &["boot", "boat"]);
     folder.pontoon(&["run", "still-tank", "--dp", "1e-6"]).assert_refused(2, &["particles", "or more"]);
