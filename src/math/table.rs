@@ -15,7 +15,7 @@ use super::time_series::TimeSeries;
 use crate::error::{Error, ErrorCode, Result, suggestion};
 pub use column_name::ColumnName;
 use layout::Layout;
-pub(crate) use unit::{is_angle, is_degree, is_without_size, si_factor};
+pub(crate) use unit::{Conversion, conversion, is_degree, is_without_size, of_series, si_factor};
 
 /// The name of the column of times in the tables of a run.
 const OWN_TIME: &str = "t_s";

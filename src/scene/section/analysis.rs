@@ -8,7 +8,10 @@ use serde::{Deserialize, Serialize};
 use super::water::StillWaterLevel;
 use crate::{
     error::{Error, ErrorCode, Result, suggestion},
-    math::{expression::Formula, table::ColumnName},
+    math::{
+        expression::Formula,
+        table::{self, ColumnName},
+    },
     plan::{Align, CheckPlan, Reference, ResponseReference, Score, StatisticKind, StatisticPlan},
     probe::ProbeConfig,
     scene::{
@@ -308,8 +311,10 @@ impl CheckConfig {
                 let column = self.column.clone().unwrap_or_default();
                 let scaling = record::scaling([self.scale, self.time_factor, self.offset]);
                 let table = files::open_table(ctx.folder(), &file).map_err(place)?;
+                let (time_of, column_of) = (time.clone(), column.clone());
+                let unit = table::of_series(&self.series);
                 let mut record =
-                    Record { ctx, key, file: &file, table, time: time.clone(), column: column.clone(), scaling };
+                    Record { ctx, key, file: &file, table, time: time_of, column: column_of, scaling, unit };
                 record.read().and_then(|series| series.scaled(&scaling)).map_err(place)?;
                 Reference::Table { file: Path::new(&file).to_path_buf(), time, column, scaling }
             }

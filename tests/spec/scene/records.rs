@@ -235,3 +235,77 @@ fn laws_checks_and_points_of_other_layouts_are_read_and_wrong_keys_are_refused()
         assert!(refused(law).contains(part), "{law}: {}", refused(law));
     }
 }
+
+/// The warnings about units of a column of this name as the distance, the angle, the force and the torque, and of a
+/// check.
+fn unit_warnings(part: &str, column: &str) -> Vec<String> {
+    let record = format!("{{ file = \"record.csv\", column = \"{column}\" }}");
+    let own = "[[solid]]\nname = \"box\"\nshape = { box = { size = [0.2, 0.1] } }\nat = { x = 0.3, draft = \"equilibrium\" }\nfree = { density = 500.0 }\n";
+    let still = SCENE.replace("distance = LAW", "distance = { formula = \"0\" }");
+    let text = match part {
+        "distance" => SCENE.replace("LAW", &record),
+        "angle" | "angle_deg" => {
+            SCENE.replace("along = [1.0, 0.0], distance = LAW", &format!("hinge = [0.0, 0.0], {part} = {record}"))
+        }
+        "force" => format!("{still}{own}[[force]]\nname = \"f\"\non = \"box\"\nforce = [{record}, 0.0]\n"),
+        "torque" => format!("{still}{own}[[force]]\nname = \"f\"\non = \"box\"\ntorque = {record}\n"),
+        series => {
+            format!("{still}[[check]]\nseries = \"{series}\"\nreference = \"record.csv\"\ncolumn = \"{column}\"\n")
+        }
+    };
+    let folder = TestFolder::new("records-units");
+    let rows: String = samples(0.0, 31).map(|(t, x)| format!("{t:.2},{x:.6}\n")).collect();
+    fs::write(folder.join("record.csv"), format!("t_s,{column}\n{rows}")).unwrap();
+    let BuiltScene { file_notes, .. } = Scene::parse(&text, &folder, &[]).unwrap().build::<2>().unwrap();
+    let of_units = file_notes.into_iter().filter(|note| note.topic == "record_unit" && note.is_warning);
+    of_units.map(|note| format!("{}\n{}", note.what, note.remedy)).collect()
+}
+
+#[test]
+fn a_column_in_another_unit_or_of_another_quantity_is_told_with_both() {
+    // Each factor by hand: 180/pi, 4.448 N in a pound-force, 9.81 N in the weight of 1 kg, 0.3048 m in a foot.
+    for (part, column, told, remedy) in [
+        ("distance", "x (km h-1)", "another quantity than m", "name a column in m"),
+        ("distance", "x (m/s²)", "another quantity than m", "name a column in m"),
+        ("angle", "x_m", "another quantity than rad", "name a column in rad"),
+        ("angle_deg", "x_rad", "used as if in deg", "scale = 57.2957795"),
+        ("force", "F (lb)", "a mass, where N is meant", "scale = 4.44822161"),
+        (
+            "force",
+            "F (kg)",
+            "a mass, where N is meant",
+            "scale = 9.80665  beside the column; the weight of 1 kg is 9.81 N",
+        ),
+        ("force", "F (m/s)", "another quantity than N", "name a column in N"),
+        ("torque", "M (ft-lb)", "a mass, where N m is meant", "scale = 1.355817"),
+        ("torque", "M (kN-m)", "used as if in N m", "scale = 1000"),
+        ("tank.pitch_deg", "pitch_rad", "used as if in deg", "scale = 57.2957795"),
+        ("tank.pitch_deg", "pitch [rad]", "used as if in deg", "scale = 57.2957795"),
+        ("tank.pitch_deg", "pitch (mrad)", "used as if in deg", "scale = 0.0572957795"),
+        ("tank.pitch_deg", "pitch_m", "another quantity than deg", "name a column in deg"),
+        ("tank.spin_radps", "w_degps", "used as if in radps", "scale = 0.0174532925"),
+        ("tank.vx_mps", "v_kmh", "used as if in mps", "scale = 0.27777777"),
+        ("tank.vx_mps", "v (m min-1)", "used as if in mps", "scale = 0.01666666"),
+        ("tank.surge_m", "p [Pa]", "another quantity than m", "name a column in m"),
+    ] {
+        let found = unit_warnings(part, column);
+        let [text] = &found[..] else { panic!("{column} as {part}: {found:?}") };
+        assert!(text.contains(told) && text.contains(remedy), "{column} as {part}: {text}");
+    }
+    for (part, column) in [
+        ("distance", "x_m"),
+        ("angle", "a_deg"),
+        ("angle", "a_rad"),
+        ("angle_deg", "a (deg)"),
+        ("force", "F (N)"),
+        ("force", "F (N/m)"),
+        ("torque", "M_Nm"),
+        ("tank.pitch_deg", "pitch_deg"),
+        ("tank.pitch_deg", "pitch (-)"),
+        ("tank.vx_mps", "v (m s-1)"),
+        ("tank.vx_mps", "v_ms"),
+        ("tank.surge_m", "surge"),
+    ] {
+        assert_eq!(unit_warnings(part, column), [] as [String; 0], "{column} as {part}");
+    }
+}
