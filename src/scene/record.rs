@@ -2,6 +2,7 @@
 
 use super::{
     context::{Context, FileNote},
+    files,
     untagged::CoordinateUnit,
 };
 use crate::{
@@ -70,6 +71,15 @@ pub(super) fn verify_scaling(ctx: &Context, key: &str, [scale, factor, offset]: 
     }
 }
 
+/// Returns the advice to name a column of this file, with its columns if it can be read.
+pub(super) fn column_help(ctx: &Context, file: &str) -> String {
+    let names = files::open_table(ctx.folder(), file).map(|table| table.column_names()).unwrap_or_default();
+    match &names[..] {
+        [] => "write  column = ..,  the name or the number of a column".into(),
+        [.., last] => format!("write  column = \"{last}\",  or another of its columns: {}", names.join(", ")),
+    }
+}
+
 /// Adds the note that the table at `key` was not read as a table with commas, decimal points and a header.
 pub(super) fn note_layout(ctx: &Context, key: &str, file: &str, table: &TableReader) {
     let Some(remark) = table.remark() else { return };
@@ -112,6 +122,27 @@ impl Record<'_> {
             ));
         }
         Ok(series)
+    }
+
+    /// Refuses a column of times that the table does not have.
+    ///
+    /// # Errors
+    /// `Scene`, with a column that may be meant.
+    pub(super) fn require_time(&mut self) -> Result<()> {
+        let time = self.table.time_column(&self.time, &self.column);
+        let names = self.table.column_names();
+        let value = self.column.to_string();
+        self.table.unit(time.clone()).map(|_| ()).map_err(|error| {
+            let other = names.iter().find(|name| **name != value).filter(|_| self.time == ColumnName::from("t_s"));
+            match other {
+                Some(name) => {
+                    let all = names.join(", ");
+                    let help = format!("name the column of times, as in  time = \"{name}\"; its columns: {all}");
+                    error.help(help)
+                }
+                None => error,
+            }
+        })
     }
 
     /// Takes the unit in which a law is meant, and returns the factor from its values to those of the run: columns in

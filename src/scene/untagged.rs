@@ -305,7 +305,14 @@ impl TimeFunctionConfig {
                 Err(ctx.error_at(key, what))
             }
             (None, Some(_)) if self.column.is_some() => record::verify_scaling(ctx, key, self.given_scaling()),
-            (None, Some(_)) => Err(ctx.error_at(key, "which column of the file?")),
+            (None, Some(file)) => {
+                let help = record::column_help(ctx, file);
+                Err(ctx.error_with_help(
+                    &format!("{key}.column"),
+                    "\"column\" is missing: which one of the file?",
+                    help,
+                ))
+            }
             _ => Err(ctx.error_at(key, "a law is either a formula or a file with a column")),
         }
     }
@@ -367,6 +374,7 @@ impl TimeFunctionConfig {
         let scaling = record::scaling(self.given_scaling());
         let time = self.time.clone().unwrap_or_else(|| "t_s".into());
         let mut record = record::Record { ctx, key, file, table, time, column: column.clone(), scaling, unit: None };
+        record.require_time().map_err(|e| place("time", e))?;
         let factor = record.take_unit(unit).map_err(|e| place("column", e))?;
         let series = record.read().map_err(|e| place("column", files::with_line_in_message(e)))?;
         record.note_span(&series, record::Outside::Holds);

@@ -309,3 +309,67 @@ fn a_column_in_another_unit_or_of_another_quantity_is_told_with_both() {
         assert_eq!(unit_warnings(part, column), [] as [String; 0], "{column} as {part}");
     }
 }
+
+#[test]
+fn a_missing_column_of_times_or_values_is_told_at_its_key_with_the_columns() {
+    let check = "[[check]]\nseries = \"tank.surge_m\"\nreference = \"record.csv\"\ncolumn = \"x_m\"\n";
+    let refused = |law: &str, more: &str, names: &str| {
+        let rows: String = samples(0.0, 31).map(|(t, x)| format!("{t:.2},{x:.6}\n")).collect();
+        let folder = folder("columns", law, format!("{names}\n{rows}"));
+        let text = SCENE.replace("LAW", law) + more;
+        let built = Scene::parse(&text, &folder, &[]).and_then(|scene| scene.build::<2>().map(|_| ()));
+        built.map_or_else(|error| error.to_string(), |()| String::new())
+    };
+    let law = "{ file = \"record.csv\", column = \"x_m\" }";
+    for name in ["seconds", "Frame"] {
+        let told = refused(law, "", &format!("{name},x_m"));
+        let proposal = format!("time = \"{name}\"; its columns: {name}, x_m");
+        assert!(told.contains("solid.tank.driven.distance.time") && told.contains(&proposal), "{told}");
+        let told = refused("{ formula = \"0\" }", check, &format!("{name},x_m"));
+        assert!(told.contains("check.0.time") && told.contains(&proposal), "{told}");
+    }
+    let told = refused("{ file = \"record.csv\" }", "", "t_s,x_m");
+    assert!(told.contains("distance.column") && told.contains("write  column = \"x_m\""), "{told}");
+    // The record ends at 3 s.
+    let told = refused("{ formula = \"0\" }", &format!("{check}from = 5.0\n"), "t_s,x_m");
+    assert!(told.contains("check.0.from") && told.contains(":21:") && told.contains("goes from 0 to 3 s"), "{told}");
+    assert_eq!(refused("{ formula = \"0\" }", &format!("{check}from = 1.0\n"), "t_s,x_m"), "");
+}
+
+#[test]
+fn a_check_of_an_unknown_series_and_a_scene_of_another_encoding_are_told_at_their_place() {
+    let text = SCENE.replace("LAW", "{ formula = \"0\" }")
+        + "[[check]]\nseries = \"tank.surge\"\nformula = \"0\"\nbound = { off = 0.1 }\n";
+    let folder = TestFolder::new("records-series");
+    let told = |bytes: &[u8]| {
+        fs::write(folder.join("scene.toml"), bytes).unwrap();
+        inspected(&folder).map_or_else(|error| error.to_string(), |_| String::new())
+    };
+    let unknown = told(text.as_bytes());
+    for part in ["scene.toml:18:1, check.0.series", "did you mean \"tank.surge_m\"?"] {
+        assert!(unknown.contains(part), "{part}: {unknown}");
+    }
+    let utf16: Vec<u8> = format!("\u{feff}{text}").encode_utf16().flat_map(u16::to_le_bytes).collect();
+    let bare: Vec<u8> = text.encode_utf16().flat_map(u16::to_be_bytes).collect();
+    for bytes in [utf16, bare] {
+        let told = told(&bytes);
+        assert!(told.contains("is in UTF-16") && told.contains("save it as UTF-8"), "{told}");
+    }
+    // A u with two points in Windows-1252, the second character of the second line.
+    let told = told(b"# a\n#\xfc\ndimension = 2\n");
+    assert!(told.contains("Windows-1252") && told.contains(":2:2") && told.contains("as UTF-8"), "{told}");
+}
+
+#[test]
+fn a_probe_is_set_by_its_name_without_one_of_its_own() {
+    let text = SCENE.replace("LAW", "{ formula = \"0\" }");
+    let folder = TestFolder::new("records-set");
+    let every = |key: &str| {
+        let sets = [(key.to_string(), "0.25".to_string())];
+        Scene::parse(&text, &folder, &sets).map(|scene| scene.probe[0].every)
+    };
+    assert_eq!(every("probe.tank.every").unwrap(), Some(0.25));
+    assert_eq!(every("probe.0.every").unwrap(), Some(0.25));
+    let told = every("probe.tnk.every").unwrap_err().to_string();
+    assert!(told.contains("did you mean \"tank\"?"), "{told}");
+}
