@@ -365,8 +365,8 @@ fn with_threads<T: Send>(threads: Option<usize>, work: impl FnOnce() -> Result<T
     thread_pool(threads)?.install(work)
 }
 
-/// Largest number of threads of a run: more than a machine has processors.
-pub const MOST_THREADS: usize = 4096;
+/// Largest number of threads of a run. More than the processors make it slower.
+pub const MOST_THREADS: usize = 1024;
 
 /// Creates a pool of `threads` threads, by default one for each processor.
 pub(crate) fn thread_pool(threads: Option<usize>) -> Result<rayon::ThreadPool> {

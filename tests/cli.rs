@@ -149,8 +149,9 @@ fn wrong_commands_are_refused_with_a_remedy() {
     folder.pontoon(&["run", "bathtub"]).assert_refused(2, &["\"bathtub\"", "pontoon scenes"]);
     folder.pontoon(&["run", "raft", "--dp", "-1"]).assert_refused(2, &["dp must be a positive number, not -1"]);
     folder.pontoon(&["run", "raft", "--until", "0"]).assert_refused(2, &["until"]);
-    folder.pontoon(&["run", "raft", "--threads", "0"]).assert_refused(2, &["threads are from 1 to 4096"]);
-    folder.pontoon(&["study", "raft", "--threads", "1000000"]).assert_refused(2, &["threads are from 1 to 4096"]);
+    folder.pontoon(&["run", "raft", "--threads", "0"]).assert_refused(2, &["threads are from 1 to 1024"]);
+    folder.pontoon(&["inspect", "raft", "--threads", "1025"]).assert_refused(2, &["threads are from 1 to 1024"]);
+    folder.pontoon(&["study", "raft", "--threads", "1000000"]).assert_refused(2, &["threads are from 1 to 1024"]);
     folder.pontoon(&["run", "raft", "--set", "dp"]).assert_refused(2, &["write key=value"]);
     folder.pontoon(&["run", "raft", "--set", "solid.boot.free.density=1"]).assert_refused(2, &["boot", "boat"]);
     folder.pontoon(&["run", "still-tank", "--dp", "1e-6"]).assert_refused(2, &["particles", "or more"]);
@@ -594,7 +595,10 @@ fn stats_watch_and_export_read_a_finished_run() {
     let rows: serde_json::Value = serde_json::from_str(&json.out).unwrap();
     assert!(rows.as_array().is_some_and(|rows| rows.iter().all(|row| row["from_s"].as_f64() >= Some(0.01))));
     folder.pontoon(&["stats", "a", "--series", "lo"]).assert_refused(2, &["nothing to tell", "low"]);
+    folder.pontoon(&["stats", "a", "--series", "low.p"]).assert_refused(2, &["did you mean \"low.p_Pa\"?"]);
     folder.pontoon(&["stats", "b"]).assert_refused(2, &["b"]);
+    folder.pontoon(&["report", "a", "--png", "x.jpg"]).assert_refused(2, &["ends in .png"]);
+    folder.pontoon(&["report", "a", "--png", "x.png", "--width", "0"]).assert_refused(2, &["200"]);
     folder.pontoon(&["stats", "a", "--from", "9"]).assert_refused(2, &["the readings in a end at 0.05 s", "--from"]);
     folder.pontoon(&["stats", "a", "--from", "0.04", "--until", "0.01"]).assert_refused(2, &["there is no time"]);
 
@@ -663,6 +667,31 @@ motion = "buoy"
 name = "sea"
 rao = { motion = "buoy.heave_m", wave = "gauge" }
 "#;
+
+#[test]
+fn damaged_and_missing_tables_of_a_run_are_told() {
+    let folder = TestFolder::new("damaged");
+    let output = folder.pontoon(&["run", "still-tank", "--until", "0.2", "--out", "a", "--quiet", "--no-report"]);
+    assert_eq!(output.code, Some(0), "{}", output.err);
+    let table = folder.0.join("a/series/low.csv");
+    let mut lines: Vec<String> = fs::read_to_string(&table).unwrap().lines().map(String::from).collect();
+    lines[2] = lines[2].replacen(',', ";", 1);
+    lines[4] = "nothing".into();
+    fs::write(&table, lines.join("\n") + "\n").unwrap();
+    let stats = folder.pontoon(&["stats", "a"]);
+    let told = "2 rows of series/low.csv are damaged, the first in line 3";
+    assert!(stats.code == Some(0) && stats.err.contains(told), "{}", stats.err);
+    fs::remove_file(&table).unwrap();
+    let stats = folder.pontoon(&["stats", "a"]);
+    assert!(stats.code == Some(0) && stats.err.contains("series/low.csv is missing"), "{}", stats.err);
+    let report = folder.pontoon(&["report", "a"]);
+    assert!(report.code == Some(0) && report.err.contains("series/low.csv is missing"), "{}", report.err);
+    for entry in fs::read_dir(folder.0.join("a/series")).unwrap() {
+        fs::remove_file(entry.unwrap().path()).unwrap();
+    }
+    folder.pontoon(&["stats", "a"]).assert_refused(2, &["has none of the tables of the run", "low", "pontoon run"]);
+    folder.pontoon(&["stats", "a", "--json"]).assert_refused(2, &["has none of the tables of the run"]);
+}
 
 #[test]
 fn raos_over_frequency_are_printed_in_addition_to_the_unchanged_statistics() {

@@ -38,7 +38,7 @@ pub struct CompareArgs {
 #[derive(Args)]
 struct PictureArgs {
     /// Write a picture to FILE instead of a page [default: frame.png]
-    #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = "frame.png")]
+    #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = "frame.png", value_parser = png_file)]
     png: Option<PathBuf>,
     #[command(flatten)]
     look: PictureStyleArgs,
@@ -57,7 +57,7 @@ pub struct PictureStyleArgs {
     #[arg(long, value_name = "LOW,HIGH", value_parser = number_pair, allow_hyphen_values = true, requires = "png")]
     range: Option<[f64; 2]>,
     /// Width of the picture, pixels
-    #[arg(long, value_name = "PIXELS", default_value_t = 1600, requires = "png")]
+    #[arg(long, value_name = "PIXELS", default_value_t = 1600, value_parser = clap::value_parser!(u32).range(200..=16_000), requires = "png")]
     width: u32,
 }
 
@@ -171,5 +171,14 @@ mod tests {
     fn the_ends_of_a_range_rise() {
         assert_eq!(number_pair("-5, 1e3"), Ok([-5.0, 1000.0]));
         assert!(["5,1", "1", "1,2,3", "a,b", "0,inf"].iter().all(|text| number_pair(text).is_err()));
+    }
+}
+
+/// Reads the name of a picture file.
+pub fn png_file(text: &str) -> std::result::Result<PathBuf, String> {
+    let file = PathBuf::from(text);
+    match file.extension().is_some_and(|end| end.eq_ignore_ascii_case("png")) {
+        true => Ok(file),
+        false => Err("a picture is a PNG file: give it a name that ends in .png".into()),
     }
 }

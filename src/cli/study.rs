@@ -58,7 +58,7 @@ pub struct StudyArgs {
     #[arg(long)]
     dry_run: bool,
     /// Draw the runs side by side to FILE at the end, a column for each
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_parser = super::report_page::png_file)]
     png: Option<PathBuf>,
     #[command(flatten)]
     look: PictureStyleArgs,

@@ -15,7 +15,7 @@ use super::time_series::TimeSeries;
 use crate::error::{Error, ErrorCode, Result, suggestion};
 pub use column_name::ColumnName;
 use layout::Layout;
-pub(crate) use unit::{is_angle, is_degree, is_without_size, si_factor};
+pub(crate) use unit::{Conversion, conversion, is_degree, is_without_size, of_series, si_factor};
 
 /// The name of the column of times in the tables of a run.
 const OWN_TIME: &str = "t_s";
@@ -169,6 +169,21 @@ impl TableReader {
             }
         }
         columns
+    }
+
+    /// The lines of the rows that [`TableReader::all_columns`] leaves out, or in which it leaves out a cell that is no
+    /// number. The last row does not count: a stopped run may have cut it.
+    pub(crate) fn damaged_rows(&self) -> Vec<usize> {
+        let rows: Vec<(usize, Vec<&str>)> = self.rows().collect();
+        let is_number = |cell: &str| cell::number(cell, self.layout.decimal).is_some();
+        let has_numbers = |i: usize| rows.iter().any(|(_, cells)| cells.get(i).is_some_and(|cell| is_number(cell)));
+        let numbers: Vec<bool> = (0..self.layout.count).map(has_numbers).collect();
+        let is_whole = |cells: &[&str]| {
+            let is_read = |(cell, in_numbers): (&&str, &bool)| !in_numbers || is_number(cell) || cell::is_missing(cell);
+            cells.len() == numbers.len() && is_number(cells[0]) && cells.iter().zip(&numbers).all(is_read)
+        };
+        let all_but_last = rows.iter().take(rows.len().saturating_sub(1));
+        all_but_last.filter(|(_, cells)| !is_whole(cells)).map(|(line, _)| *line).collect()
     }
 
     /// The series of `column` over the column `time`. If the table has no column `"t_s"`, this name means the column

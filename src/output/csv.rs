@@ -158,6 +158,8 @@ pub struct SeriesTable {
     pub columns: Vec<String>,
     /// Times, s.
     pub times: Vec<f64>,
+    /// Lines of the file with cells that could not be read; the incomplete last row is none of them.
+    pub damaged: Vec<usize>,
     /// One row for each time, with a number for each column; NaN where no measurement exists.
     pub values: Vec<Vec<f64>>,
 }
@@ -171,7 +173,18 @@ impl SeriesTable {
         let table = TableReader::open(path)?;
         let columns = table.column_names().into_iter().skip(1).collect();
         let mut values = table.all_columns().into_iter();
-        Ok(Self { columns, times: values.next().unwrap_or_default(), values: values.collect() })
+        let times = values.next().unwrap_or_default();
+        Ok(Self { columns, times, damaged: table.damaged_rows(), values: values.collect() })
+    }
+
+    /// Returns the remark that rows of the table `name` are damaged, if some are.
+    pub(crate) fn damage(&self, name: &str) -> Option<String> {
+        let first = self.damaged.first()?;
+        let rows = match self.damaged.len() {
+            1 => format!("1 row of series/{name}.csv is damaged, in line {first}"),
+            count => format!("{count} rows of series/{name}.csv are damaged, the first in line {first}"),
+        };
+        Some(format!("{rows}: what is no number there is left out"))
     }
 
     /// Returns the values of the column `name` from `from` to `until` (s), or `None` if there are fewer than two

@@ -133,6 +133,7 @@ impl RunData {
         let told = plan.map_or_else(RunStatistics::default, |plan| {
             run::statistics::run_statistics(folder, plan, &StatisticsFilter::default())
         });
+        remarks.extend(plan.iter().flat_map(|plan| run::statistics::damages(folder, plan)));
         Ok(Self {
             name: folder
                 .canonicalize()
@@ -248,7 +249,7 @@ impl ProbeTable {
     }
 
     fn read(series: &Path, name: &str, plan: Option<&Plan>) -> Result<Self> {
-        let SeriesTable { columns, times, values } = SeriesTable::read(&series.join(format!("{name}.csv")))?;
+        let SeriesTable { columns, times, values, .. } = SeriesTable::read(&series.join(format!("{name}.csv")))?;
         let probe = plan.and_then(|plan| plan.probes.iter().find(|probe| probe.name == name));
         let what = probe.map_or("table", |probe| probe.kind.label());
         Ok(Self { name: name.into(), what, columns, times, values })

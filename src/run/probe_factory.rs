@@ -30,13 +30,14 @@ fn build_probe<const D: usize>(plan: &ProbePlan, system: &System<D>) -> Result<B
     plan.kind.build(system)
 }
 
-/// The error for a `series` of a check or a statistic that is none of `known`.
-fn unknown_series(series: &str, known: &[String]) -> Error {
+/// The error for a `series` of the check or the statistic at `key` that is none of `known`.
+fn unknown_series(series: &str, known: &[String], key: &str) -> Error {
     let help = match nearest_name(series, known.iter().map(String::as_str)) {
         Some(near) => format!("did you mean {near:?}?"),
         None => format!("the series are: {}", known.join(", ")),
     };
-    Error::scene(format!("no probe writes the series {series:?}")).with_code(ErrorCode::UnknownName).help(help)
+    let error = Error::scene(format!("no probe writes the series {series:?}"));
+    error.with_code(ErrorCode::UnknownName).help(help).at("", None, key)
 }
 
 /// Builds the checks of `plan` and reads their references.
@@ -50,19 +51,21 @@ pub(crate) fn checks_from_plan<const D: usize>(
     let columns = plan.probes.iter().zip(probes);
     let known: Vec<String> =
         columns.flat_map(|(words, p)| p.columns().into_iter().map(move |c| format!("{}.{c}", words.name))).collect();
-    let told = plan.statistics.iter().flat_map(|words| words.what.series());
-    if let Some(series) = told.into_iter().find(|series| !known.iter().any(|known| known == series)) {
-        return Err(unknown_series(series, &known));
+    let told = plan.statistics.iter().enumerate();
+    let mut told = told.flat_map(|(i, words)| words.what.series().into_iter().map(move |series| (i, series)));
+    if let Some((i, series)) = told.find(|(_, series)| !known.iter().any(|known| known == series)) {
+        return Err(unknown_series(series, &known, &format!("statistic.{i}")));
     }
-    let check = |words: &CheckPlan| {
+    let check = |(i, words): (usize, &CheckPlan)| {
         let wave = match &words.reference {
             Reference::Response(response) => Some(&response.to),
             _ => None,
         };
-        if let Some(series) = [&words.series].into_iter().chain(wave).find(|series| !known.contains(series)) {
-            return Err(unknown_series(series, &known));
+        let named = [(&words.series, "series")].into_iter().chain(wave.map(|wave| (wave, "response.to")));
+        if let Some((series, word)) = named.into_iter().find(|(series, _)| !known.contains(series)) {
+            return Err(unknown_series(series, &known, &format!("check.{i}.{word}")));
         }
         ReferenceCheck::new(words, &plan.folder)
     };
-    plan.checks.iter().map(check).collect()
+    plan.checks.iter().enumerate().map(check).collect()
 }

@@ -71,7 +71,7 @@ where
         let leader = Leader::new(ranks.clone());
         let mut sim = Simulation::set_up(setup, ranks, false).map_err(|e| scene.with_location(e))?;
         let probes = probe_factory::probes_from_plan(&plan, &mut sim)?;
-        let checks = probe_factory::checks_from_plan(&plan, &probes)?;
+        let checks = probe_factory::checks_from_plan(&plan, &probes).map_err(|e| scene.with_location(e))?;
         let columns: Vec<usize> = probes.iter().map(|p| p.columns().len()).collect();
         let preflight = preflight::preflight(&sim, &plan, initial_water, &columns);
         let mut warnings = preflight.with_file_notes(&file_notes).warnings();

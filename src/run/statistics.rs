@@ -10,7 +10,7 @@ use serde::Serialize;
 use super::{outputs::series_folder, run_folder::scene_file};
 use crate::{
     analysis::{self, RaoPoint, moments, rao, rao_over_frequency, reflection, spectrum},
-    error::{Error, ErrorKind, Result},
+    error::{Error, ErrorKind, Result, suggestion},
     math::format::unit,
     math::time_series::TimeSeries,
     output::{Manifest, SeriesTable, write_atomically},
@@ -74,14 +74,27 @@ pub fn statistics(folder: &Path, asked: &StatisticsFilter) -> Result<RunStatisti
     let manifest = Manifest::read(folder)?;
     let sets: Vec<(String, String)> = manifest.set.into_iter().collect();
     let plan = Scene::read(&scene_file(&folder.join("scene")), &sets)?.plan()?;
-    let told = run_statistics(folder, &plan, asked);
+    let mut told = run_statistics(folder, &plan, asked);
+    let names: Vec<&str> = plan.probes.iter().map(|probe| probe.name.as_str()).collect();
+    if !names.is_empty() && missing_tables(folder, &plan).len() == names.len() {
+        let what =
+            format!("{} has none of the tables of the run: {}", series_folder(folder).display(), names.join(", "));
+        let help = "put them back, each as NAME.csv, or start the run afresh with `pontoon run`";
+        return Err(Error::new(ErrorKind::Restart, what).help(help));
+    }
+    told.remarks.extend(damages(folder, &plan));
     if told.rows.is_empty() {
         check_time_range(folder, &plan, asked)?;
     }
     match &asked.series {
         Some(series) if told.rows.is_empty() => {
-            let names: Vec<&str> = plan.probes.iter().map(|probe| probe.name.as_str()).collect();
-            let what = format!("there is nothing to tell of {series:?} in {}", folder.display());
+            let tables = read_tables(folder, &plan);
+            let of_table = |(probe, table): (&String, &SeriesTable)| -> Vec<String> {
+                table.columns.iter().map(|column| format!("{probe}.{column}")).collect()
+            };
+            let known: Vec<String> = tables.iter().flat_map(of_table).collect();
+            let near = suggestion(series, known.iter().map(String::as_str).chain(names.iter().copied()));
+            let what = format!("there is nothing to tell of {series:?} in {}{near}", folder.display());
             Err(Error::new(ErrorKind::Usage, what).help(format!("the probes are: {}", names.join(", "))))
         }
         _ => Ok(told),
@@ -130,6 +143,21 @@ fn read_tables(folder: &Path, plan: &Plan) -> ProbeTables {
     let series = series_folder(folder);
     let read = |name: &String| Some((name.clone(), SeriesTable::read(&series.join(format!("{name}.csv"))).ok()?));
     plan.probes.iter().filter_map(|probe| read(&probe.name)).collect()
+}
+
+/// Returns the names of the tables that the run in `folder` should have and has not.
+fn missing_tables<'a>(folder: &Path, plan: &'a Plan) -> Vec<&'a str> {
+    let series = series_folder(folder);
+    let names = plan.probes.iter().map(|probe| probe.name.as_str());
+    names.filter(|name| !series.join(format!("{name}.csv")).is_file()).collect()
+}
+
+/// Returns what is missing or damaged in the tables of the run in `folder`, a sentence for each table.
+pub(crate) fn damages(folder: &Path, plan: &Plan) -> Vec<String> {
+    let missing = missing_tables(folder, plan);
+    let missing = missing.into_iter().map(|name| format!("series/{name}.csv is missing: its series are left out"));
+    let damaged = read_tables(folder, plan);
+    missing.chain(damaged.iter().filter_map(|(name, table)| table.damage(name))).collect()
 }
 
 pub(crate) fn run_statistics(folder: &Path, plan: &Plan, asked: &StatisticsFilter) -> RunStatistics {

@@ -5,7 +5,7 @@ use crate::{
     probe,
 };
 
-/// Examples by key. A message shows the entry with the longest match at the end of the key.
+/// Examples by the whole key without its numbers; `*.` stands for any beginning. A whole key goes before such an end.
 const EXAMPLES: &[(&str, &str)] = &[
     ("title", "title = \"Box in a wave train\""),
     ("dimension", "dimension = 2"),
@@ -25,12 +25,12 @@ const EXAMPLES: &[(&str, &str)] = &[
     ("guard", "[guard]\nescape = \"remove\""),
     ("guard.speed", "speed = 0.5          # of c0"),
     ("guard.density", "density = [0.5, 1.5] # of rho0"),
-    ("escape", "escape = \"remove\"    # or \"stop\""),
+    ("guard.escape", "escape = \"remove\"    # or \"stop\""),
     ("water.velocity", "velocity = [\"0.1*sin(2*pi*x)\", 0.0]        # m/s, one entry an axis"),
     ("water.pressure", "pressure = \"20*cos(2*pi*x)\"        # Pa, beyond that of water at rest"),
     ("water", "[[water]]\nfill = { box = { min = [0.0, 0.0], max = [1.0, 0.4] } }"),
-    ("fill", "fill = { box = { min = [0.0, 0.0], max = [1.0, 0.4] } }"),
-    ("level", "level = 0.4        # height of the surface, m"),
+    ("water.fill", "fill = { box = { min = [0.0, 0.0], max = [1.0, 0.4] } }"),
+    ("*.level", "level = 0.4        # height of the surface, m"),
     (
         "inflow",
         "[[inflow]]\nx        = 0.0        # m, where the water begins\nvelocity = 0.5        # m/s, into the water",
@@ -40,10 +40,12 @@ const EXAMPLES: &[(&str, &str)] = &[
     ("outflow.velocity", "velocity = 0.5        # m/s, out of the water; or a formula, \"0.6*y*(2-y)\""),
     ("inflow.x", "x = 0.0        # m, where the water begins"),
     ("outflow.x", "x = 6.0        # m, where the water ends"),
-    ("factor", "factor = \"min(t/2, 1)\""),
-    ("absorb", "absorb = true"),
+    ("*.factor", "factor = \"min(t/2, 1)\""),
+    ("inflow.absorb", "absorb = true"),
+    ("outflow.absorb", "absorb = true"),
     ("current", "current = { along = \"x\", discharge = 0.25 }        # m²/s; m³/s in 3-D"),
-    ("discharge", "discharge = 0.25        # m²/s; m³/s in 3-D"),
+    ("current.discharge", "discharge = 0.25        # m²/s; m³/s in 3-D"),
+    ("current.response", "response = 2.0        # s, in which the discharge follows"),
     ("current.along", "along = \"x\""),
     ("towed", "towed = { along = \"x\", velocity = \"0.5*min(t, 2)\" }        # m/s"),
     ("towed.along", "along = \"x\""),
@@ -51,80 +53,92 @@ const EXAMPLES: &[(&str, &str)] = &[
     ("damping", "[[damping]]\nfrom = [6.0, 0.0]\nto   = [8.0, 0.0]"),
     ("damping.from", "from = [6.0, 0.0]        # m, where the zone begins"),
     ("damping.to", "to = [8.0, 0.0]          # m, where it is full"),
-    ("strength", "strength = 5.0        # 1/s"),
+    ("damping.strength", "strength = 5.0        # 1/s"),
     ("damping.power", "power = 2.0           # even: 1, gentler at first: more"),
     ("solid", "[[solid]]\nname  = \"box\"\nshape = { box = { size = [0.1, 0.05] } }\nfree  = { density = 500.0 }"),
-    ("name", "name = \"box\""),
-    ("shape", "shape = { box = { size = [0.1, 0.05] } }"),
-    ("shape.box", "shape = { box = { size = [0.1, 0.05] } }"),
-    ("shape.ball", "shape = { ball = { radius = 0.1 } }"),
-    ("shape.capsule", "shape = { capsule = { length = 0.2, radius = 0.05, axis = \"x\" } }"),
-    ("shape.cylinder", "shape = { cylinder = { length = 0.2, radius = 0.05, axis = \"z\" } }"),
-    ("shape.ellipsoid", "shape = { ellipsoid = { radii = [0.3, 0.1, 0.1] } }"),
-    ("shape.cone", "shape = { cone = { radius = 0.1, length = 0.2 } }"),
-    ("shape.frustum", "shape = { frustum = { radius_bottom = 0.2, radius_top = 0.1, length = 0.2 } }"),
-    ("shape.wedge", "shape = { wedge = { size = [1.0, 0.5, 0.2] } }"),
-    ("shape.prism", "shape = { prism = { points = [[0.0, 0.0], [0.1, 0.0], [0.0, 0.1]], length = 0.5 } }"),
-    ("shape.torus", "shape = { torus = { radius = 0.2, tube_radius = 0.05 } }"),
-    ("shape.polygon", "shape = { polygon = [[0.0, 0.0], [0.1, 0.0], [0.0, 0.1]] }"),
-    ("shape.polyline", "shape = { polyline = [[0.0, 0.0], [4.0, 0.0], [10.0, 0.6]] }"),
-    ("shape.tank", "shape = { tank = { size = [1.0, 0.5] } }"),
-    ("shape.compound", "shape = { compound = [{ shape = { ball = { radius = 0.1 } }, at = { x = 0.1 } }] }"),
-    ("at", "at = { x = 2.0, draft = \"equilibrium\" }"),
-    ("draft", "at = { x = 2.0, draft = \"equilibrium\" }"),
-    ("fixed", "fixed = true"),
-    ("driven", "driven = { along = [1.0, 0.0], distance = { formula = \"0.05*sin(2*pi*t)\" } }"),
+    ("*.name", "name = \"box\""),
+    ("*.shape", "shape = { box = { size = [0.1, 0.05] } }"),
+    ("solid.shape.box", "shape = { box = { size = [0.1, 0.05] } }"),
+    ("solid.shape.ball", "shape = { ball = { radius = 0.1 } }"),
+    ("solid.shape.capsule", "shape = { capsule = { length = 0.2, radius = 0.05, axis = \"x\" } }"),
+    ("solid.shape.cylinder", "shape = { cylinder = { length = 0.2, radius = 0.05, axis = \"z\" } }"),
+    ("solid.shape.ellipsoid", "shape = { ellipsoid = { radii = [0.3, 0.1, 0.1] } }"),
+    ("solid.shape.cone", "shape = { cone = { radius = 0.1, length = 0.2 } }"),
+    ("solid.shape.frustum", "shape = { frustum = { radius_bottom = 0.2, radius_top = 0.1, length = 0.2 } }"),
+    ("solid.shape.wedge", "shape = { wedge = { size = [1.0, 0.5, 0.2] } }"),
+    ("solid.shape.prism", "shape = { prism = { points = [[0.0, 0.0], [0.1, 0.0], [0.0, 0.1]], length = 0.5 } }"),
+    ("solid.shape.torus", "shape = { torus = { radius = 0.2, tube_radius = 0.05 } }"),
+    ("solid.shape.polygon", "shape = { polygon = [[0.0, 0.0], [0.1, 0.0], [0.0, 0.1]] }"),
+    ("solid.shape.polyline", "shape = { polyline = [[0.0, 0.0], [4.0, 0.0], [10.0, 0.6]] }"),
+    ("solid.shape.tank", "shape = { tank = { size = [1.0, 0.5] } }"),
+    ("solid.shape.compound", "shape = { compound = [{ shape = { ball = { radius = 0.1 } }, at = { x = 0.1 } }] }"),
+    ("solid.at", "at = { x = 2.0, draft = \"equilibrium\" }"),
+    ("water.fill.at", "at = { x = 2.0, draft = \"equilibrium\" }"),
+    ("solid.at.draft", "at = { x = 2.0, draft = \"equilibrium\" }"),
+    ("solid.fixed", "fixed = true"),
+    ("solid.driven", "driven = { along = [1.0, 0.0], distance = { formula = \"0.05*sin(2*pi*t)\" } }"),
     (
-        "motions",
+        "solid.driven.motions",
         "motions = [\n  { along = [1.0, 0.0], distance = { formula = \"0.05*sin(2*pi*t)\" } },\n  { hinge = [0.5, 0.0], angle_deg = { formula = \"2*sin(2*pi*t)\" } },\n]",
     ),
-    ("driven.wave", "wave = { regular = { height = 0.1, period = 1.2 } }"),
-    ("wave.regular", "wave = { regular = { height = 0.1, period = 1.2 } }"),
-    ("wave.jonswap", "wave = { jonswap = { height = 0.1, peak_period = 1.4, seed = 1 } }"),
-    ("wave.bretschneider", "wave = { bretschneider = { height = 0.1, peak_period = 1.4, seed = 1 } }"),
-    ("wave.pierson_moskowitz", "wave = { pierson_moskowitz = { height = 0.1, seed = 1 } }"),
-    ("wave.focused", "wave = { focused = { crest = 0.08, peak_period = 1.4, distance = 4.0, time = 10.0 } }"),
-    ("wave.solitary", "wave = { solitary = { height = 0.1 } }"),
-    ("wave.components", "wave = { components = { file = \"components.csv\" } }"),
-    ("wave.elevation", "wave = { elevation = { file = \"gauge.csv\", column = \"eta_m\", distance = 2.0 } }"),
-    ("jonswap.peak_period", "wave = { jonswap = { height = 0.1, peak_period = 1.4, seed = 1 } }"),
-    ("bretschneider.peak_period", "wave = { bretschneider = { height = 0.1, peak_period = 1.4, seed = 1 } }"),
-    ("wave.absorb", "absorb = true, or  absorb = { period = 1.2, stroke = 0.4, speed = 1.0 }        # s, m, m/s"),
-    ("wave.ramp", "ramp = 2.4        # s"),
-    ("wave.depth", "depth = 0.4       # of the still water at the paddle, m"),
-    ("along", "driven = { along = [1.0, 0.0], distance = { formula = \"0.05*sin(2*pi*t)\" } }"),
-    ("distance", "distance = { formula = \"0.05*sin(2*pi*t)\" }"),
-    ("hinge", "driven = { hinge = [0.0, 0.0], angle = { file = \"flap.csv\", column = \"angle_deg\" } }"),
-    ("angle", "angle = { file = \"flap.csv\", column = \"angle_deg\" }"),
-    ("angle_deg", "angle_deg = { formula = \"5*sin(2*pi*t)\" }"),
-    ("formula", "formula = \"0.05*sin(2*pi*t)\""),
-    ("free", "free = { density = 500.0 }"),
+    ("solid.driven.wave", "wave = { regular = { height = 0.1, period = 1.2 } }"),
+    ("*.wave.regular", "wave = { regular = { height = 0.1, period = 1.2 } }"),
+    ("*.wave.jonswap", "wave = { jonswap = { height = 0.1, peak_period = 1.4, seed = 1 } }"),
+    ("*.wave.bretschneider", "wave = { bretschneider = { height = 0.1, peak_period = 1.4, seed = 1 } }"),
+    ("*.wave.pierson_moskowitz", "wave = { pierson_moskowitz = { height = 0.1, seed = 1 } }"),
+    (
+        "solid.driven.wave.focused",
+        "wave = { focused = { crest = 0.08, peak_period = 1.4, distance = 4.0, time = 10.0 } }",
+    ),
+    ("solid.driven.wave.solitary", "wave = { solitary = { height = 0.1 } }"),
+    ("*.wave.components", "wave = { components = { file = \"components.csv\" } }"),
+    (
+        "solid.driven.wave.elevation",
+        "wave = { elevation = { file = \"gauge.csv\", column = \"eta_m\", distance = 2.0 } }",
+    ),
+    ("*.jonswap.peak_period", "wave = { jonswap = { height = 0.1, peak_period = 1.4, seed = 1 } }"),
+    ("*.bretschneider.peak_period", "wave = { bretschneider = { height = 0.1, peak_period = 1.4, seed = 1 } }"),
+    (
+        "solid.driven.wave.absorb",
+        "absorb = true, or  absorb = { period = 1.2, stroke = 0.4, speed = 1.0 }        # s, m, m/s",
+    ),
+    ("*.wave.ramp", "ramp = 2.4        # s"),
+    ("solid.driven.along", "driven = { along = [1.0, 0.0], distance = { formula = \"0.05*sin(2*pi*t)\" } }"),
+    ("solid.driven.distance", "distance = { formula = \"0.05*sin(2*pi*t)\" }"),
+    ("solid.driven.hinge", "driven = { hinge = [0.0, 0.0], angle = { file = \"flap.csv\", column = \"angle_deg\" } }"),
+    ("solid.driven.angle", "angle = { file = \"flap.csv\", column = \"angle_deg\" }"),
+    ("solid.driven.angle_deg", "angle_deg = { formula = \"5*sin(2*pi*t)\" }"),
+    ("*.formula", "formula = \"0.05*sin(2*pi*t)\""),
+    ("solid.free", "free = { density = 500.0 }"),
     ("joint.free", "free = [\"y\", \"turn\"]"),
-    ("density", "free = { density = 500.0 }        # kg/m³"),
-    ("inertia", "free = { density = 500.0, inertia = 0.005 }        # kg m²/m; three numbers in 3-D"),
-    ("release", "free = { density = 500.0, release = 1.0 }        # s"),
-    ("ballast", "free = { density = 500.0, ballast = [{ at = [0.1, 0.0], mass = \"0.5*t\" }] }"),
-    ("locked", "free = { density = 500.0, locked = [\"x\", \"turn\"] }"),
-    ("contact_skin", "contact_skin = 0.005        # m"),
+    ("solid.free.density", "free = { density = 500.0 }        # kg/m³"),
+    ("solid.free.inertia", "free = { density = 500.0, inertia = 0.005 }        # kg m²/m; three numbers in 3-D"),
+    ("solid.free.release", "free = { density = 500.0, release = 1.0 }        # s"),
+    ("solid.free.ballast", "free = { density = 500.0, ballast = [{ at = [0.1, 0.0], mass = \"0.5*t\" }] }"),
+    ("solid.free.locked", "free = { density = 500.0, locked = [\"x\", \"turn\"] }"),
+    ("solid.contact_skin", "contact_skin = 0.005        # m"),
     (
         "joint",
         "[[joint]]\nname    = \"hinge\"\nkind    = \"hinge\"\nbetween = [\"fore\", \"aft\"]\nat      = [2.0, 0.5]",
     ),
-    ("kind", "kind = \"hinge\"      # or \"slider\", \"fixed\", \"ball\", \"tow\", \"generic\""),
-    ("between", "between = [\"fore\", \"aft\"]        # two solids; or one, and the world"),
-    ("regular.height", "regular = { height = 0.1, period = 1.2 }        # m, s"),
-    ("regular.period", "regular = { height = 0.1, period = 1.2 }        # m, s"),
-    ("axis", "axis = [0.0, 1.0, 0.0]"),
+    ("joint.kind", "kind = \"hinge\"      # or \"slider\", \"fixed\", \"ball\", \"tow\", \"generic\""),
+    ("joint.between", "between = [\"fore\", \"aft\"]        # two solids; or one, and the world"),
+    ("spring.between", "between = [\"fore\", \"aft\"]        # two solids; or one, and the world"),
+    ("rope.between", "between = [\"fore\", \"aft\"]        # two solids; or one, and the world"),
+    ("*.regular.height", "regular = { height = 0.1, period = 1.2 }        # m, s"),
+    ("*.regular.period", "regular = { height = 0.1, period = 1.2 }        # m, s"),
+    ("joint.axis", "axis = [0.0, 1.0, 0.0]"),
+    ("solid.driven.axis", "axis = [0.0, 1.0, 0.0]"),
     ("joint.along", "along = [0.0, 1.0]"),
     ("joint.at", "at = [2.0, 0.5]        # m, in the world, at the start"),
-    ("limits", "limits = [-0.1, 0.1]        # m or rad, from the start"),
-    ("limits_deg", "limits_deg = [-30.0, 30.0]"),
-    ("motor", "motor = { damping = 20.0 }        # a power take-off"),
-    ("motor.damping", "motor = { damping = 20.0 }"),
-    ("motor.stiffness", "motor = { position = 0.0, stiffness = 500.0, damping = 20.0 }"),
-    ("motor.velocity", "motor = { velocity = 0.5, damping = 20.0 }"),
-    ("motor.force", "motor = { force = \"5*sin(2*pi*t)\" }"),
-    ("motor.torque", "motor = { torque = \"5*sin(2*pi*t)\" }"),
+    ("joint.limits", "limits = [-0.1, 0.1]        # m or rad, from the start"),
+    ("joint.limits_deg", "limits_deg = [-30.0, 30.0]"),
+    ("joint.motor", "motor = { damping = 20.0 }        # a power take-off"),
+    ("joint.motor.damping", "motor = { damping = 20.0 }"),
+    ("joint.motor.stiffness", "motor = { position = 0.0, stiffness = 500.0, damping = 20.0 }"),
+    ("joint.motor.velocity", "motor = { velocity = 0.5, damping = 20.0 }"),
+    ("joint.motor.force", "motor = { force = \"5*sin(2*pi*t)\" }"),
+    ("joint.motor.torque", "motor = { torque = \"5*sin(2*pi*t)\" }"),
     (
         "spring",
         "[[spring]]\nname      = \"line\"\nbetween   = [\"buoy\"]\nfrom      = [1.0, 0.4]\nto        = [1.0, 0.0]\n\
@@ -137,7 +151,7 @@ const EXAMPLES: &[(&str, &str)] = &[
          stiffness       = 3e4         # EA, N",
     ),
     ("line_type.diameter", "diameter = 0.0037        # of the volume of a metre, m"),
-    ("mass_per_length", "mass_per_length = 0.0607        # in air, kg/m"),
+    ("line_type.mass_per_length", "mass_per_length = 0.0607        # in air, kg/m"),
     ("line_type.stiffness", "stiffness = 3e4        # EA, N"),
     ("line_type.damping_ratio", "damping_ratio = 1.0        # of the critical damping of a segment"),
     (
@@ -149,22 +163,24 @@ const EXAMPLES: &[(&str, &str)] = &[
     ("mooring.between", "between = [\"box\"]        # the other end is on the ground"),
     ("mooring.from", "from = [2.9, 0.4]        # m, on the solid"),
     ("mooring.to", "to = [1.0, 0.0]        # m, on the ground"),
-    ("paid_out", "paid_out = { formula = \"0.05*t\" }        # m"),
+    ("mooring.paid_out", "paid_out = { formula = \"0.05*t\" }        # m"),
     ("mooring_point", "[[mooring_point]]\nname   = \"bridle\"\nat     = [2.0, 0.3]\nmass   = 0.1\nvolume = 3e-4"),
-    ("line", "line = \"chain\"        # the name of a [[line_type]]"),
-    ("segments", "segments = 20"),
-    ("clumps", "clumps = [{ at = 1.0, mass = 0.2 }]        # m, kg"),
+    ("mooring.line", "line = \"chain\"        # the name of a [[line_type]]"),
+    ("mooring.segments", "segments = 20"),
+    ("mooring.clumps", "clumps = [{ at = 1.0, mass = 0.2 }]        # m, kg"),
     ("force", "[[force]]\nname  = \"wind\"\non    = \"box\"\nforce = [\"20*sin(t)\", 0.0]"),
-    ("on", "on = \"box\""),
+    ("force.on", "on = \"box\""),
+    ("probe.on", "on = \"box\""),
+    ("probe.elevation.on", "on = \"box\""),
     ("force.force", "force = [\"20*sin(t)\", 0.0]        # N, one entry an axis"),
     ("force.torque", "torque = \"2*sin(t)\"        # N m; three of them in 3-D"),
-    ("since", "since = 1.0        # s"),
+    ("*.since", "since = 1.0        # s"),
     ("spring.until", "until = 4.0        # s"),
     ("rope.until", "until = 4.0        # s"),
     ("joint.until", "until = 4.0        # s"),
     ("force.until", "until = 4.0        # s"),
     ("solid.until", "until = 4.0        # s, when it is removed"),
-    ("breaks", "breaks = { tension = 300.0 }        # N"),
+    ("*.breaks", "breaks = { tension = 300.0 }        # N"),
     ("joint.breaks", "breaks = { force = 300.0 }        # N, or  { torque = 20.0 }, N m"),
     ("wind", "[[wind]]\nvelocity = [10.0, 0.0]\non       = [\"box\"]"),
     ("wind.velocity", "velocity = [10.0, 0.0]        # m/s, one entry an axis"),
@@ -178,72 +194,102 @@ const EXAMPLES: &[(&str, &str)] = &[
     ("control.min", "min = -2.0        # in the unit of the key"),
     ("control.max", "max = 2.0        # in the unit of the key"),
     ("model", "[model]\nviscosity = { riemann = { eta = 3.0 } }"),
-    ("kernel", "kernel = \"wendland\""),
-    ("viscosity", "viscosity = { riemann = { eta = 3.0 } }"),
-    ("viscosity.artificial", "viscosity = { artificial = { alpha = 0.02 } }"),
-    ("viscosity.riemann", "viscosity = { riemann = { eta = 3.0 } }"),
-    ("viscosity.laminar", "viscosity = { laminar = { nu0 = 1e-6 } }"),
-    ("viscosity.sps", "viscosity = { sps = { nu0 = 1e-6 } }"),
-    ("diffusion", "diffusion = { fourtakas = { delta = 0.1 } }"),
-    ("shifting", "shifting = { everywhere = { a = 2.0 } }"),
-    ("walls", "walls = \"relaxed_adami\" # or \"dbc\""),
-    ("gradient", "gradient = \"near_surface\" # or \"plain\", \"corrected\""),
-    ("slip", "slip = \"none\"         # or \"free\", \"partial\""),
-    ("sweep", "sweep = \"fast\""),
-    ("device", "device = \"gpu\"        # or the number of a device as a text, \"0\"; \"cpu\" is the processor"),
+    ("model.kernel", "kernel = \"wendland\""),
+    ("model.viscosity", "viscosity = { riemann = { eta = 3.0 } }"),
+    ("model.viscosity.artificial", "viscosity = { artificial = { alpha = 0.02 } }"),
+    ("model.viscosity.riemann", "viscosity = { riemann = { eta = 3.0 } }"),
+    ("model.viscosity.laminar", "viscosity = { laminar = { nu0 = 1e-6 } }"),
+    ("model.viscosity.sps", "viscosity = { sps = { nu0 = 1e-6 } }"),
+    ("model.diffusion", "diffusion = { fourtakas = { delta = 0.1 } }"),
+    ("model.shifting", "shifting = { everywhere = { a = 2.0 } }"),
+    ("model.walls", "walls = \"relaxed_adami\" # or \"dbc\""),
+    ("model.gradient", "gradient = \"near_surface\" # or \"plain\", \"corrected\""),
+    ("model.slip", "slip = \"none\"         # or \"free\", \"partial\""),
+    ("model.sweep", "sweep = \"fast\""),
+    ("model.device", "device = \"gpu\"        # or the number of a device as a text, \"0\"; \"cpu\" is the processor"),
     ("time", "[time]\nscheme = \"symplectic\""),
-    ("scheme", "scheme = { verlet = { euler_every = 50 } }"),
+    ("time.scheme", "scheme = { verlet = { euler_every = 50 } }"),
     ("probe", "[[probe]]\nmotion = \"box\""),
-    ("motion", "motion = \"box\""),
-    ("elevation", "elevation = { x = 1.16 }, or a row:  elevation = { from = 1.0, to = 3.0, count = 5 }"),
-    ("surface", "surface = \"highest\"      # or \"lowest\", \"all\""),
-    ("count", "count = 5"),
-    ("spacing", "spacing = 0.1        # m"),
-    ("flow", "flow = { from = [1.0, 0.3], to = [1.0, 0.6] }        # positive to the right: along x, if upwards"),
-    ("average", "average = true"),
-    ("velocity", "velocity = [0.75, 0.03]"),
-    ("pressure", "pressure = [0.75, 0.03]"),
+    ("*.motion", "motion = \"box\""),
+    ("probe.elevation", "elevation = { x = 1.16 }, or a row:  elevation = { from = 1.0, to = 3.0, count = 5 }"),
+    ("probe.elevation.surface", "surface = \"highest\"      # or \"lowest\", \"all\""),
+    ("*.count", "count = 5"),
+    ("*.spacing", "spacing = 0.1        # m"),
+    ("probe.flow", "flow = { from = [1.0, 0.3], to = [1.0, 0.6] }        # positive to the right: along x, if upwards"),
+    ("probe.average", "average = true"),
+    ("probe.velocity", "velocity = [0.75, 0.03]"),
+    ("probe.pressure", "pressure = [0.75, 0.03]"),
     ("frames", "frames = { every = 0.05, fields = [\"velocity\", \"pressure\"] }"),
-    ("fields", "fields = [\"velocity\", \"density\", \"pressure\", \"id\"]"),
+    ("frames.fields", "fields = [\"velocity\", \"density\", \"pressure\", \"id\"]"),
     ("checkpoint", "checkpoint = { wall = 600.0 }"),
     ("check", "[[check]]\nseries = \"box.heave_m\"\nreference = \"body.csv\"\ncolumn = \"heave_m\""),
     ("statistic", "[[statistic]]\nreflection = [\"g1\", \"g2\", \"g3\"]"),
-    ("waves", "waves = \"gauge.eta_m\""),
-    ("reflection", "reflection = [\"g1\", \"g2\", \"g3\"]"),
-    ("rao", "rao = { motion = \"buoy\", wave = \"gauge\" }"),
-    ("period", "period = 1.2       # s"),
-    ("depth", "depth = 0.4        # m"),
-    ("series", "series = \"box.heave_m\""),
-    ("reference", "reference = \"body.csv\""),
-    ("column", "column = \"x_m\", or  column = 2        # counted from 1"),
+    ("statistic.waves", "waves = \"gauge.eta_m\""),
+    ("statistic.reflection", "reflection = [\"g1\", \"g2\", \"g3\"]"),
+    ("statistic.rao", "rao = { motion = \"buoy\", wave = \"gauge\" }"),
+    ("*.period", "period = 1.2       # s"),
+    ("*.depth", "depth = 0.4        # m"),
+    ("check.series", "series = \"box.heave_m\""),
+    ("check.reference", "reference = \"body.csv\""),
+    ("*.column", "column = \"x_m\", or  column = 2        # counted from 1"),
     ("check.column", "column = \"heave_m\""),
-    ("time_factor", "time_factor = 0.001        # milliseconds to s"),
-    ("offset", "offset = -12.5        # s, added to the times of the table"),
+    ("*.time_factor", "time_factor = 0.001        # milliseconds to s"),
+    ("*.offset", "offset = -12.5        # s, added to the times of the table"),
     ("check.formula", "formula = \"0.05*cos(2*pi*t/1.2)\""),
-    ("response", "response = { to = \"gauge.eta_m\", period = 1.2, ratio = 1.1 }"),
-    ("response.to", "to = \"gauge.eta_m\""),
-    ("response.period", "period = 1.2        # s"),
-    ("response.ratio", "ratio = 1.1        # amplitude over that of the other series"),
-    ("response.lag", "lag = 0.25        # periods behind the other series"),
+    ("check.response", "response = { to = \"gauge.eta_m\", period = 1.2, ratio = 1.1 }"),
+    ("check.response.to", "to = \"gauge.eta_m\""),
+    ("check.response.period", "period = 1.2        # s"),
+    ("check.response.ratio", "ratio = 1.1        # amplitude over that of the other series"),
+    ("check.response.lag", "lag = 0.25        # periods behind the other series"),
     ("check.from", "from = 1.0         # s, of the run"),
     ("check.until", "until = 2.0        # s, of the run"),
     ("check.zero", "zero = 6.32        # s, of the run"),
     ("check.mean", "mean = 0.005       # s"),
-    ("align", "align = \"best\", or  align = { crossing = 5.0 }"),
-    ("align.crossing", "align = { crossing = 5.0 }        # in the unit of the series"),
-    ("align.start", "align = { start = 5.0 }        # in the unit of the series"),
-    ("bound", "bound = { N = 0.3, M = 0.2, peak = 0.2, off = 0.01, aligned_N = 0.2, delay = 0.05, period = 0.05 }"),
-    ("paper", "paper = { N = 0.355, M = 1.115 }"),
+    ("check.align", "align = \"best\", or  align = { crossing = 5.0 }"),
+    ("check.align.crossing", "align = { crossing = 5.0 }        # in the unit of the series"),
+    ("check.align.start", "align = { start = 5.0 }        # in the unit of the series"),
+    (
+        "check.bound",
+        "bound = { N = 0.3, M = 0.2, peak = 0.2, off = 0.01, aligned_N = 0.2, delay = 0.05, period = 0.05 }",
+    ),
+    ("check.paper", "paper = { N = 0.355, M = 1.115 }"),
+    ("force.at", "at = [0.1, 0.0]        # m, on the solid, from its reference point"),
+    ("solid.free.ballast.at", "at = [0.1, 0.0]        # m, in the frame of the solid"),
+    ("mooring.clumps.at", "at = 1.0        # m along the line, from its first end"),
+    ("mooring_point.at", "at = [2.0, 0.3]        # m, at the start"),
+    ("*.at.angle_deg", "angle_deg = 5.0        # degrees, counter-clockwise"),
+    ("spring.damping", "damping = 20.0        # N s/m"),
+    ("*.breaks.force", "force = 300.0        # N"),
+    ("*.breaks.torque", "torque = 20.0        # N m"),
+    ("*.breaks.tension", "tension = 300.0        # N"),
+    ("solid.driven.wave.focused.distance", "distance = 4.0        # m, from the paddle"),
+    ("solid.driven.wave.focused.time", "time = 10.0        # s"),
+    ("solid.driven.wave.elevation.distance", "distance = 2.0        # m, from the paddle"),
+    ("*.time", "time = \"t_s\", or  time = 1        # the column of times"),
+    ("*.mesh.contact", "contact = \"hull\""),
+    ("contact.between", "between = [\"box\", \"tank\"]"),
+    ("*.axis", "axis = \"z\""),
+    ("solid.free.velocity", "velocity = [0.5, 0.0]        # m/s, at the start, one entry an axis"),
+    ("check.bound.period", "period = 0.05        # of the period of the reference"),
+    ("check.paper.period", "period = 0.05        # of the period of the reference"),
 ];
 
 /// Returns an example for `key` that the user can copy.
 pub(super) fn example(key: &str) -> Option<String> {
-    let parts: Vec<&str> = key.split('.').filter(|part| part.parse::<usize>().is_err()).collect();
-    let tail = |from: usize| parts[from..].join(".");
-    let own = parts.len().checked_sub(2).map(tail).into_iter().chain(parts.len().checked_sub(1).map(tail));
-    let of_probe = |tail: &str| tail.strip_prefix("probe.").and_then(probe::example);
-    let listed = |tail: &str| EXAMPLES.iter().find(|(key, _)| *key == tail).map(|(_, example)| *example);
-    own.filter_map(|tail| listed(&tail).or_else(|| of_probe(&tail))).next().map(example_help)
+    let path = without_numbers(key);
+    let listed = |path: &str| EXAMPLES.iter().find(|(key, _)| *key == path).map(|(_, example)| *example);
+    let is_end = |end: &str| path.strip_suffix(end).is_some_and(|rest| rest.ends_with('.'));
+    let ends = EXAMPLES.iter().filter_map(|(key, example)| Some((key.strip_prefix("*.")?, example)));
+    let longest = || ends.filter(|(end, _)| is_end(end)).max_by_key(|(end, _)| end.len()).map(|(_, example)| *example);
+    let of_probe = || path.strip_prefix("probe.").and_then(probe::example);
+    listed(&path).or_else(of_probe).or_else(longest).map(example_help)
+}
+
+/// Returns the path of `key` without numbers. A part of a compound counts as a shape, and a motion of several as one.
+fn without_numbers(key: &str) -> String {
+    let parts: Vec<&str> = key.split('.').filter(|part| !part.is_empty() && part.parse::<usize>().is_err()).collect();
+    let whole = parts.join(".");
+    whole.replace("compound.shape", "shape").replace("shape.shape", "shape").replace("driven.motions.", "driven.")
 }
 
 fn example_help(example: &str) -> String {
@@ -296,19 +342,32 @@ pub(super) fn explain(message: &str, key: &str) -> (Error, String) {
         return (with(error, [known].into_iter().chain(guess).collect()), shown);
     }
     if let (true, [word, known @ ..]) = (message.starts_with("unknown variant"), &words[..]) {
-        let key = key.strip_suffix(&format!(".{word}")).unwrap_or(key);
+        let (key, is_table) = match key.strip_suffix(&format!(".{word}")) {
+            Some(above) => (above, true),
+            None => (key, false),
+        };
         let error =
             Error::scene(format!("unknown {} \"{word}\"{}", key_noun(key), suggestion(word, known.iter().copied())))
                 .with_code(ErrorCode::UnknownName);
         let known_names = known.iter().copied();
         let known = format!("known: {}", list(known));
-        let near = nearest_name(word, known_names).and_then(|near| example(&format!("{key}.{near}")));
+        let in_list = key.rsplit('.').next().is_some_and(|part| part.parse::<usize>().is_ok());
+        let near = nearest_name(word, known_names).map(|near| {
+            example(&format!("{key}.{near}")).unwrap_or_else(|| match is_table || in_list {
+                true => format!("write  {near}  in place of  {word}"),
+                false => format!("write  {} = \"{near}\"", key_noun(key)),
+            })
+        });
         return (with(error, [known].into_iter().chain(near.or_else(|| example(key))).collect()), key.to_string());
     }
     if let (true, [word]) = (message.starts_with("missing field"), &words[..]) {
         let error = Error::scene(format!("\"{word}\" is missing")).with_code(ErrorCode::MissingKey);
         let full = if key.is_empty() { word.to_string() } else { format!("{key}.{word}") };
-        let own = example(&full).or_else(|| example(key).map(|example| line_of(word, &example).unwrap_or(example)));
+        // The example of the section counts if it has the key.
+        let has_word =
+            |example: &String| example.split(|c: char| !c.is_alphanumeric() && c != '_').any(|part| part == *word);
+        let of_section = || example(key).and_then(|all| line_of(word, &all).or_else(|| Some(all).filter(has_word)));
+        let own = example(&full).or_else(of_section);
         return (with(error, own.into_iter().collect()), full);
     }
     if let Some((found, wanted)) = message
@@ -364,3 +423,7 @@ pub(super) fn toml_help(message: &str) -> &'static str {
         "words need quotes, decimals a digit on both sides of the point: fixed = true, dp = 0.01, name = \"box\""
     }
 }
+
+#[cfg(test)]
+#[path = "../../tests/unit/scene/diagnostics.rs"]
+mod tests;

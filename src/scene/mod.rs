@@ -379,17 +379,18 @@ impl Scene {
     /// `File` if no scene can be read at `path`; `Scene` with line, column and advice if a key or value is wrong.
     pub fn read(path: &Path, sets: &[(String, String)]) -> Result<Self> {
         let file = if path.is_dir() { path.join("scene.toml") } else { path.to_path_buf() };
-        let mut text = String::new();
+        let mut bytes = Vec::new();
         let opened = std::fs::File::open(&file);
-        opened.and_then(|opened| opened.take(MOST_TEXT + 1).read_to_string(&mut text)).map_err(|e| {
+        opened.and_then(|opened| opened.take(MOST_TEXT + 1).read_to_end(&mut bytes)).map_err(|e| {
             Error::read(&file, &e)
                 .help("name a scene file, or a folder that holds scene.toml; `pontoon scenes` lists some")
         })?;
-        if text.len() as u64 > MOST_TEXT {
+        if bytes.len() as u64 > MOST_TEXT {
             return Err(Error::scene(format!("{} has more than {MOST_TEXT} bytes", file.display())).help(
                 "points and motions of that size belong into tables beside the scene, as in { file = \"hull.csv\" }",
             ));
         }
+        let text = utf8_text(&file, bytes)?;
         let folder = file.parent().map_or_else(PathBuf::new, Path::to_path_buf);
         Self::from_toml(&text, &file.display().to_string(), &folder, sets)
     }
@@ -435,4 +436,26 @@ impl Scene {
     pub fn to_toml(&self) -> Result<String> {
         toml::to_string(self).map_err(|e| Error::scene(format!("this scene cannot be written: {e}")))
     }
+}
+
+/// Returns the text of a scene file.
+///
+/// # Errors
+/// `Scene` if it is not UTF-8: says the encoding, and of single wrong bytes the place.
+fn utf8_text(file: &Path, bytes: Vec<u8>) -> Result<String> {
+    let is_utf16 = bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) || bytes.contains(&0);
+    if is_utf16 {
+        let what = format!("{} is in UTF-16, and a scene is in UTF-8", file.display());
+        return Err(Error::scene(what).help("save it as UTF-8"));
+    }
+    String::from_utf8(bytes).map_err(|why| {
+        let before = why.utf8_error().valid_up_to();
+        let bytes = why.as_bytes();
+        let line = bytes[..before].iter().filter(|byte| **byte == b'\n').count() + 1;
+        let begin = bytes[..before].iter().rposition(|byte| *byte == b'\n').map_or(0, |at| at + 1);
+        let column = String::from_utf8_lossy(&bytes[begin..before]).chars().count() + 1;
+        let what = "a character is not in UTF-8, as in a file in Windows-1252";
+        let place = file.display().to_string();
+        Error::scene(what).help("save the scene as UTF-8").at(place, Some((line, column)), "")
+    })
 }

@@ -2,12 +2,16 @@
 
 use std::{borrow::Cow, ops::Range};
 
+use serde::Deserialize;
 use toml::{
     Spanned,
-    de::{DeTable, DeValue},
+    de::{DeTable, DeValue, ValueDeserializer},
 };
 
-use crate::error::{Error, ErrorCode, Result, suggestion};
+use crate::{
+    error::{Error, ErrorCode, Result, suggestion},
+    probe::ProbeConfig,
+};
 
 /// Keys whose value selects one of several laws.
 pub(super) const CHOICES: [&str; 9] = [
@@ -125,7 +129,10 @@ fn entry_index(path: &str, items: &[Spanned<DeValue>], word: &str) -> Result<usi
     let name = |item: &Spanned<DeValue>| {
         item.get_ref().as_table().and_then(|t| t.get("name")).and_then(|n| n.get_ref().as_str()).map(String::from)
     };
-    let names: Vec<String> = items.iter().enumerate().map(|(i, item)| name(item).unwrap_or(i.to_string())).collect();
+    let names: Vec<String> = match probe_names(path, items) {
+        Some(names) => names,
+        None => items.iter().enumerate().map(|(i, item)| name(item).unwrap_or(i.to_string())).collect(),
+    };
     let by_number = || word.parse::<usize>().ok().filter(|i| *i < items.len());
     names.iter().position(|n| n == word).or_else(by_number).ok_or_else(|| {
         let guess = suggestion(word, names.iter().map(String::as_str));
@@ -133,6 +140,14 @@ fn entry_index(path: &str, items: &[Spanned<DeValue>], word: &str) -> Result<usi
             .with_code(ErrorCode::UnknownName)
             .help(format!("known: {}", names.join(", ")))
     })
+}
+
+/// Returns the names of the probes, with those that they have by default; `None` for another list.
+fn probe_names(path: &str, items: &[Spanned<DeValue>]) -> Option<Vec<String>> {
+    let items = items.iter().filter(|_| path == "probe");
+    let probes = items.map(|item| ProbeConfig::deserialize(ValueDeserializer::from(item.clone())).ok());
+    let probes: Vec<ProbeConfig> = probes.collect::<Option<_>>()?;
+    (!probes.is_empty()).then(|| ProbeConfig::names(&probes))
 }
 
 /// Returns the value of `key` with a separate location for each of its parts.

@@ -2,13 +2,14 @@
 
 use super::{
     context::{Context, FileNote},
+    files,
     untagged::CoordinateUnit,
 };
 use crate::{
     error::Result,
     math::{
         format::three_digits,
-        table::{self, ColumnName, TableReader},
+        table::{self, ColumnName, Conversion, TableReader},
         time_series::{SampleScaling, TimeSeries},
     },
 };
@@ -49,6 +50,8 @@ pub(super) struct Record<'a> {
     pub(super) time: ColumnName,
     pub(super) column: ColumnName,
     pub(super) scaling: SampleScaling,
+    /// The unit in which the values are meant; `None` if it is not known.
+    pub(super) unit: Option<&'a str>,
 }
 
 /// Returns the scaling with these values of `scale`, `time_factor` and `offset`.
@@ -71,6 +74,15 @@ pub(super) fn verify_scaling(ctx: &Context, key: &str, [scale, factor, offset]: 
     match offset.filter(|x| !x.is_finite()) {
         Some(offset) => Err(ctx.error_at(&format!("{key}.offset"), format!("offset is a time, s, not {offset}"))),
         None => Ok(()),
+    }
+}
+
+/// Returns the advice to name a column of this file, with its columns if it can be read.
+pub(super) fn column_help(ctx: &Context, file: &str) -> String {
+    let names = files::open_table(ctx.folder(), file).map(|table| table.column_names()).unwrap_or_default();
+    match &names[..] {
+        [] => "write  column = ..,  the name or the number of a column".into(),
+        [.., last] => format!("write  column = \"{last}\",  or another of its columns: {}", names.join(", ")),
     }
 }
 
@@ -97,15 +109,12 @@ impl Record<'_> {
         self.note_missing(&series);
         let unit = self.table.unit(time.clone())?;
         if self.scaling.time_factor == 1.0 {
-            let factor = unit.as_deref().filter(|unit| TIME_UNITS.contains(unit)).and_then(table::si_factor);
-            self.note_unit(&time, unit.as_deref(), factor, "time_factor");
-            self.note_unknown_unit(&time, unit.as_deref(), "time_factor");
+            self.note_unit(&time, unit.as_deref(), Some("s"), "time_factor");
         }
         let unit = self.table.unit(self.column.clone())?;
         if self.scaling.scale == 1.0 {
-            let value = unit.as_deref().filter(|unit| !TIME_UNITS.contains(unit) && !table::is_angle(unit));
-            self.note_unit(&self.column, value, value.and_then(table::si_factor), "scale");
-            self.note_unknown_unit(&self.column, value, "scale");
+            let value = unit.as_deref().filter(|unit| !TIME_UNITS.contains(unit));
+            self.note_unit(&self.column, value, self.unit, "scale");
         }
         if self.table.is_one_column(&time, &self.column) {
             self.ctx.add_note(FileNote::note(
@@ -149,48 +158,84 @@ impl Record<'_> {
         });
     }
 
-    /// Returns the factor from the values of the column to radians, if they are angles: columns in degrees are known by
-    /// their names, or by the row of units. Adds a note if the unit contradicts the law.
+    /// Refuses a column of times that the table does not have.
+    ///
+    /// # Errors
+    /// `Scene`, with a column that may be meant.
+    pub(super) fn require_time(&mut self) -> Result<()> {
+        let time = self.table.time_column(&self.time, &self.column);
+        let names = self.table.column_names();
+        let value = self.column.to_string();
+        self.table.unit(time.clone()).map(|_| ()).map_err(|error| {
+            let other = names.iter().find(|name| **name != value).filter(|_| self.time == ColumnName::from("t_s"));
+            match other {
+                Some(name) => {
+                    let all = names.join(", ");
+                    let help = format!("name the column of times, as in  time = \"{name}\"; its columns: {all}");
+                    error.help(help)
+                }
+                None => error,
+            }
+        })
+    }
+
+    /// Takes the unit in which a law is meant, and returns the factor from its values to those of the run: columns in
+    /// degrees are known by their names, or by the row of units.
     ///
     /// # Errors
     /// `Scene` if there is no such column.
-    pub(super) fn angle_factor(&self, law: CoordinateUnit) -> Result<f64> {
+    pub(super) fn take_unit(&mut self, law: CoordinateUnit) -> Result<f64> {
         let unit = self.table.unit(self.column.clone())?;
-        let degrees = unit.as_deref().is_some_and(table::is_degree);
-        let angle = unit.as_deref().filter(|unit| table::is_angle(unit));
-        let in_radians = angle.map(|unit| table::si_factor(unit).unwrap_or(1.0));
-        let factor = match law {
-            CoordinateUnit::Degrees if degrees => None,
-            CoordinateUnit::Degrees => in_radians.map(f64::to_degrees),
-            CoordinateUnit::Radians if degrees => None,
-            CoordinateUnit::Radians | CoordinateUnit::Si => in_radians.filter(|factor| *factor != 1.0),
+        let degrees = match law {
+            CoordinateUnit::Degrees => true,
+            CoordinateUnit::Radians => unit.as_deref().is_some_and(table::is_degree),
+            CoordinateUnit::Si(_) => false,
         };
-        if self.scaling.scale == 1.0 {
-            self.note_unit(&self.column, angle, factor, "scale");
-        }
-        let turned = law == CoordinateUnit::Degrees || (law == CoordinateUnit::Radians && degrees);
-        Ok(if turned { 1f64.to_radians() } else { 1.0 })
+        self.unit = Some(match law {
+            CoordinateUnit::Si(unit) => unit,
+            _ if degrees => "deg",
+            _ => "rad",
+        });
+        Ok(if degrees { 1f64.to_radians() } else { 1.0 })
     }
 
-    /// Adds the warning that a column is in `unit`, of which `factor` is the size in the unit of the run.
-    fn note_unit(&self, column: &ColumnName, unit: Option<&str>, factor: Option<f64>, key: &str) {
-        if let (Some(unit), Some(factor)) = (unit, factor) {
-            self.ctx.add_note(FileNote {
-                is_warning: true,
-                topic: "record_unit",
-                what: format!(
-                    "column \"{column}\" of {} ({}) is in {unit}, and is used as if in another unit",
-                    self.file,
-                    self.ctx.shown_key(self.key)
-                ),
-                remedy: format!("write  {key} = {factor}  beside the column"),
-            });
-        }
+    /// Adds the warning that a column is in another `unit` than the one in which its values are `meant`.
+    fn note_unit(&self, column: &ColumnName, unit: Option<&str>, meant: Option<&str>, key: &str) {
+        let Some(unit) = unit else { return };
+        let write = |factor: f64| format!("write  {key} = {factor}  beside the column");
+        let conversion = meant.and_then(|meant| Some((meant, table::conversion(unit, meant, self.ctx.dimension)?)));
+        let (used, remedy) = match conversion {
+            Some((_, Conversion::Factor(factor))) if (factor - 1.0).abs() < 1e-9 => return,
+            Some((meant, Conversion::Factor(factor))) => (format!("used as if in {meant}"), write(factor)),
+            Some((meant, Conversion::Weight(factor))) => {
+                let weight = format!("; the weight of 1 {unit} is {} {meant}", three_digits(factor));
+                (format!("a mass, where {meant} is meant"), write(factor) + &weight)
+            }
+            Some((meant, Conversion::OtherQuantity)) => {
+                let remedy = format!("name a column in {meant}, or write the factor to {meant} as  {key} = ..");
+                (format!("another quantity than {meant}, in which its values are used"), remedy)
+            }
+            None => match table::si_factor(unit) {
+                Some(factor) => ("used as if in another unit".into(), write(factor)),
+                None => return self.note_unknown_unit(column, unit, key),
+            },
+        };
+        self.ctx.add_note(FileNote::warning(
+            "record_unit",
+            format!(
+                "column \"{column}\" of {} ({}) is in {unit}, and is {used}",
+                self.file,
+                self.ctx.shown_key(self.key)
+            ),
+            remedy,
+        ));
     }
 
     /// Adds the note that a column is in a `unit` whose size is not known.
-    fn note_unknown_unit(&self, column: &ColumnName, unit: Option<&str>, key: &str) {
-        let Some(unit) = unit.filter(|unit| table::is_without_size(unit)) else { return };
+    fn note_unknown_unit(&self, column: &ColumnName, unit: &str, key: &str) {
+        if !table::is_without_size(unit) {
+            return;
+        }
         let (file, shown) = (self.file, self.ctx.shown_key(self.key));
         self.ctx.add_note(FileNote::note(
             "record_unit",

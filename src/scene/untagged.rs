@@ -259,8 +259,8 @@ impl<'de> Deserialize<'de> for PolylineConfig {
 /// The unit in which a law is written.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum CoordinateUnit {
-    /// SI, whatever the quantity.
-    Si,
+    /// This unit of the SI.
+    Si(&'static str),
     /// Radians, or degrees in a column whose name ends in `_deg`.
     Radians,
     /// Degrees.
@@ -305,7 +305,14 @@ impl TimeFunctionConfig {
                 Err(ctx.error_at(key, what))
             }
             (None, Some(_)) if self.column.is_some() => record::verify_scaling(ctx, key, self.given_scaling()),
-            (None, Some(_)) => Err(ctx.error_at(key, "which column of the file?")),
+            (None, Some(file)) => {
+                let help = record::column_help(ctx, file);
+                Err(ctx.error_with_help(
+                    &format!("{key}.column"),
+                    "\"column\" is missing: which one of the file?",
+                    help,
+                ))
+            }
             _ => Err(ctx.error_at(key, "a law is either a formula or a file with a column")),
         }
     }
@@ -357,7 +364,7 @@ impl TimeFunctionConfig {
                 CoordinateUnit::Degrees => {
                     Formula::parse(&format!("({text})*(pi/180)")).map_err(|e| place("formula", e))?
                 }
-                CoordinateUnit::Si | CoordinateUnit::Radians => formula,
+                CoordinateUnit::Si(_) | CoordinateUnit::Radians => formula,
             }));
         }
         let (Some(file), Some(column)) = (&self.file, &self.column) else {
@@ -366,8 +373,9 @@ impl TimeFunctionConfig {
         let table = files::open_table(ctx.folder(), file).map_err(|e| place("file", e))?;
         let scaling = record::scaling(self.given_scaling());
         let time = self.time.clone().unwrap_or_else(|| "t_s".into());
-        let mut record = record::Record { ctx, key, file, table, time, column: column.clone(), scaling };
-        let factor = record.angle_factor(unit).map_err(|e| place("column", e))?;
+        let mut record = record::Record { ctx, key, file, table, time, column: column.clone(), scaling, unit: None };
+        record.require_time().map_err(|e| place("time", e))?;
+        let factor = record.take_unit(unit).map_err(|e| place("column", e))?;
         let series = record.read().map_err(|e| place("column", files::with_line_in_message(e)))?;
         record.note_span(&series, record::Outside::Holds);
         // The order of the factors keeps the bits of a law without time factor and offset.

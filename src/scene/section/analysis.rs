@@ -8,7 +8,11 @@ use serde::{Deserialize, Serialize};
 use super::water::StillWaterLevel;
 use crate::{
     error::{Error, ErrorCode, Result, suggestion},
-    math::{expression::Formula, table::ColumnName},
+    math::{
+        expression::Formula,
+        table::{self, ColumnName},
+        time_series::TimeSeries,
+    },
     plan::{Align, CheckPlan, Reference, ResponseReference, Score, StatisticKind, StatisticPlan},
     probe::ProbeConfig,
     scene::{
@@ -296,6 +300,21 @@ impl CheckConfig {
         Ok(())
     }
 
+    /// Refuses times between which the reference has fewer than two samples.
+    fn require_samples(&self, ctx: &Context, key: &str, file: &str, series: &TimeSeries) -> Result<()> {
+        let (from, until) = (self.from.unwrap_or(f64::NEG_INFINITY), self.until.unwrap_or(f64::INFINITY));
+        let within = series.times().iter().filter(|t| (from..=until).contains(*t)).count();
+        let is_limited = self.from.or(self.until).is_some();
+        if within >= 2 || !is_limited || self.align.is_some() {
+            return Ok(());
+        }
+        let word = if self.from.is_some() { "from" } else { "until" };
+        let (first, last) = series.span();
+        let what = format!("the check has {within} samples of {file} between its times, and needs two or more");
+        let help = format!("{file} goes from {first} to {last} s: give  from  and  until  within it");
+        Err(ctx.error_with_help(&format!("{key}.{word}"), what, help).with_code(ErrorCode::OutOfRange))
+    }
+
     /// The check of the run; opens its table to see that the columns are there.
     pub(crate) fn build(&self, ctx: &Context, key: &str) -> Result<CheckPlan> {
         let place = |e: Error| ctx.with_location(files::with_line_in_message(e), &format!("{key}.reference"));
@@ -308,9 +327,13 @@ impl CheckConfig {
                 let column = self.column.clone().unwrap_or_default();
                 let scaling = record::scaling([self.scale, self.time_factor, self.offset]);
                 let table = files::open_table(ctx.folder(), &file).map_err(place)?;
+                let (time_of, column_of) = (time.clone(), column.clone());
+                let unit = table::of_series(&self.series);
                 let mut record =
-                    Record { ctx, key, file: &file, table, time: time.clone(), column: column.clone(), scaling };
-                record.read().and_then(|series| series.scaled(&scaling)).map_err(place)?;
+                    Record { ctx, key, file: &file, table, time: time_of, column: column_of, scaling, unit };
+                record.require_time().map_err(|e| ctx.with_location(e, &format!("{key}.time")))?;
+                let series = record.read().and_then(|series| series.scaled(&scaling)).map_err(place)?;
+                self.require_samples(ctx, key, &file, &series)?;
                 Reference::Table { file: Path::new(&file).to_path_buf(), time, column, scaling }
             }
         };

@@ -47,7 +47,7 @@ impl BallastConfig {
     /// `Scene` if the mass is negative or not finite at a time of the run, or in a sample of its table.
     pub(super) fn build<const D: usize>(&self, ctx: &Context, key: &str) -> Result<BallastSpec<D>> {
         let key = format!("{key}.mass");
-        let ballast = BallastSpec::new(vector(&self.at), self.mass.0.build(ctx, &key, CoordinateUnit::Si)?);
+        let ballast = BallastSpec::new(vector(&self.at), self.mass.0.build(ctx, &key, CoordinateUnit::Si("kg"))?);
         match ballast.first_invalid(ctx.until) {
             None => Ok(ballast),
             Some((t, mass)) => {

@@ -95,7 +95,7 @@ impl TowedConfig {
 
     /// The moving frame.
     pub(crate) fn build(&self, ctx: &Context) -> Result<TowedFrame> {
-        let velocity = self.velocity.0.build(ctx, "towed.velocity", CoordinateUnit::Si)?;
+        let velocity = self.velocity.0.build(ctx, "towed.velocity", CoordinateUnit::Si("m/s"))?;
         Ok(TowedFrame::new(self.along as usize, velocity))
     }
 }

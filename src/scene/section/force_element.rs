@@ -336,7 +336,8 @@ impl ForceConfig {
         let span = [lifetime.since, lifetime.until];
         let laws = |word: &str, values: &[TimeValueConfig]| -> Result<Vec<TimeFunction>> {
             let key = format!("{key}.{word}");
-            values.iter().map(|value| value.0.build_during(ctx, &key, CoordinateUnit::Si, span)).collect()
+            let unit = CoordinateUnit::Si(if word == "force" { "N" } else { "N m" });
+            values.iter().map(|value| value.0.build_during(ctx, &key, unit, span)).collect()
         };
         Ok(ForceSpec {
             name: self.name.clone(),

@@ -39,7 +39,7 @@ impl GravityValues {
         let law = |component: &TimeValueConfig| {
             let mut value = component.clone();
             value.0.fill(&mut Defaults::default(), "gravity");
-            value.0.read(ctx, "gravity", CoordinateUnit::Si).unwrap_or_else(|_| TimeFunction::constant(0.0))
+            value.0.read(ctx, "gravity", CoordinateUnit::Si("m/s²")).unwrap_or_else(|_| TimeFunction::constant(0.0))
         };
         let laws: Vec<TimeFunction> = components.iter().map(law).collect();
         let at = |t: f64| laws.iter().map(move |law| law.value_and_rate(t).0);
@@ -86,7 +86,7 @@ pub(crate) fn build(ctx: &Context, config: &TimeVectorConfig) -> Result<Vec<Time
     if components.iter().all(|value| value.number().is_some()) {
         return Ok(Vec::new());
     }
-    components.iter().map(|value| value.0.build(ctx, "gravity", CoordinateUnit::Si)).collect()
+    components.iter().map(|value| value.0.build(ctx, "gravity", CoordinateUnit::Si("m/s²"))).collect()
 }
 
 /// One value along each axis; a single value points downwards.

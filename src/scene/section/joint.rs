@@ -365,7 +365,9 @@ impl JointConfig {
         let number = |mode: &MotionMode| Some(FreeMode { mode: mode.index(D)?, limits: stop(Some(mode)) });
         joint.free_modes = self.free.iter().flatten().filter_map(number).collect();
         let span = [joint.lifetime.since, joint.lifetime.until];
-        joint.motor = self.motor.as_ref().map(|motor| motor.build(ctx, &format!("{key}.motor"), span)).transpose()?;
+        let turns = self.kind == JointKindConfig::Hinge;
+        let motor = |motor: &MotorConfig| motor.build(ctx, &format!("{key}.motor"), turns, span);
+        joint.motor = self.motor.as_ref().map(motor).transpose()?;
         Ok(joint)
     }
 }
@@ -435,14 +437,22 @@ impl MotorConfig {
         Ok(())
     }
 
-    /// The motor of a joint that exists during `span` (s).
-    fn build(&self, ctx: &Context, key: &str, span: [f64; 2]) -> Result<Motor> {
+    /// The motor of a joint that exists during `span` (s); `turns` tells a hinge from a slider.
+    fn build(&self, ctx: &Context, key: &str, turns: bool, span: [f64; 2]) -> Result<Motor> {
         let mut motor = Motor { max_force: self.strongest.unwrap_or(f64::INFINITY), ..Motor::default() };
         for (word, value) in self.time_values() {
             let unit = match word {
                 "position_deg" => CoordinateUnit::Degrees,
-                "position" | "velocity" => CoordinateUnit::Radians,
-                _ => CoordinateUnit::Si,
+                "position" if turns => CoordinateUnit::Radians,
+                "position" => CoordinateUnit::Si("m"),
+                "velocity" if turns => CoordinateUnit::Si("rad/s"),
+                "velocity" => CoordinateUnit::Si("m/s"),
+                "stiffness" if turns => CoordinateUnit::Si("N m/rad"),
+                "stiffness" => CoordinateUnit::Si("N/m"),
+                "damping" if turns => CoordinateUnit::Si("N m s/rad"),
+                "damping" => CoordinateUnit::Si("N s/m"),
+                "torque" => CoordinateUnit::Si("N m"),
+                _ => CoordinateUnit::Si("N"),
             };
             let law = value.0.build_during(ctx, &format!("{key}.{word}"), unit, span)?;
             if matches!(word, "stiffness" | "damping")

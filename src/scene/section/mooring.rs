@@ -451,7 +451,7 @@ impl MooringConfig {
         made.lifetime = self.lifetime().build(tied(scope.solids, &self.between));
         if let Some(law) = &self.paid_out {
             let span = [made.lifetime.since, made.lifetime.until];
-            let law = law.build_during(ctx, &format!("{key}.paid_out"), CoordinateUnit::Si, span)?;
+            let law = law.build_during(ctx, &format!("{key}.paid_out"), CoordinateUnit::Si("m"), span)?;
             self.require_line_left(ctx, key, &law, [span[0].max(0.0), span[1].min(ctx.until)])?;
             made.paid_out = Some(law);
         }

@@ -161,7 +161,7 @@ impl DrivenConfig {
         };
         let unit = |x: &[f64]| vector::<D>(x).normalize();
         if let (Some(along), Some(distance)) = (&self.along, &self.distance) {
-            return Ok(PrescribedMotion::slide(unit(along), law(distance, "distance", CoordinateUnit::Si)?));
+            return Ok(PrescribedMotion::slide(unit(along), law(distance, "distance", CoordinateUnit::Si("m"))?));
         }
         let centre = vector(self.hinge.as_deref().unwrap_or(&[]));
         let axis = self.axis.as_ref().map_or_else(|| vec![1.0], |axis| unit(axis).iter().copied().collect());

@@ -308,7 +308,8 @@ impl OpenBoundaryConfig {
         let mut bounds = beside.clone().fold(Bounds::<D>::empty(), |all, body| all.union(&body.bounds()));
         let top = beside.map(|body| body.level).fold(f64::NEG_INFINITY, f64::max);
         let law = |value: &Option<TimeValueConfig>, word: &str| {
-            value.as_ref().map(|law| law.0.build(ctx, &format!("{key}.{word}"), CoordinateUnit::Si)).transpose()
+            let unit = CoordinateUnit::Si(if word == "level" { "m" } else { "1" });
+            value.as_ref().map(|law| law.0.build(ctx, &format!("{key}.{word}"), unit)).transpose()
         };
         let written = law(&self.level, "level")?;
         let level = written.as_ref().map_or(top, |level| level.value_and_rate(0.0).0);

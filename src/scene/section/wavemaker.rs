@@ -308,7 +308,7 @@ fn read_elevation(ctx: &Context, key: &str, config: &MeasuredElevationConfig) ->
     let table = files::open_table(ctx.folder(), &config.file)?;
     let scaling = record::scaling(config.given_scaling());
     let (time, column) = (config.time.clone().unwrap_or_else(|| "t_s".into()), config.column.clone());
-    let mut record = Record { ctx, key, file: &config.file, table, time, column, scaling };
+    let mut record = Record { ctx, key, file: &config.file, table, time, column, scaling, unit: Some("m") };
     let series = record.read().map_err(files::with_line_in_message)?;
     record.note_span(&series, Outside::Waves);
     record.note_uneven(&series);

@@ -76,7 +76,7 @@ impl WindConfig {
         specs: &[SolidSpec<D>],
         level: f64,
     ) -> Result<WindSpec<D>> {
-        let law = |value: &TimeValueConfig| value.0.build(ctx, &format!("{key}.velocity"), CoordinateUnit::Si);
+        let law = |value: &TimeValueConfig| value.0.build(ctx, &format!("{key}.velocity"), CoordinateUnit::Si("m/s"));
         let velocity = self.velocity.components().iter().map(law).collect::<Result<Vec<_>>>()?;
         let mut wind = WindSpec::new(velocity, level).drag(self.drag.unwrap_or(1.0));
         wind.density = self.density.unwrap_or(AIR_DENSITY);

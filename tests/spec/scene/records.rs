@@ -235,3 +235,141 @@ fn laws_checks_and_points_of_other_layouts_are_read_and_wrong_keys_are_refused()
         assert!(refused(law).contains(part), "{law}: {}", refused(law));
     }
 }
+
+/// The warnings about units of a column of this name as the distance, the angle, the force and the torque, and of a
+/// check.
+fn unit_warnings(part: &str, column: &str) -> Vec<String> {
+    let record = format!("{{ file = \"record.csv\", column = \"{column}\" }}");
+    let own = "[[solid]]\nname = \"box\"\nshape = { box = { size = [0.2, 0.1] } }\nat = { x = 0.3, draft = \"equilibrium\" }\nfree = { density = 500.0 }\n";
+    let still = SCENE.replace("distance = LAW", "distance = { formula = \"0\" }");
+    let text = match part {
+        "distance" => SCENE.replace("LAW", &record),
+        "angle" | "angle_deg" => {
+            SCENE.replace("along = [1.0, 0.0], distance = LAW", &format!("hinge = [0.0, 0.0], {part} = {record}"))
+        }
+        "force" => format!("{still}{own}[[force]]\nname = \"f\"\non = \"box\"\nforce = [{record}, 0.0]\n"),
+        "torque" => format!("{still}{own}[[force]]\nname = \"f\"\non = \"box\"\ntorque = {record}\n"),
+        series => {
+            format!("{still}[[check]]\nseries = \"{series}\"\nreference = \"record.csv\"\ncolumn = \"{column}\"\n")
+        }
+    };
+    let folder = TestFolder::new("records-units");
+    let rows: String = samples(0.0, 31).map(|(t, x)| format!("{t:.2},{x:.6}\n")).collect();
+    fs::write(folder.join("record.csv"), format!("t_s,{column}\n{rows}")).unwrap();
+    let BuiltScene { file_notes, .. } = Scene::parse(&text, &folder, &[]).unwrap().build::<2>().unwrap();
+    let of_units = file_notes.into_iter().filter(|note| note.topic == "record_unit" && note.is_warning);
+    of_units.map(|note| format!("{}\n{}", note.what, note.remedy)).collect()
+}
+
+#[test]
+fn a_column_in_another_unit_or_of_another_quantity_is_told_with_both() {
+    // Each factor by hand: 180/pi, 4.448 N in a pound-force, 9.81 N in the weight of 1 kg, 0.3048 m in a foot.
+    for (part, column, told, remedy) in [
+        ("distance", "x (km h-1)", "another quantity than m", "name a column in m"),
+        ("distance", "x (m/s²)", "another quantity than m", "name a column in m"),
+        ("angle", "x_m", "another quantity than rad", "name a column in rad"),
+        ("angle_deg", "x_rad", "used as if in deg", "scale = 57.2957795"),
+        ("force", "F (lb)", "a mass, where N is meant", "scale = 4.44822161"),
+        (
+            "force",
+            "F (kg)",
+            "a mass, where N is meant",
+            "scale = 9.80665  beside the column; the weight of 1 kg is 9.81 N",
+        ),
+        ("force", "F (m/s)", "another quantity than N", "name a column in N"),
+        ("torque", "M (ft-lb)", "a mass, where N m is meant", "scale = 1.355817"),
+        ("torque", "M (kN-m)", "used as if in N m", "scale = 1000"),
+        ("tank.pitch_deg", "pitch_rad", "used as if in deg", "scale = 57.2957795"),
+        ("tank.pitch_deg", "pitch [rad]", "used as if in deg", "scale = 57.2957795"),
+        ("tank.pitch_deg", "pitch (mrad)", "used as if in deg", "scale = 0.0572957795"),
+        ("tank.pitch_deg", "pitch_m", "another quantity than deg", "name a column in deg"),
+        ("tank.spin_radps", "w_degps", "used as if in radps", "scale = 0.0174532925"),
+        ("tank.vx_mps", "v_kmh", "used as if in mps", "scale = 0.27777777"),
+        ("tank.vx_mps", "v (m min-1)", "used as if in mps", "scale = 0.01666666"),
+        ("tank.surge_m", "p [Pa]", "another quantity than m", "name a column in m"),
+    ] {
+        let found = unit_warnings(part, column);
+        let [text] = &found[..] else { panic!("{column} as {part}: {found:?}") };
+        assert!(text.contains(told) && text.contains(remedy), "{column} as {part}: {text}");
+    }
+    for (part, column) in [
+        ("distance", "x_m"),
+        ("angle", "a_deg"),
+        ("angle", "a_rad"),
+        ("angle_deg", "a (deg)"),
+        ("force", "F (N)"),
+        ("force", "F (N/m)"),
+        ("torque", "M_Nm"),
+        ("tank.pitch_deg", "pitch_deg"),
+        ("tank.pitch_deg", "pitch (-)"),
+        ("tank.vx_mps", "v (m s-1)"),
+        ("tank.vx_mps", "v_ms"),
+        ("tank.surge_m", "surge"),
+    ] {
+        assert_eq!(unit_warnings(part, column), [] as [String; 0], "{column} as {part}");
+    }
+}
+
+#[test]
+fn a_missing_column_of_times_or_values_is_told_at_its_key_with_the_columns() {
+    let check = "[[check]]\nseries = \"tank.surge_m\"\nreference = \"record.csv\"\ncolumn = \"x_m\"\n";
+    let refused = |law: &str, more: &str, names: &str| {
+        let rows: String = samples(0.0, 31).map(|(t, x)| format!("{t:.2},{x:.6}\n")).collect();
+        let folder = folder("columns", law, format!("{names}\n{rows}"));
+        let text = SCENE.replace("LAW", law) + more;
+        let built = Scene::parse(&text, &folder, &[]).and_then(|scene| scene.build::<2>().map(|_| ()));
+        built.map_or_else(|error| error.to_string(), |()| String::new())
+    };
+    let law = "{ file = \"record.csv\", column = \"x_m\" }";
+    for name in ["seconds", "Frame"] {
+        let told = refused(law, "", &format!("{name},x_m"));
+        let proposal = format!("time = \"{name}\"; its columns: {name}, x_m");
+        assert!(told.contains("solid.tank.driven.distance.time") && told.contains(&proposal), "{told}");
+        let told = refused("{ formula = \"0\" }", check, &format!("{name},x_m"));
+        assert!(told.contains("check.0.time") && told.contains(&proposal), "{told}");
+    }
+    let told = refused("{ file = \"record.csv\" }", "", "t_s,x_m");
+    assert!(told.contains("distance.column") && told.contains("write  column = \"x_m\""), "{told}");
+    // The record ends at 3 s.
+    let told = refused("{ formula = \"0\" }", &format!("{check}from = 5.0\n"), "t_s,x_m");
+    assert!(told.contains("check.0.from") && told.contains(":21:") && told.contains("goes from 0 to 3 s"), "{told}");
+    assert_eq!(refused("{ formula = \"0\" }", &format!("{check}from = 1.0\n"), "t_s,x_m"), "");
+}
+
+#[test]
+fn a_check_of_an_unknown_series_and_a_scene_of_another_encoding_are_told_at_their_place() {
+    let text = SCENE.replace("LAW", "{ formula = \"0\" }")
+        + "[[check]]\nseries = \"tank.surge\"\nformula = \"0\"\nbound = { off = 0.1 }\n";
+    let folder = TestFolder::new("records-series");
+    let told = |bytes: &[u8]| {
+        fs::write(folder.join("scene.toml"), bytes).unwrap();
+        inspected(&folder).map_or_else(|error| error.to_string(), |_| String::new())
+    };
+    let unknown = told(text.as_bytes());
+    for part in ["scene.toml:18:1, check.0.series", "did you mean \"tank.surge_m\"?"] {
+        assert!(unknown.contains(part), "{part}: {unknown}");
+    }
+    let utf16: Vec<u8> = format!("\u{feff}{text}").encode_utf16().flat_map(u16::to_le_bytes).collect();
+    let bare: Vec<u8> = text.encode_utf16().flat_map(u16::to_be_bytes).collect();
+    for bytes in [utf16, bare] {
+        let told = told(&bytes);
+        assert!(told.contains("is in UTF-16") && told.contains("save it as UTF-8"), "{told}");
+    }
+    // A u with two points in Windows-1252, the second character of the second line.
+    let told = told(b"# a\n#\xfc\ndimension = 2\n");
+    assert!(told.contains("Windows-1252") && told.contains(":2:2") && told.contains("as UTF-8"), "{told}");
+}
+
+#[test]
+fn a_probe_is_set_by_its_name_without_one_of_its_own() {
+    let text = SCENE.replace("LAW", "{ formula = \"0\" }");
+    let folder = TestFolder::new("records-set");
+    let every = |key: &str| {
+        let sets = [(key.to_string(), "0.25".to_string())];
+        Scene::parse(&text, &folder, &sets).map(|scene| scene.probe[0].every)
+    };
+    assert_eq!(every("probe.tank.every").unwrap(), Some(0.25));
+    assert_eq!(every("probe.0.every").unwrap(), Some(0.25));
+    let told = every("probe.tnk.every").unwrap_err().to_string();
+    assert!(told.contains("did you mean \"tank\"?"), "{told}");
+}

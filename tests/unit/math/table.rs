@@ -1,6 +1,6 @@
 //! Unit tests of `src/math/table.rs`.
 
-use std::path::PathBuf;
+use std::{f64::consts::PI, path::PathBuf};
 
 use super::*;
 
@@ -215,6 +215,89 @@ fn units_come_from_the_row_of_units_or_the_name() -> Result<()> {
     assert_eq!(unit("t_s,x [mm]\n0,1\n1,2\n", "x [mm]")?, some("mm"));
     assert_eq!(unit("t_s,x\ns,mm\n0,1\n1,2\n", "x")?, some("mm"));
     assert_eq!(unit("t_s,x_min\n0,1\n1,2\n", "x_min")?, None, "a least value is not in minutes");
+    assert_eq!(unit("t_s,w_degps\n0,1\n1,2\n", "w_degps")?, some("degps"));
+    assert_eq!(unit("t_s,U_kmh\n0,1\n1,2\n", "U_kmh")?, some("kmh"));
+    assert_eq!(unit("t_s,n_steps\n0,1\n1,2\n", "n_steps")?, None);
     assert!(si_factor("mm") == Some(1e-3) && si_factor("m").is_none() && is_degree("deg"));
     Ok(())
+}
+
+#[test]
+fn products_powers_and_rates_are_units() {
+    // Size in the SI by hand.
+    let kilometre_per_hour = 1000.0 / 3600.0;
+    for (unit, size) in [
+        ("km h-1", kilometre_per_hour),
+        ("km h^-1", kilometre_per_hour),
+        ("km·h⁻¹", kilometre_per_hour),
+        ("km h−1", kilometre_per_hour),
+        ("kmh", kilometre_per_hour),
+        ("kmph", kilometre_per_hour),
+        ("m min-1", 1.0 / 60.0),
+        ("m/min", 1.0 / 60.0),
+        ("mm s-2", 1e-3),
+        ("mm s**-2", 1e-3),
+        ("cm/s^2", 1e-2),
+        ("cmps2", 1e-2),
+        ("l", f64::NAN),
+        ("dm3 s-1", 1e-3),
+        ("kN-m", 1e3),
+        ("kN m-1", 1e3),
+        ("ft-lbf", 0.3048 * 4.448_221_615_260_5),
+        ("degps", PI / 180.0),
+        ("°/s", PI / 180.0),
+        ("rpm", PI / 30.0),
+        ("kg cm-2", 1e4),
+        ("d1", f64::NAN),
+        ("m-", f64::NAN),
+        ("-2", f64::NAN),
+    ] {
+        let found = si_factor(unit);
+        let is_right = found.map_or(size.is_nan(), |found| (found / size - 1.0).abs() < 1e-12);
+        assert!(is_right && is_without_size(unit) == size.is_nan(), "{unit}: {found:?}");
+    }
+    assert!(
+        ["m s-1", "m s^-1", "m·s⁻¹", "m3 s-1", "mps", "m3ps", "s-1", "kg m s-2"]
+            .iter()
+            .all(|unit| { si_factor(unit).is_none() && !is_without_size(unit) })
+    );
+}
+
+#[test]
+fn a_unit_is_converted_to_one_of_its_quantity_alone() {
+    let factor = |unit: &str, meant: &str| match conversion(unit, meant, 3) {
+        Some(Conversion::Factor(factor)) => factor,
+        _ => f64::NAN,
+    };
+    let weight = |unit: &str, meant: &str| match conversion(unit, meant, 3) {
+        Some(Conversion::Weight(factor)) => factor,
+        _ => f64::NAN,
+    };
+    for (found, right) in [
+        (factor("rad", "deg"), 180.0 / PI),
+        (factor("mrad", "deg"), 0.18 / PI),
+        (factor("deg/s", "radps"), PI / 180.0),
+        (factor("mbar", "Pa"), 100.0),
+        (factor("mm", "m"), 1e-3),
+        (factor("-", "deg"), 1.0),
+        (factor("Hz", "rad/s"), 2.0 * PI),
+        (weight("lb", "N"), 4.448_221_615_260_5),
+        (weight("kg", "N"), 9.806_65),
+        (weight("ft-lb", "N m"), 1.355_817_948_331_400_4),
+        (weight("kg/cm²", "Pa"), 98_066.5),
+        (factor("lb", "kg"), 0.453_592_37),
+    ] {
+        assert!((found / right - 1.0).abs() < 1e-12, "{found}, not {right}");
+    }
+    for (unit, meant) in
+        [("m/s", "m"), ("m/s²", "m"), ("m", "rad"), ("m", "deg"), ("Pa", "m"), ("m", "Pa"), ("rad", "m"), ("N/m", "N")]
+    {
+        assert_eq!(conversion(unit, meant, 3), Some(Conversion::OtherQuantity), "{unit} as {meant}");
+    }
+    // In 2-D per metre of width.
+    assert_eq!(conversion("kN/m", "N", 2), Some(Conversion::Factor(1e3)));
+    assert_eq!(conversion("kg/m", "kg", 2), Some(Conversion::Factor(1.0)));
+    assert_eq!(conversion("N", "N m", 2), Some(Conversion::OtherQuantity));
+    assert_eq!(conversion("m/s", "m", 2), Some(Conversion::OtherQuantity));
+    assert_eq!((of_series("b.pitch_deg"), of_series("b.count")), (Some("deg"), None));
 }

@@ -10,7 +10,8 @@ fn the_spectra_table_contains_oscillating_series_and_has_no_file_without_them() 
     std::fs::create_dir_all(&folder).map_err(failed)?;
     let t: Vec<f64> = (0..2000).map(|i| f64::from(i) * 0.01).collect();
     let wave: Vec<f64> = t.iter().map(|t| 0.05 * (std::f64::consts::TAU * 1.25 * t).sin()).collect();
-    let mut table = SeriesTable { columns: vec!["front_m".into()], times: t.clone(), values: vec![t] };
+    let mut table =
+        SeriesTable { columns: vec!["front_m".into()], times: t.clone(), values: vec![t], ..SeriesTable::default() };
     write(&folder, &ProbeTables::from([("gauge".into(), table.clone())]))?;
     assert!(!folder.join(SPECTRA_FILE).exists(), "a rising series has no spectrum");
     table.columns.push("eta_m".into());
