@@ -77,25 +77,3 @@ fn a_raft_turned_about_both_axes_comes_back_and_a_ball_stays() {
     // With its centre of mass below its middle a ball comes back whatever its start.
     assert_turns(angle(turn(Shape::Ball { radius: 0.3 }, [1.0, 0.0, 0.0], -0.05)), 1f64.to_degrees());
 }
-
-#[test]
-fn an_open_hull_that_its_mass_turns_floods_at_its_rim() {
-    // A U of 1 m × 0.5 m with walls and a floor of 0.1 m and 144 kg/m. Where the water reaches the inner edge of its wall, 0.1 m from
-    // the side, it displaces 0.05 + 0.125/tan φ = 0.144 m²: φ = 53.1°. The grid of the hollow has its rim half a dp, 0.01 m, further
-    // in and higher at most: 0.055 + 0.13/tan φ, 55.6°. With its centre of mass 0.45 m to the side it does not rest before.
-    let points = [[0.0, 0.0], [1.0, 0.0], [1.0, 0.5], [0.9, 0.5], [0.9, 0.1], [0.1, 0.1], [0.1, 0.5], [0.0, 0.5]];
-    let shape = Shape::Polygon { points: points.map(Vector::from).to_vec() };
-    let spec = SolidSpec::free("hull", shape, 800.0);
-    let Role::Free(mut body) = spec.role else { panic!("a free body") };
-    let enclosure = crate::geometry::hollow::Enclosure::of(&spec.shape, &Matrix::identity(), 0.02).unwrap();
-    let hull = Hull { dry: enclosure.hollows.iter().collect(), ..Hull::new(&spec.shape) };
-    let pose = Pose::identity();
-    let mut turn = |off: f64| {
-        body.centre[0] += off;
-        let floating =
-            Floating { hull: &hull, body: &body, pose, rho0: 1000.0, level: 0.0, free: vec![0], neutral: 5e-4 };
-        floating.turn().unwrap()
-    };
-    assert!(matches!(turn(0.0), Turn::Rests(angle) if angle < 0.01), "it floats upright");
-    assert!(matches!(turn(0.45), Turn::Floods(angle) if (52.9..56.0).contains(&angle.to_degrees())), "it floods");
-}
