@@ -169,7 +169,7 @@ impl Unit {
         if let Some((_, size, of)) = UNITS.iter().find(|(name, ..)| *name == text) {
             return Some(Self { size: *size, of: *of });
         }
-        if let Some((above, below)) = text.rsplit_once('/') {
+        if let Some((above, below)) = text.rsplit_once('/').or_else(|| text.rsplit_once("_per_")) {
             return Some(Self::parse(above.trim())?.times(Self::parse(below.trim())?, -1));
         }
         if let Some((at, mark)) = text.char_indices().rev().find(|(at, mark)| is_product(text, *at, *mark)) {
@@ -246,11 +246,12 @@ pub(crate) fn conversion(unit: &str, meant: &str, dimension: usize) -> Option<Co
     let over = |by: &Dimensions| -> Dimensions { std::array::from_fn(|i| to.of[i] - from.of[i] - by[i]) };
     // Both units may be per metre of width, of the quantities with a mass.
     let may_be_per_width = dimension == 2 && to.of[0] != 0 && unit.contains(['/', '-', '−', '⁻']);
+    let has_mass = from.of[0] == 1 && from.of[2] == 0;
     let is_same = |of: Dimensions| of == NUMBER || (may_be_per_width && of == LENGTH);
     Some(match () {
         () if ONES.contains(&unit) => Conversion::Factor(1.0),
         () if is_same(over(&NUMBER)) => Conversion::Factor(factor),
-        () if is_same(over(&ACCELERATION)) => Conversion::Weight(STANDARD_GRAVITY * factor),
+        () if has_mass && is_same(over(&ACCELERATION)) => Conversion::Weight(STANDARD_GRAVITY * factor),
         () => Conversion::OtherQuantity,
     })
 }
@@ -262,6 +263,11 @@ pub(crate) fn of_series(name: &str) -> Option<&str> {
 
 /// Returns the unit at the end of the name of a column, as in `x_mm`.
 fn suffix(name: &str) -> Option<&str> {
+    // `u_m_per_s`
+    if let Some((above, _)) = name.rsplit_once("_per_") {
+        let unit = &name[above.rfind(['_', ' ']).map_or(0, |at| at + 1)..];
+        return Some(unit).filter(|unit| Unit::parse(unit).is_some());
+    }
     name.rsplit_once(['_', ' ']).map(|(_, suffix)| suffix).filter(|suffix| SUFFIXES.contains(suffix) || is_rate(suffix))
 }
 

@@ -133,31 +133,32 @@ fn with_force(table: &str, column: &str) -> (String, [(&'static str, String); 1]
 #[test]
 fn a_unit_that_is_not_of_the_si_is_a_warning_with_its_factor() {
     // Standard values: g = 9.80665 m/s², 1 lb = 0.45359237 kg, 1 ft = 0.3048 m.
-    for (column, factor) in [
+    for (column, words) in [
         ("F (kgf)", Some("9.80665")),
         ("F (lbf)", Some("4.4482216152605")),
         ("F (tf)", Some("9806.65")),
         ("F (daN)", Some("scale = 10")),
         ("F [mN]", Some("0.001")),
         ("F kN", Some("1000")),
-        ("F (N.mm)", Some("0.001")),
-        ("F (lbf.ft)", Some("1.3558")),
-        ("F (knots)", Some("0.51444")),
-        ("F (m/min)", Some("0.016666")),
-        ("F (mrad)", Some("0.001")),
+        ("F (N.mm)", Some("another quantity than N")),
+        ("F (lbf.ft)", Some("another quantity than N")),
+        ("F (knots)", Some("another quantity than N")),
+        ("F (mrad)", Some("another quantity than N")),
+        ("F (s)", Some("another quantity than N")),
+        ("F_m_per_s", Some("another quantity than N")),
+        ("F (lb)", Some("the weight of 1 lb is 4.45 N")),
         ("F (N)", None),
-        ("F (N·m)", None),
         ("F (kg m/s^2)", None),
     ] {
         let (scene, [(file, table)]) = with_force(&format!("t_s,{column}\n0,0\n5,1\n"), "2");
-        match factor {
-            Some(factor) => assert_found("unit", &scene, &[(file, &table)], &["as if in another unit", factor]),
+        match words {
+            Some(words) => assert_found("unit", &scene, &[(file, &table)], &["is in", words]),
             None => assert_not_found("unit", &scene, &[(file, &table)], "unit"),
         }
     }
     for (time, factor) in [("t (h)", "3600"), ("t (hr)", "3600"), ("t (d)", "86400"), ("t (min)", "60")] {
         let (scene, [(file, table)]) = with_force(&format!("{time},F\n0,0\n5,1\n"), "\"F\"");
-        assert_found("time", &scene, &[(file, &table)], &["another unit", &format!("time_factor = {factor}")]);
+        assert_found("time", &scene, &[(file, &table)], &["as if in s", &format!("time_factor = {factor}")]);
     }
     for unit in ["g", "kn", "furlong"] {
         let (scene, [(file, table)]) = with_force(&format!("t_s,F ({unit})\n0,0\n5,1\n"), "2");
