@@ -369,7 +369,10 @@ fn with_threads<T: Send>(threads: Option<usize>, work: impl FnOnce() -> Result<T
 pub const MOST_THREADS: usize = 1024;
 
 /// Creates a pool of `threads` threads, by default one for each processor.
-pub(crate) fn thread_pool(threads: Option<usize>) -> Result<rayon::ThreadPool> {
+///
+/// # Errors
+/// `Usage` if the number is not from 1 to [`MOST_THREADS`], or the threads cannot be started.
+pub fn thread_pool(threads: Option<usize>) -> Result<rayon::ThreadPool> {
     if let Some(count) = threads.filter(|count| !(1..=MOST_THREADS).contains(count)) {
         let what = format!("{count} threads cannot be had: from 1 to {MOST_THREADS}");
         return Err(Error::new(ErrorKind::Usage, what).help("leave the number out to use one for each processor"));

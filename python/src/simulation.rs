@@ -10,13 +10,13 @@ use std::{
 };
 
 use numpy::{PyArray1, PyArrayMethods};
-use pontoon::{Result, run::MOST_THREADS, scene::Scene};
+use pontoon::{Result, run::thread_pool, scene::Scene};
 use pyo3::{
     exceptions::PyRuntimeError,
     prelude::*,
     types::{PyBytes, PyDict},
 };
-use rayon::{ThreadPool, ThreadPoolBuilder};
+use rayon::ThreadPool;
 
 use crate::{
     bodies::{BodyState, BodyStep, find, motor, spring, three, three_axial, unknown},
@@ -59,12 +59,7 @@ impl NativeSimulation {
     /// # Errors
     /// `UsageError` if the threads cannot be started.
     pub fn new(py: Python<'_>, world: Box<dyn World>, threads: Option<usize>) -> PyResult<Self> {
-        if let Some(count) = threads.filter(|count| !(1..=MOST_THREADS).contains(count)) {
-            let what = format!("{count} threads cannot be had: from 1 to {MOST_THREADS}");
-            return Err(usage(py, &what, "leave threads out to use one for each processor"));
-        }
-        let pool = ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build();
-        let pool = pool.map_err(|why| usage(py, &format!("the threads cannot be started: {why}"), "ask for fewer"))?;
+        let pool = thread_pool(threads).or_raise(py)?;
         let names = Mutex::new(Arc::new(world.names()));
         Ok(Self { world: Mutex::new(Some(world)), names, pool, leases: Arc::default() })
     }

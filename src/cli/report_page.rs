@@ -163,6 +163,15 @@ pub fn write_after_run(folder: &Path, quiet: bool, told: impl Fn(&Error)) {
     }
 }
 
+/// Reads the name of a picture file.
+pub fn png_file(text: &str) -> std::result::Result<PathBuf, String> {
+    let file = PathBuf::from(text);
+    match file.extension().is_some_and(|end| end.eq_ignore_ascii_case("png")) {
+        true => Ok(file),
+        false => Err("a picture is a PNG file: give it a name that ends in .png".into()),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::number_pair;
@@ -171,14 +180,5 @@ mod tests {
     fn the_ends_of_a_range_rise() {
         assert_eq!(number_pair("-5, 1e3"), Ok([-5.0, 1000.0]));
         assert!(["5,1", "1", "1,2,3", "a,b", "0,inf"].iter().all(|text| number_pair(text).is_err()));
-    }
-}
-
-/// Reads the name of a picture file.
-pub fn png_file(text: &str) -> std::result::Result<PathBuf, String> {
-    let file = PathBuf::from(text);
-    match file.extension().is_some_and(|end| end.eq_ignore_ascii_case("png")) {
-        true => Ok(file),
-        false => Err("a picture is a PNG file: give it a name that ends in .png".into()),
     }
 }

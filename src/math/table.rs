@@ -160,30 +160,34 @@ impl TableReader {
     /// All columns, NaN where a cell is blank or no number. Only complete rows with a number in the first column count,
     /// so the cut last row of a stopped run does not.
     pub fn all_columns(&self) -> Vec<Vec<f64>> {
-        let mut columns = vec![Vec::new(); self.layout.count];
-        let number = |cell: &str| cell::number(cell, self.layout.decimal);
-        for (_, cells) in self.rows() {
-            if cells.len() == columns.len() && number(cells[0]).is_some_and(f64::is_finite) {
-                let cells = cells.iter().map(|cell| number(cell).unwrap_or(f64::NAN));
-                columns.iter_mut().zip(cells).for_each(|(column, x)| column.push(x));
-            }
-        }
-        columns
+        self.columns_and_damage().0
     }
 
-    /// The lines of the rows that [`TableReader::all_columns`] leaves out, or in which it leaves out a cell that is no
+    /// As [`TableReader::all_columns`], with the lines of the rows that it leaves out, or in which it leaves out a cell that is no
     /// number. The last row does not count: a stopped run may have cut it.
-    pub(crate) fn damaged_rows(&self) -> Vec<usize> {
-        let rows: Vec<(usize, Vec<&str>)> = self.rows().collect();
-        let is_number = |cell: &str| cell::number(cell, self.layout.decimal).is_some();
-        let has_numbers = |i: usize| rows.iter().any(|(_, cells)| cells.get(i).is_some_and(|cell| is_number(cell)));
-        let numbers: Vec<bool> = (0..self.layout.count).map(has_numbers).collect();
-        let is_whole = |cells: &[&str]| {
-            let is_read = |(cell, in_numbers): (&&str, &bool)| !in_numbers || is_number(cell) || cell::is_missing(cell);
-            cells.len() == numbers.len() && is_number(cells[0]) && cells.iter().zip(&numbers).all(is_read)
-        };
-        let all_but_last = rows.iter().take(rows.len().saturating_sub(1));
-        all_but_last.filter(|(_, cells)| !is_whole(cells)).map(|(line, _)| *line).collect()
+    pub(crate) fn columns_and_damage(&self) -> (Vec<Vec<f64>>, Vec<usize>) {
+        let mut columns = vec![Vec::new(); self.layout.count];
+        let number = |cell: &str| cell::number(cell, self.layout.decimal);
+        // Lines, with the column of a cell that is no number.
+        let (mut unread, mut last): (Vec<(usize, Option<usize>)>, usize) = (Vec::new(), 0);
+        for (line, cells) in self.rows() {
+            last = line;
+            if cells.len() != columns.len() || !number(cells[0]).is_some_and(f64::is_finite) {
+                unread.push((line, None));
+                continue;
+            }
+            for (i, (column, cell)) in columns.iter_mut().zip(cells).enumerate() {
+                let value = number(cell);
+                column.push(value.unwrap_or(f64::NAN));
+                if value.is_none() && !cell::is_missing(cell) {
+                    unread.push((line, Some(i)));
+                }
+            }
+        }
+        let has_numbers: Vec<bool> = columns.iter().map(|column| column.iter().any(|x| !x.is_nan())).collect();
+        unread.retain(|(line, column)| *line != last && column.is_none_or(|i| has_numbers[i]));
+        unread.dedup_by_key(|(line, _)| *line);
+        (columns, unread.into_iter().map(|(line, _)| line).collect())
     }
 
     /// The series of `column` over the column `time`. If the table has no column `"t_s"`, this name means the column

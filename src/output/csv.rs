@@ -172,9 +172,9 @@ impl SeriesTable {
     pub fn read(path: &Path) -> Result<Self> {
         let table = TableReader::open(path)?;
         let columns = table.column_names().into_iter().skip(1).collect();
-        let mut values = table.all_columns().into_iter();
-        let times = values.next().unwrap_or_default();
-        Ok(Self { columns, times, damaged: table.damaged_rows(), values: values.collect() })
+        let (values, damaged) = table.columns_and_damage();
+        let mut values = values.into_iter();
+        Ok(Self { columns, times: values.next().unwrap_or_default(), damaged, values: values.collect() })
     }
 
     /// Returns the remark that rows of the table `name` are damaged, if some are.

@@ -118,6 +118,9 @@ pub struct Equilibrium {
     pub heel_deg: Option<f64>,
     /// Whether `heel_deg` is an estimate for small angles, at most 45°: of tied bodies, and of open hulls that start turned.
     pub heel_is_estimate: bool,
+    /// The turn that `heel_deg` tells, if it is no estimate.
+    #[serde(skip)]
+    pub(crate) turn: Option<Turn>,
 }
 
 /// A tilt (roll or pitch) of a floating body.
@@ -137,6 +140,59 @@ fn linear_heel<const D: usize>(statics: &StaticSystem<D>, number: usize, tilts: 
     // A body of revolution on its side has GM = 0 and no heel.
     let heel = |t: &Tilt| if t.gm_m == 0.0 { 0.0 } else { along(&t.axis) / t.gm_m };
     tilts.iter().fold(0.0, |sum: f64, t| sum.hypot(heel(t)))
+}
+
+/// Returns a finding about the turn of an assembly from its start to its rest; `called`: its name, and the endings of words
+/// about it.
+fn turn_finding<const D: usize>(
+    afloat: &Equilibrium,
+    (statics, number): (&StaticSystem<D>, usize),
+    (name, verb, its): (&str, &str, &str),
+) -> Option<Finding> {
+    let least = afloat.tilts.iter().map(|t| t.gm_m).fold(f64::INFINITY, f64::min);
+    let level_it = "turn it by so much (angle_deg, turn_deg), or put its centre of mass under its buoyancy";
+    let lower = || {
+        format!("lower {its} centre of mass by {} m or more (centre_offset), or lock {its} turn", two_digits_up(-least))
+    };
+    match afloat.turn {
+        Some(Turn::Floods(angle)) => {
+            let at = three_digits(angle.to_degrees());
+            let what = format!("{name} floods as it turns: {at}° from its start the still water stands at its rim");
+            Some(Finding::warning("hull_floods", what, level_it.into()))
+        }
+        Some(Turn::Rests(angle)) => {
+            let is_unstable = least < 0.0 && linear_heel(statics, number, &afloat.tilts) < LEVEL;
+            let rest = three_digits(angle.to_degrees());
+            if angle > OVER || (is_unstable && angle > LEVEL) {
+                let height = match is_unstable {
+                    true => format!(": its metacentric height is {} m", three_digits(least)),
+                    false => String::new(),
+                };
+                let what = format!("{name} will turn over, to rest at {rest}° from its start{height}");
+                let mend = match is_unstable {
+                    true => lower(),
+                    false => "put its centre of mass under its buoyancy (centre_offset), or lock its turn".into(),
+                };
+                return Some(Finding::warning("capsizes", what, mend));
+            }
+            (angle > LEVEL)
+                .then(|| Finding::note("lists", format!("{name} turns by {rest}° to its rest"), level_it.into()))
+        }
+        None if least < 0.0 => {
+            let what = format!("{name} will turn over: {its} metacentric height is {} m", three_digits(least));
+            Some(Finding::warning("capsizes", what, lower()))
+        }
+        None => {
+            let heel = afloat.heel_deg.filter(|heel| *heel > LEVEL.to_degrees())?;
+            let far = if heel < LARGEST_ESTIMATE { "about" } else { "more than" };
+            let rests = if verb == "s" { "it rests" } else { "they rest" };
+            let what = format!(
+                "{name} start{verb} {far} {}° out of the trim in which {rests}, estimated for small angles",
+                three_digits(heel)
+            );
+            Some(Finding::note("lists", what, level_it.into()))
+        }
+    }
 }
 
 impl<const D: usize> PreflightContext<'_, D> {
@@ -274,6 +330,7 @@ impl<const D: usize> PreflightContext<'_, D> {
             first_swing_error: heave_error::<D>(area, draft, self.dp()),
             heel_deg,
             heel_is_estimate: turn.is_none() && !tilts.is_empty(),
+            turn,
             tilts,
         }
     }
@@ -404,7 +461,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         // A body in the air that lies on another does not float.
         let is_carried = touches && body.displaced_kg <= 0.0;
         if statics.assembly_of(number).next() == Some(number) && !is_carried {
-            findings.extend(self.turn_finding(afloat, (statics, number), (&name, verb, its)));
+            findings.extend(turn_finding(afloat, (statics, number), (&name, verb, its)));
         }
         // A body that rests on another solid need not float at equilibrium.
         let off = body.draft_m - afloat.draft_m;
@@ -426,64 +483,6 @@ impl<const D: usize> PreflightContext<'_, D> {
                 }
             };
             findings.push(Finding::note("off_draft", what, mend));
-        }
-    }
-
-    /// Returns a finding about the turn of an assembly from its start to its rest; `called`: its name, and the endings of words
-    /// about it.
-    fn turn_finding(
-        &self,
-        afloat: &Equilibrium,
-        (statics, number): (&StaticSystem<D>, usize),
-        (name, verb, its): (&str, &str, &str),
-    ) -> Option<Finding> {
-        let least = afloat.tilts.iter().map(|t| t.gm_m).fold(f64::INFINITY, f64::min);
-        let turn = self.turn(statics, number);
-        let level_it = "turn it by so much (angle_deg, turn_deg), or put its centre of mass under its buoyancy";
-        let lower = || {
-            format!(
-                "lower {its} centre of mass by {} m or more (centre_offset), or lock {its} turn",
-                two_digits_up(-least)
-            )
-        };
-        match turn {
-            Some(Turn::Floods(angle)) => {
-                let at = three_digits(angle.to_degrees());
-                let what = format!("{name} floods as it turns: {at}° from its start the still water stands at its rim");
-                Some(Finding::warning("hull_floods", what, level_it.into()))
-            }
-            Some(Turn::Rests(angle)) => {
-                let is_unstable = least < 0.0 && linear_heel(statics, number, &afloat.tilts) < LEVEL;
-                let rest = three_digits(angle.to_degrees());
-                if angle > OVER || (is_unstable && angle > LEVEL) {
-                    let height = match is_unstable {
-                        true => format!(": its metacentric height is {} m", three_digits(least)),
-                        false => String::new(),
-                    };
-                    let what = format!("{name} will turn over, to rest at {rest}° from its start{height}");
-                    let mend = match is_unstable {
-                        true => lower(),
-                        false => "put its centre of mass under its buoyancy (centre_offset), or lock its turn".into(),
-                    };
-                    return Some(Finding::warning("capsizes", what, mend));
-                }
-                (angle > LEVEL)
-                    .then(|| Finding::note("lists", format!("{name} turns by {rest}° to its rest"), level_it.into()))
-            }
-            None if least < 0.0 => {
-                let what = format!("{name} will turn over: {its} metacentric height is {} m", three_digits(least));
-                Some(Finding::warning("capsizes", what, lower()))
-            }
-            None => {
-                let heel = afloat.heel_deg.filter(|heel| *heel > LEVEL.to_degrees())?;
-                let far = if heel < LARGEST_ESTIMATE { "about" } else { "more than" };
-                let rests = if verb == "s" { "it rests" } else { "they rest" };
-                let what = format!(
-                    "{name} start{verb} {far} {}° out of the trim in which {rests}, estimated for small angles",
-                    three_digits(heel)
-                );
-                Some(Finding::note("lists", what, level_it.into()))
-            }
         }
     }
 

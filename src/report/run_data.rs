@@ -17,7 +17,7 @@ use crate::{
     output::{FrameSequence, Manifest, SeriesTable},
     plan::Plan,
     probe::ProbeLocation,
-    run::{self, RunStatistics, StatisticsFilter, outputs, run_folder},
+    run::{self, RunStatistics, outputs, run_folder},
     scene::{OpenBoundaryConfig, Scene, SceneLayout},
     solid::Role,
 };
@@ -130,10 +130,8 @@ impl RunData {
             }
         }
         let checks = checks.into_iter().map(|(curves, check)| (check, curves)).collect();
-        let told = plan.map_or_else(RunStatistics::default, |plan| {
-            run::statistics::run_statistics(folder, plan, &StatisticsFilter::default())
-        });
-        remarks.extend(plan.iter().flat_map(|plan| run::statistics::damages(folder, plan)));
+        let (told, damages) = plan.map_or_else(Default::default, |plan| run::statistics::run_statistics(folder, plan));
+        remarks.extend(damages);
         Ok(Self {
             name: folder
                 .canonicalize()

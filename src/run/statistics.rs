@@ -74,21 +74,22 @@ pub fn statistics(folder: &Path, asked: &StatisticsFilter) -> Result<RunStatisti
     let manifest = Manifest::read(folder)?;
     let sets: Vec<(String, String)> = manifest.set.into_iter().collect();
     let plan = Scene::read(&scene_file(&folder.join("scene")), &sets)?.plan()?;
-    let mut told = run_statistics(folder, &plan, asked);
+    let tables = read_tables(folder, &plan);
+    let mut told = from_tables(&tables, &plan, asked);
     let names: Vec<&str> = plan.probes.iter().map(|probe| probe.name.as_str()).collect();
-    if !names.is_empty() && missing_tables(folder, &plan).len() == names.len() {
+    let missing = missing_tables(folder, &plan);
+    if !names.is_empty() && missing.len() == names.len() {
         let what =
             format!("{} has none of the tables of the run: {}", series_folder(folder).display(), names.join(", "));
         let help = "put them back, each as NAME.csv, or start the run afresh with `pontoon run`";
         return Err(Error::new(ErrorKind::Restart, what).help(help));
     }
-    told.remarks.extend(damages(folder, &plan));
+    told.remarks.extend(damages(&missing, &tables));
     if told.rows.is_empty() {
-        check_time_range(folder, &plan, asked)?;
+        check_time_range(folder, &tables, asked)?;
     }
     match &asked.series {
         Some(series) if told.rows.is_empty() => {
-            let tables = read_tables(folder, &plan);
             let of_table = |(probe, table): (&String, &SeriesTable)| -> Vec<String> {
                 table.columns.iter().map(|column| format!("{probe}.{column}")).collect()
             };
@@ -102,8 +103,7 @@ pub fn statistics(folder: &Path, asked: &StatisticsFilter) -> Result<RunStatisti
 }
 
 /// Checks that the requested time range overlaps the time range of the run in `folder`.
-fn check_time_range(folder: &Path, plan: &Plan, asked: &StatisticsFilter) -> Result<()> {
-    let tables = read_tables(folder, plan);
+fn check_time_range(folder: &Path, tables: &ProbeTables, asked: &StatisticsFilter) -> Result<()> {
     let times = || tables.values().flat_map(|table| table.times.first().into_iter().chain(table.times.last()));
     let [first, last] = [times().copied().fold(f64::INFINITY, f64::min), times().copied().fold(0.0, f64::max)];
     let (run, from, until) = (folder.display(), asked.from.unwrap_or(first), asked.until.unwrap_or(last));
@@ -152,16 +152,17 @@ fn missing_tables<'a>(folder: &Path, plan: &'a Plan) -> Vec<&'a str> {
     names.filter(|name| !series.join(format!("{name}.csv")).is_file()).collect()
 }
 
-/// Returns what is missing or damaged in the tables of the run in `folder`, a sentence for each table.
-pub(crate) fn damages(folder: &Path, plan: &Plan) -> Vec<String> {
-    let missing = missing_tables(folder, plan);
-    let missing = missing.into_iter().map(|name| format!("series/{name}.csv is missing: its series are left out"));
-    let damaged = read_tables(folder, plan);
-    missing.chain(damaged.iter().filter_map(|(name, table)| table.damage(name))).collect()
+/// Returns a sentence for each table that is missing or damaged.
+fn damages(missing: &[&str], tables: &ProbeTables) -> Vec<String> {
+    let missing = missing.iter().map(|name| format!("series/{name}.csv is missing: its series are left out"));
+    missing.chain(tables.iter().filter_map(|(name, table)| table.damage(name))).collect()
 }
 
-pub(crate) fn run_statistics(folder: &Path, plan: &Plan, asked: &StatisticsFilter) -> RunStatistics {
-    from_tables(&read_tables(folder, plan), plan, asked)
+/// Returns the statistics of the whole run in `folder`, and a sentence for each table that is missing or damaged.
+pub(crate) fn run_statistics(folder: &Path, plan: &Plan) -> (RunStatistics, Vec<String>) {
+    let tables = read_tables(folder, plan);
+    let damages = damages(&missing_tables(folder, plan), &tables);
+    (from_tables(&tables, plan, &StatisticsFilter::default()), damages)
 }
 
 /// Returns the statistics of `tables`.

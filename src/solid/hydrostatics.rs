@@ -88,8 +88,7 @@ impl<'a, const D: usize> Hull<'a, D> {
     /// Volume (m³; m² in 2-D) of the displaced water, with hollows dry even if their rim lies below the level.
     pub(crate) fn volume_if_dry(&self, pose: &Pose<D>, level: f64) -> f64 {
         let hollows: f64 = self.hollows().map(|hollow| hollow.volume_and_moment_below(pose, level).0).sum();
-        let filled: f64 = self.filled.iter().map(|(hollow, water)| water.volume_and_moment(hollow, pose).0).sum();
-        self.shape.submerged_volume(pose, level).0 + hollows - filled
+        self.shape.submerged_volume(pose, level).0 + hollows - self.enclosed_volume(pose)
     }
 
     /// Lowest and highest height (m) of the box around the hull at `pose`.
@@ -137,8 +136,8 @@ impl<'a, const D: usize> Hull<'a, D> {
         Ok(0.5 * (under + over))
     }
 
-    /// The same rise by interpolation, to 1e-12 of the volume that it displaces, `volume` (m³; m² in 2-D); `None` if it sinks or
-    /// floods.
+    /// As [`Hull::equilibrium_height`] for the displaced `volume` (m³; m² in 2-D), in a fifth of the evaluations but to 1e-12 of it
+    /// only; `None` if it sinks or floods.
     pub(crate) fn rise_afloat(&self, pose: &Pose<D>, volume: f64, level: f64) -> Option<f64> {
         let more = |rise: f64| {
             let mut pose = *pose;

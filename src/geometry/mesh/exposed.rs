@@ -22,7 +22,6 @@ const ROUND_OFF: f64 = 1e-9;
 type Polygon = Vec<Vector<3>>;
 
 /// The surface of a mesh without the areas back to back.
-#[derive(Clone)]
 pub(super) struct Exposed {
     pub(super) triangles: Vec<[Vector<3>; 3]>,
     /// Number of facets that are hidden, in whole or in part.
@@ -34,8 +33,8 @@ pub(super) struct Exposed {
 /// Returns the exposed surface, or `None` if no facets lie back to back. `overlap`: depth (m) by which parts may overlap.
 pub(super) fn exposed(mesh: &Mesh, overlap: f64) -> Option<Exposed> {
     let size = mesh.bounds.size().max();
-    let (gap, overlap) = (TOUCHING * size, overlap.max(TOUCHING * size));
-    let margin = gap.max(overlap);
+    let gap = TOUCHING * size;
+    let overlap = overlap.max(gap);
     let normals: Vec<Option<Vector<3>>> =
         (0..mesh.facets.len()).map(|i| facet_normal(&mesh.facet_corners(i))).collect();
     let opposed = |a: usize, b: usize| {
@@ -46,7 +45,7 @@ pub(super) fn exposed(mesh: &Mesh, overlap: f64) -> Option<Exposed> {
     // Each pair in both orders: the search around a large facet is limited.
     let mut pairs: Vec<(usize, usize)> = (0..mesh.facets.len())
         .into_par_iter()
-        .flat_map_iter(|a| mesh.tree.near(a as u32, margin).filter(move |b| *b != a).map(move |b| (a, b)))
+        .flat_map_iter(|a| mesh.tree.near(a as u32, overlap).filter(move |b| *b != a).map(move |b| (a, b)))
         .filter(|(a, b)| opposed(*a, *b))
         .flat_map_iter(|(a, b)| [(a, b), (b, a)])
         .collect();
@@ -87,7 +86,7 @@ pub(super) fn exposed(mesh: &Mesh, overlap: f64) -> Option<Exposed> {
         let fan = (1..piece.len() - 1).map(|i| [piece[0], piece[i], piece[i + 1]]);
         triangles.extend(fan.filter(|triangle| width(triangle) > ROUND_OFF * size));
     }
-    (!triangles.is_empty()).then_some(Exposed { triangles, hidden: cut.len(), reach: 2.0 * margin })
+    (!triangles.is_empty()).then_some(Exposed { triangles, hidden: cut.len(), reach: 2.0 * overlap })
 }
 
 /// Returns the area of the facet `a` with this normal that the facet `b` covers: where `b` is at heights from `least` to `most` (m)

@@ -24,7 +24,7 @@ const STANDARD_GRAVITY: f64 = 9.806_65;
 const ONES: [&str; 5] = ["-", "–", "—", "--", "1"];
 
 /// Units, their size in the SI unit of the same quantity, and the quantity. Others are products, quotients and powers of these.
-const UNITS: [(&str, f64, Dimensions); 91] = [
+const UNITS: [(&str, f64, Dimensions); 86] = [
     ("m", 1.0, LENGTH),
     ("meter", 1.0, LENGTH),
     ("meters", 1.0, LENGTH),
@@ -76,10 +76,10 @@ const UNITS: [(&str, f64, Dimensions); 91] = [
     ("daN", 10.0, FORCE),
     ("kN", 1e3, FORCE),
     ("MN", 1e6, FORCE),
-    ("kgf", 9.806_65, FORCE),
-    ("kp", 9.806_65, FORCE),
-    ("gf", 9.806_65e-3, FORCE),
-    ("tf", 9806.65, FORCE),
+    ("kgf", STANDARD_GRAVITY, FORCE),
+    ("kp", STANDARD_GRAVITY, FORCE),
+    ("gf", STANDARD_GRAVITY / 1e3, FORCE),
+    ("tf", STANDARD_GRAVITY * 1e3, FORCE),
     ("lbf", 4.448_221_615_260_5, FORCE),
     ("kip", 4_448.221_615_260_5, FORCE),
     ("Nm", 1.0, MOMENT),
@@ -111,11 +111,6 @@ const UNITS: [(&str, f64, Dimensions); 91] = [
     ("kW", 1e3, POWER),
     ("MW", 1e6, POWER),
     ("%", 1e-2, NUMBER),
-    ("-", 1.0, NUMBER),
-    ("–", 1.0, NUMBER),
-    ("—", 1.0, NUMBER),
-    ("--", 1.0, NUMBER),
-    ("1", 1.0, NUMBER),
 ];
 
 /// Units of more than one meaning, or of quantities that no law has: grams or the acceleration of gravity, knots or
@@ -166,6 +161,10 @@ struct Unit {
 impl Unit {
     /// Returns the unit that `text` names; `None` if it is not known.
     fn parse(text: &str) -> Option<Self> {
+        let one = Self { size: 1.0, of: NUMBER };
+        if ONES.contains(&text) {
+            return Some(one);
+        }
         if let Some((_, size, of)) = UNITS.iter().find(|(name, ..)| *name == text) {
             return Some(Self { size: *size, of: *of });
         }
@@ -182,7 +181,6 @@ impl Unit {
             let [above, below] = parts.iter().all(|part| !ONES.contains(part)).then_some(parts)?;
             Some(Self::parse(above)?.times(Self::parse(below)?, -1))
         });
-        let one = Self { size: 1.0, of: NUMBER };
         quotient.or_else(|| split_power(text).and_then(|(base, power)| Some(one.times(Self::parse(base)?, power))))
     }
 

@@ -327,10 +327,16 @@ impl CheckConfig {
                 let column = self.column.clone().unwrap_or_default();
                 let scaling = record::scaling([self.scale, self.time_factor, self.offset]);
                 let table = files::open_table(ctx.folder(), &file).map_err(place)?;
-                let (time_of, column_of) = (time.clone(), column.clone());
-                let unit = table::of_series(&self.series);
-                let mut record =
-                    Record { ctx, key, file: &file, table, time: time_of, column: column_of, scaling, unit };
+                let mut record = Record {
+                    ctx,
+                    key,
+                    file: &file,
+                    table,
+                    time: time.clone(),
+                    column: column.clone(),
+                    scaling,
+                    unit: table::of_series(&self.series),
+                };
                 record.require_time().map_err(|e| ctx.with_location(e, &format!("{key}.time")))?;
                 let series = record.read().and_then(|series| series.scaled(&scaling)).map_err(place)?;
                 self.require_samples(ctx, key, &file, &series)?;
