@@ -159,6 +159,7 @@ fn damages(missing: &[&str], tables: &ProbeTables) -> Vec<String> {
 }
 
 /// Returns the statistics of the whole run in `folder`, and a sentence for each table that is missing or damaged.
+#[cfg(feature = "cli")]
 pub(crate) fn run_statistics(folder: &Path, plan: &Plan) -> (RunStatistics, Vec<String>) {
     let tables = read_tables(folder, plan);
     let damages = damages(&missing_tables(folder, plan), &tables);
