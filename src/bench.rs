@@ -208,8 +208,8 @@ fn missing_dimension(dimension: usize) -> Error {
     Error::new(ErrorKind::Usage, format!("this program was built without {dimension}-D"))
 }
 
-/// Prepares every case and times the cases in turns, `rounds` times on each number of `threads`. Returns the round of
-/// least processor time for each number of threads and each case.
+/// Prepares every case. Then, for each number of `threads`, times all cases one after another, in `rounds` rounds. Returns for each
+/// number of threads and each case the timing of the round with the least processor time.
 ///
 /// # Errors
 /// Any error of a simulation, and `Usage` if the threads cannot be created.

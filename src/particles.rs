@@ -1,4 +1,4 @@
-//! The parallel arrays, used for the water and for every skin. No laws.
+//! The parallel arrays of particle quantities, of the water and of the boundary particles. No laws.
 
 use bytemuck::Zeroable;
 use serde::{Deserialize, Serialize};

@@ -681,6 +681,10 @@ fn damaged_and_missing_tables_of_a_run_are_told() {
     let stats = folder.pontoon(&["stats", "a"]);
     let told = "2 rows of series/low.csv are damaged, the first in line 3";
     assert!(stats.code == Some(0) && stats.err.contains(told), "{}", stats.err);
+    let export = folder.pontoon(&["export", "a", "--npz"]);
+    assert!(export.code == Some(0) && export.err.contains(told), "{}", export.err);
+    let watch = folder.pontoon(&["watch", "a", "--once"]);
+    assert!(watch.code == Some(0) && watch.out.contains(told), "{}", watch.out);
     fs::remove_file(&table).unwrap();
     let stats = folder.pontoon(&["stats", "a"]);
     assert!(stats.code == Some(0) && stats.err.contains("series/low.csv is missing"), "{}", stats.err);

@@ -5,7 +5,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use super::{key_value, scene_lookup::find_scene};
+use super::{key_value, print_error, scene_lookup::find_scene};
 use crate::{
     error::{Error, ErrorKind, Result},
     output::{Manifest, SeriesTable, npz},
@@ -123,6 +123,9 @@ fn series(folder: &Path, out: PathBuf) -> Result<String> {
     if tables.is_empty() {
         let what = format!("the run in {} has no series", folder.display());
         return Err(Error::new(ErrorKind::Usage, what).help("a [[probe]] in its scene would write some"));
+    }
+    for damage in tables.iter().filter_map(|(name, table)| table.damage(name)) {
+        print_error(&format!("warning: {damage}\n"));
     }
     let (spectra, answers) = (spectra(folder)?, rao_arrays(folder)?);
     let all = tables.iter().flat_map(|(name, of)| {

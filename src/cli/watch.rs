@@ -182,6 +182,9 @@ impl RunSnapshot {
         let room = usize::from(high.max(24)) - 5;
         let lines = (room / 2).checked_div(plots.len()).unwrap_or(0).max(LEAST_LINES);
         let rows = room.saturating_sub(plots.len() * lines).max(LEAST_LINES);
+        for damage in self.tables.iter().filter_map(|(name, table)| table.damage(name)) {
+            text += &format!("warning: {damage}\n");
+        }
         text += &self.latest_readings(rows);
         for name in &plots {
             text += &self.plot(name, wide, lines);

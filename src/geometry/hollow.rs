@@ -37,8 +37,9 @@ pub(crate) struct Enclosure<const D: usize> {
 /// A hollow of a solid, in the solid's frame.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Hollow<const D: usize> {
-    /// Height of the rim above the frame's origin, m, in the orientation of the search; `None` if the hollow is closed.
-    pub(crate) rim: Option<f64>,
+    /// Places over which water can come in, m: of each side of the opening the highest on the way. The lowest is at the spill level
+    /// in the orientation of the search. Empty if the hollow is closed.
+    rim: Vec<Vector<D>>,
     /// Unit vector along the columns, upward.
     along: Vector<D>,
     columns: Vec<Column<D>>,
@@ -119,9 +120,16 @@ impl<const D: usize> Hollow<D> {
         cut.map(|column| column.area / along).sum()
     }
 
-    /// Returns the height (m) of the rim at `pose`; infinity if the hollow is closed.
+    /// Whether no water can come in.
+    pub(crate) fn is_closed(&self) -> bool {
+        self.rim.is_empty()
+    }
+
+    /// Returns the height (m) of the lowest place of the rim at `pose`; infinity if the hollow is closed.
     pub(crate) fn rim_height(&self, pose: &Pose<D>) -> f64 {
-        self.rim.map_or(f64::INFINITY, |rim| pose.position[D - 1] + rim)
+        let up = pose.rotation.row(D - 1);
+        let heights = self.rim.iter().map(|x| up.tr_dot(x));
+        pose.position[D - 1] + heights.fold(f64::INFINITY, f64::min)
     }
 
     /// Returns the middle of each column's part below the height `level` (m) at `pose`, m.
@@ -305,6 +313,55 @@ impl<const D: usize> Search<'_, D> {
         spill
     }
 
+    /// Returns the index of the neighbour of a cell along an axis, forward or back; `None` beyond the grid.
+    fn neighbour(&self, index: usize, axis: usize, forward: bool) -> Option<usize> {
+        let (place, stride) = (self.cell_at(index)[axis], self.count[..axis].iter().product::<usize>());
+        match forward {
+            true => (place + 1 < self.count[axis]).then_some(index + stride),
+            false => (place > 0).then(|| index - stride),
+        }
+    }
+
+    /// Returns the rim (m) of the hollow with this number and `cells`, whose spill level (m) is `level`.
+    ///
+    /// At each side of the opening a way leads up the column until no wall is beside it: over the top of the wall there. A side
+    /// under a deck has none.
+    fn rim(&self, cells: &[u32], mark: &[u32], number: u32, level: f64) -> Vec<Vector<D>> {
+        let axis = self.up.iamax();
+        let upward = self.up[axis] > 0.0;
+        let above = |cell: usize| self.neighbour(cell, axis, upward).filter(|next| self.are_joined(cell, *next));
+        let opens = |cell: usize| above(cell).is_some_and(|next| mark[next] == OUTSIDE);
+        let lifted = |x: Vector<D>, height: f64| x + self.up * (height - self.up.dot(&x));
+        let over = |cell: usize, side: usize, forward: bool| {
+            let mut inner = cell;
+            loop {
+                let outer = self.neighbour(inner, side, forward)?;
+                if self.are_joined(inner, outer) {
+                    let half = if forward { 0.5 * self.cell } else { -0.5 * self.cell };
+                    let mut x = self.centre(inner);
+                    x[side] += half;
+                    let top = self.passage(inner).max(self.passage(outer)).max(level);
+                    return (mark[outer] != number).then(|| lifted(x, top));
+                }
+                inner = above(inner)?;
+            }
+        };
+        let openings = cells.iter().map(|cell| *cell as usize).filter(|cell| opens(*cell));
+        let sides = || (0..D).filter(|side| *side != axis).flat_map(|side| [(side, false), (side, true)]);
+        let mut rim: Vec<Vector<D>> = openings
+            .clone()
+            .flat_map(|cell| sides().filter_map(move |(side, forward)| over(cell, side, forward)))
+            .collect();
+        if rim.is_empty() {
+            // A way around corners, such as that of a pipe: its end at the hollow stands for the rim.
+            let last = cells.last().map(|cell| *cell as usize);
+            rim = openings.last().or(last).map(|cell| lifted(self.centre(cell), level)).into_iter().collect();
+        }
+        let excess = rim.iter().map(|x| self.up.dot(x)).fold(f64::INFINITY, f64::min) - level;
+        rim.iter_mut().for_each(|x| *x -= self.up * excess);
+        rim
+    }
+
     /// Returns the cells of each hollow, and the mark of every cell.
     fn hollows(&self, spill: &[f64], least_depth: f64) -> (Vec<Vec<u32>>, Vec<u32>) {
         let n = self.distance.len();
@@ -361,11 +418,12 @@ impl<const D: usize> Enclosure<D> {
         let axis = up.iamax();
         let mut along = Vector::zeros();
         along[axis] = up[axis].signum();
-        let hollow = |cells: &Vec<u32>| {
-            let rim = spill[cells[0] as usize];
-            Hollow { rim: rim.is_finite().then_some(rim), along, columns: Vec::new() }
+        let hollow = |(number, cells): (usize, &Vec<u32>)| {
+            let level = spill[cells[0] as usize];
+            let rim = if level.is_finite() { search.rim(cells, &mark, number as u32, level) } else { Vec::new() };
+            Hollow { rim, along, columns: Vec::new() }
         };
-        let hollows = found.iter().map(hollow).collect();
+        let hollows = found.iter().enumerate().map(hollow).collect();
         let mut made = Self { hollows, min: search.min, cell, count, hollow_of: mark };
         made.make_columns(&search, axis);
         Some(made)

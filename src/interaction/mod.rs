@@ -1,4 +1,5 @@
-//! The pair loop: applies the terms of `sph` to all pairs of particles, in parallel. It has no equations of its own.
+//! The pair loop: applies the terms of `sph` to all pairs of particles, in parallel, in a SIMD form and an f64 reference. It has no
+//! equations of its own.
 //!
 //! `reference` is the f64 reference. `simd` computes eight pairs at a time, each pair once. Both own their threads and
 //! buffers; only the code in `compiled` is compiled for each combination of terms.

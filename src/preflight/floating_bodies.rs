@@ -1,15 +1,16 @@
 //! Equilibrium of each free body: draft, metacentric height and periods, and whether particles of this size can support
-//! it. Water of its own in a hull is part of the mass that heaves and of the displacement of GM, which its free surface lowers by
-//! ρ₀ I_inner/Δ; it is not part of the inertia in roll.
+//! it. Water inside a hull counts in the mass m that heaves and in the displacement Δ used for GM, but not in the inertia I in roll. Its
+//! free surface lowers GM by ρ₀ I_inner/Δ.
 //!
-//!   heave  T = 2π √((m + m_a)/(ρ₀ g A)),    roll  T = 2π √(I/(m g GM))
+//!   heave  T = 2π √((m + m_a)/(ρ₀ g A)),    roll  T = 2π √(I/(Δ g GM))
 //!
 //! A is the area of the waterplane and m_a is the added mass in heave. The estimate of m_a is half of the added mass of
 //! a flat plate of the same waterplane, because water is on one side only. It is ½ π ρ₀ (A/2)² in 2-D and ½ (8/3) ρ₀ a³
-//! with π a² = A in 3-D @newman1977, ch. 4. Nothing is added to I, so that the real roll period is longer.
+//! with π a² = A in 3-D @newman1977, ch. 4. I has no added inertia of the water, so the real roll period is longer.
 //!
 //! With Δt = C h/c₀ an explicit exchange of forces is stable for a body whose mass per wetted area exceeds ½ C ρ₀ h. A
-//! lighter body moves with the inertia of the water around it (`time/light.rs`), and its draft is a few tenths of a dp.
+//! lighter body, whose draft is a few tenths of a dp at most, moves with the inertia of the water around it
+//! (`coupling/acoustic_added_mass.rs`).
 
 use std::f64::consts::{PI, TAU};
 
@@ -32,7 +33,7 @@ use crate::{
         FreeBody, Solid, SolidSpec,
         joint_groups::JointGroups,
         righting::{Floating, Turn},
-        statics::{StaticBody, StaticSystem, Support, WaterAtRest},
+        statics::{Overload, StaticBody, StaticSystem, Support, WaterAtRest},
     },
 };
 
@@ -195,6 +196,18 @@ fn turn_finding<const D: usize>(
     }
 }
 
+/// Returns the finding about a line or a joint that breaks before the bodies are at rest.
+fn overload_finding<const D: usize>(Overload { kind, name, load, strength }: Overload) -> Finding {
+    let unit = if D == 2 { "N/m" } else { "N" };
+    let [has, bears] = [load, strength].map(three_digits);
+    let what = format!(
+        "{kind} \"{name}\" breaks before the bodies are at rest: it has {has} {unit} then and bears {bears} {unit}"
+    );
+    let key = if kind == "joint" { "force" } else { "tension" };
+    let mend = format!("breaks = {{ {key} = {} }} or more, or less load on it", two_digits_up(load));
+    Finding::warning("breaks_at_rest", what, mend)
+}
+
 impl<const D: usize> PreflightContext<'_, D> {
     /// Returns the summaries of the free bodies and adds findings about them. `touching` marks the solids that touch
     /// another.
@@ -203,6 +216,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         let specs: Vec<&SolidSpec<D>> = self.solids().iter().map(|solid| &solid.spec).collect();
         let constraints = &self.system.constraints().at_start();
         let groups = JointGroups::of(&specs, constraints);
+        findings.extend(statics.iter().flat_map(StaticSystem::overloads).map(overload_finding::<D>));
         let mut bodies = Vec::new();
         for (i, solid) in self.solids().iter().enumerate() {
             let Some(body) = &solid.body else { continue };

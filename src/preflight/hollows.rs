@@ -71,7 +71,7 @@ pub(super) fn check_hollows<const D: usize>(context: &PreflightContext<D>, findi
     for (i, (solid, own)) in context.solids().iter().zip(&context.hollows).enumerate() {
         let (Some(own), name) = (own, &solid.spec.name) else { continue };
         let pose = &solid.kinematics.pose;
-        let above = |hollow: &Hollow<D>| hollow.rim.is_some() && hollow.rim_height(pose) > level;
+        let above = |hollow: &Hollow<D>| !hollow.is_closed() && hollow.rim_height(pose) > level;
         let filled = own.enclosure.hollows.iter().zip(&own.particles).filter(|(hollow, n)| **n > 0 && above(hollow));
         let particles: usize = filled.map(|(_, n)| n).sum();
         if particles > 0 && solid.spec.dry.is_none() {

@@ -41,7 +41,7 @@ impl ProbeDefinition for JointPlan {
     }
 }
 
-/// Measures the force (N) and torque (N m) of the locks and end stops of a joint on its second solid. For a hinge or a
+/// Measures the force (N) and torque (N m) that a joint exerts on its second solid by its locks and end stops. For a hinge or a
 /// slider it also measures the angle (deg) or position (m), its rate, the force of the motor, the power absorbed (W)
 /// and the energy absorbed (J). For a generic joint it also measures the positions (m) and rotations (deg) in the free
 /// modes.

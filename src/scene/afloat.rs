@@ -194,7 +194,7 @@ fn enclosure<const D: usize>(spec: &SolidSpec<D>, named: bool, pool: &StillWater
 
 /// Returns whether `spec` keeps water that surrounds it out of a hollow.
 fn keeps_out<const D: usize>(spec: &SolidSpec<D>, hollow: &Hollow<D>) -> bool {
-    spec.dry.unwrap_or(hollow.rim.is_none())
+    spec.dry.unwrap_or(hollow.is_closed())
 }
 
 impl<const D: usize> PlacedSolids<D> {

@@ -1,4 +1,4 @@
-//! Scenes: reading, checking, filling in the defaults, building.
+//! Scenes: reading scene, mesh and drawing files, checking, filling in the defaults, building.
 //!
 //! `toml_source` reads a [`Scene`] from TOML, `overrides` puts the values of `--set` into it and `diagnostics` explains the errors of
 //! the parser. Each file of `section` contains the configuration, validation, defaults and construction of a section of

@@ -1,8 +1,8 @@
 //! The keys of a scene as a JSON schema, for editors, generated from the types that read them.
 //!
-//! The schema requires exactly one of several alternative keys (`fixed`, `driven`, `free` of a solid), and the value
-//! `true` where no other value is valid (`fixed`). It does not contain other dependences, such as that of the length of
-//! a vector on the dimension.
+//! The schema requires exactly one key of each set of alternatives (for a solid: `fixed`, `driven` or `free`), and the value
+//! `true` where no other value is valid (`fixed`). It does not check other rules, such as that a vector has one number for each
+//! dimension.
 
 use schemars::generate::SchemaSettings;
 use serde_json::{Map, Value, json};

@@ -1,4 +1,5 @@
-//! Solids: fixed, driven and free, with their kinematics, loads, constraints and the rigid-body engine. No sums over pairs.
+//! Solids: fixed, driven and free, with their kinematics, loads, equilibrium at rest, constraints and mooring lines, and the
+//! rigid-body engine (rapier) with its colliders and contacts. No sums over pairs.
 
 mod ballast;
 mod body;

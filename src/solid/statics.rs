@@ -5,6 +5,9 @@
 //! Newton's method finds the rises at which buoyancy, weight, lines and forces balance. A rope is a stiff spring that
 //! bears tension only, as is the bottom of the water.
 
+mod strength;
+mod ties;
+
 use nalgebra::{DMatrix, DVector};
 
 use super::{
@@ -15,6 +18,9 @@ use super::{
     mooring::forces_at_rest,
 };
 use crate::math::{Bivector, Bounds, Pose, Vector};
+
+pub(crate) use strength::Overload;
+use ties::{Drive, Line, SteadyForce, tension_towards};
 
 /// Stiffness of a taut rope and of the bottom over that of the largest waterplane.
 const STIFF: f64 = 1e5;
@@ -61,43 +67,6 @@ pub(crate) struct StaticBody<'a, const D: usize> {
     pub(crate) bottom: f64,
 }
 
-/// A line between two bodies, or a body and the ground.
-struct Line<const D: usize> {
-    /// Numbers of the bodies; `None`: the ground.
-    bodies: [Option<usize>; 2],
-    at: [Vector<D>; 2],
-    stiffness: f64,
-    /// Length without tension, m.
-    length: f64,
-    /// Whether it bears compression.
-    pushes: bool,
-    is_rope: bool,
-    /// Whether its ends come to hang one above the other.
-    hangs: bool,
-}
-
-/// A steady force on a body, N, and its point of application, m.
-struct SteadyForce<const D: usize> {
-    body: usize,
-    at: Vector<D>,
-    force: Vector<D>,
-    torque: Bivector<D>,
-}
-
-/// The motor of a slider between two bodies, or a body and the ground.
-struct Drive {
-    /// Numbers of the bodies; `None`: the ground. It drives the second.
-    bodies: [Option<usize>; 2],
-    /// Upward part of its direction, –.
-    steep: f64,
-    /// Force (N) where the joint starts.
-    force: f64,
-    /// Stiffness, N/m.
-    stiffness: f64,
-    /// Largest force, N.
-    largest: f64,
-}
-
 /// Free bodies with their ties.
 pub(crate) struct StaticSystem<'a, const D: usize> {
     pub(crate) bodies: Vec<StaticBody<'a, D>>,
@@ -140,22 +109,24 @@ impl<'a, const D: usize> StaticSystem<'a, D> {
         let (group, assembly) = (of(&groups.rising), of(&groups.jointed));
         let stiff = bodies.iter().map(|body| plan_area(&body.hull, &body.pose)).fold(0.0, f64::max);
         let stiff = STIFF * water.rho0 * water.g * stiff;
-        let line = |ends: &[LineEnd<D>; 2], stiffness: f64, length: f64, pushes: bool, is_rope: bool| Line {
+        let line = |ends: &[LineEnd<D>; 2], length: Option<f64>, name: &str, strength: f64| Line {
+            name: name.into(),
+            strength,
             bodies: ends.map(|end| number(end.solid)),
             at: ends.map(|end| end.at),
-            stiffness,
-            length,
-            pushes,
-            is_rope,
+            stiffness: stiff,
+            length: length.unwrap_or_else(|| start_length(ends)),
+            pushes: false,
+            is_rope: true,
             hangs: false,
         };
-        let springs = constraints.springs.iter().map(|s| {
-            line(&s.ends, s.stiffness, s.rest_length.unwrap_or(start_length(&s.ends)), !s.tension_only, false)
+        let springs = constraints.springs.iter().map(|s| Line {
+            stiffness: s.stiffness,
+            pushes: !s.tension_only,
+            is_rope: false,
+            ..line(&s.ends, s.rest_length, &s.name, s.lifetime.strength)
         });
-        let ropes = constraints
-            .ropes
-            .iter()
-            .map(|r| line(&r.ends, stiff, r.max_length.unwrap_or(start_length(&r.ends)), false, true));
+        let ropes = constraints.ropes.iter().map(|r| line(&r.ends, r.max_length, &r.name, r.lifetime.strength));
         let mut lines: Vec<Line<D>> = springs.chain(ropes).collect();
         // A slack line of a body that has no other tie comes to hang.
         let ties = |i: usize| lines.iter().flat_map(|line| line.bodies).filter(|end| *end == Some(i)).count();
@@ -586,17 +557,6 @@ impl<'a, const D: usize> StaticSystem<'a, D> {
         }
         (inertia, displaced)
     }
-}
-
-/// Returns the force (N) of a line at `at` towards its fixed end: of a spring by its length, of a rope as at rest.
-fn tension_towards<const D: usize>(line: &Line<D>, at: &Vector<D>, end: &Vector<D>, rest: f64) -> Vector<D> {
-    let along = end - at;
-    let length = along.norm();
-    let stretch = length - line.length;
-    if rest == 0.0 || length == 0.0 {
-        return Vector::zeros();
-    }
-    along / length * if line.is_rope { rest } else { line.stiffness * stretch }
 }
 
 /// Returns the area (m²; m in 2-D) of the horizontal box around a hull.

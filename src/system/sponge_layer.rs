@@ -37,7 +37,7 @@ impl<const D: usize> SpongeLayer<D> {
         if self.power == 2.0 { self.strength * s * s } else { self.strength * s.powf(self.power) }
     }
 
-    /// Refuses a layer that has no meaning.
+    /// Checks that length, strength and power of the layer are positive and finite.
     ///
     /// # Errors
     /// `Scene` if it has no length, no strength or no power.

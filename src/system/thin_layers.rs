@@ -37,6 +37,8 @@ const OPEN: f64 = 0.25;
 struct ThinParticle<const D: usize> {
     /// Its place among the particles of a copy of its solid.
     place: u32,
+    /// Place in the frame of its solid, m.
+    at: Vector<D>,
     /// Volume (m³; m² in 2-D) for which the water makes way in excess.
     excess: f64,
     /// Outward unit normal of one of its faces, in the frame of its solid.
@@ -56,9 +58,19 @@ struct Foot<const D: usize> {
     closed: f64,
 }
 
+/// The ends of the thin parts of a solid that is not free.
+struct Ends<const D: usize> {
+    /// Gravity (m/s²) in the frame of the solid with which they were found.
+    gravity: Vector<D>,
+    /// Number of the thin particle at the lower end of the part with each thin particle.
+    lowest: Vec<u32>,
+}
+
 /// The boundary particles in the middle of thin parts.
 pub(super) struct ThinLayers<const D: usize> {
     of_solid: Vec<Vec<ThinParticle<D>>>,
+    /// The ends of the parts of each solid; `None` for free solids and for those without thin parts.
+    ends: Vec<Option<Ends<D>>>,
     /// Share of the surroundings that is water, of each particle of each copy, at the last force pass.
     wet: Vec<f64>,
     /// Whether walls have the weight of the water before them.
@@ -67,7 +79,7 @@ pub(super) struct ThinLayers<const D: usize> {
 
 impl<const D: usize> ThinLayers<D> {
     pub(super) fn new(model: &Model) -> Self {
-        Self { of_solid: Vec::new(), wet: Vec::new(), possible: model.walls == Walls::RelaxedAdami }
+        Self { of_solid: Vec::new(), ends: Vec::new(), wet: Vec::new(), possible: model.walls == Walls::RelaxedAdami }
     }
 
     /// Whether no part is thin.
@@ -81,7 +93,7 @@ impl<const D: usize> ThinLayers<D> {
             let candidate = self.possible && *depth < THICK * dp;
             let found = candidate.then(|| thin_place(shape, x, dp, 1e-3 * dp)).flatten()?;
             let excess = (dp - found.thickness) * dp.powi(D as i32 - 1);
-            Some(ThinParticle { place: place as u32, excess, normal: found.normal, beside: Vec::new() })
+            Some(ThinParticle { place: place as u32, at: *x, excess, normal: found.normal, beside: Vec::new() })
         };
         let mut found: Vec<_> = places.iter().zip(depths).enumerate().filter_map(thin).collect();
         let points: Vec<_> = found.iter().map(|particle| places[particle.place as usize]).collect();
@@ -132,6 +144,40 @@ pub(super) fn update_water<const D: usize>(system: &mut System<D>, weight: impl 
     let share = |i: usize| weight(system, i as u32).map_or(0.0, |weight| (weight / both_sides).min(1.0));
     let wet = thin.indices(&system.solids).map(share).collect();
     system.boundary.thin.wet = wet;
+    update_ends(system);
+}
+
+/// Finds the lower ends of the parts of each solid that has turned.
+fn update_ends<const D: usize>(system: &mut System<D>) {
+    let mut ends = std::mem::take(&mut system.boundary.thin.ends);
+    ends.resize_with(system.solids.len(), || None);
+    for (number, (solid, particles)) in system.solids.iter().zip(&system.boundary.thin.of_solid).enumerate() {
+        // A film presses on the foot of a free body.
+        if particles.is_empty() || solid.is_free() {
+            ends[number] = None;
+            continue;
+        }
+        let gravity = solid.kinematics.pose.rotation.transpose() * system.properties.gravity;
+        if ends[number].as_ref().is_none_or(|ends| ends.gravity != gravity) {
+            ends[number] = Some(Ends { gravity, lowest: lower_ends(&gravity, particles) });
+        }
+    }
+    system.boundary.thin.ends = ends;
+}
+
+/// Number of the particle at the lower end of the part with each of these `particles`; `gravity` (m/s²) in the frame of their solid.
+fn lower_ends<const D: usize>(gravity: &Vector<D>, particles: &[ThinParticle<D>]) -> Vec<u32> {
+    let drop: Vec<f64> = particles.iter().map(|particle| gravity.dot(&particle.at)).collect();
+    let mut downwards: Vec<usize> = (0..particles.len()).collect();
+    downwards.sort_by(|&a, &b| drop[b].total_cmp(&drop[a]));
+    let mut ends: Vec<u32> = (0..particles.len() as u32).collect();
+    // The lowest come first: each has the end of its lowest neighbour.
+    for k in downwards {
+        let beside = particles[k].beside.iter().map(|&m| m as usize);
+        let lowest = beside.max_by(|&a, &b| drop[a].total_cmp(&drop[b])).filter(|&m| drop[m] > drop[k]);
+        ends[k] = lowest.map_or(k as u32, |m| ends[m]);
+    }
+    ends
 }
 
 /// The loads that take the buoyancy in excess off the computed part of each solid, about its centre; an empty list without thin parts.
@@ -171,29 +217,19 @@ fn along_faces<const D: usize>(x: &Vector<D>, solid: &Solid<D>, particle: &ThinP
 }
 
 /// What each of the `particles` of solid number `number`, whose boundary particles begin at `start`, stands on; an empty list if
-/// nothing does. A film presses on the foot of a free body.
+/// nothing does.
 fn feet<const D: usize>(
     system: &System<D>,
     number: usize,
     start: usize,
     particles: &[ThinParticle<D>],
 ) -> Vec<Option<Foot<D>>> {
-    let (solid, gravity) = (&system.solids[number], system.properties.gravity);
-    if solid.is_free() {
-        return Vec::new();
-    }
-    let r = |k: usize| &system.boundary.particles.r[start + particles[k].place as usize];
-    let drop: Vec<f64> = (0..particles.len()).map(|k| gravity.dot(r(k))).collect();
-    let mut downwards: Vec<usize> = (0..particles.len()).collect();
-    downwards.sort_by(|&a, &b| drop[b].total_cmp(&drop[a]));
+    let Some(Some(ends)) = system.boundary.thin.ends.get(number) else { return Vec::new() };
     let mut feet = vec![None; particles.len()];
-    // The lowest come first: each has the foot of its lowest neighbour.
-    for k in downwards {
-        let beside = particles[k].beside.iter().map(|&m| m as usize);
-        let lowest = beside.max_by(|&a, &b| drop[a].total_cmp(&drop[b])).filter(|&m| drop[m] > drop[k]);
-        feet[k] = lowest.map_or_else(|| foot(system, number, start, &particles[k]), |m| feet[m]);
+    for (k, particle) in particles.iter().enumerate().filter(|(k, _)| ends.lowest[*k] == *k as u32) {
+        feet[k] = foot(system, number, start, particle);
     }
-    feet
+    ends.lowest.iter().map(|lowest| feet[*lowest as usize]).collect()
 }
 
 /// What the lowest particle of a thin part of solid number `number` stands on.

@@ -67,6 +67,33 @@ fn a_turned_barge_holds_less_and_an_upturned_one_nothing() {
 }
 
 #[test]
+fn the_rim_turns_with_the_hull() {
+    // The highest point of the lower wall's top is its inner edge.
+    let found = enclosure(&barge(), 0.01).unwrap();
+    for angle in [-0.3, 0.1, 0.5] {
+        let turn = Pose::<2>::rotated(Vector::zeros(), &[angle]);
+        let inner = if angle > 0.0 { 0.1 } else { 0.9 };
+        let rim = turn.point(&Vector::from([inner, 0.5]))[1];
+        let told = found.hollows[0].rim_height(&turn);
+        assert!((told - rim).abs() < 0.006, "turned by {angle}: {told} for {rim}");
+    }
+    // A hull with a wall of 0.3 m on the left and of 0.5 m on the right.
+    let points = [[0.0, 0.0], [1.0, 0.0], [1.0, 0.5], [0.9, 0.5], [0.9, 0.1], [0.1, 0.1], [0.1, 0.3], [0.0, 0.3]];
+    let found = enclosure(&Shape::Polygon { points: points.map(Vector::from).to_vec() }, 0.01).unwrap();
+    let turn = Pose::<2>::rotated(Vector::zeros(), &[-0.4]);
+    let rim = turn.point(&Vector::from([0.9, 0.5]))[1];
+    let told = found.hollows[0].rim_height(&turn);
+    assert!((told - rim).abs() < 0.006, "{told} for {rim}");
+    // Under a deck water comes in through the hole in the left wall alone, at 0.3 m.
+    let walls = [([0.1, 0.5], [0.95, 0.25]), ([1.0, 0.1], [0.5, 0.05]), ([0.1, 0.3], [0.05, 0.15])];
+    let decked = compound(&[&walls[..], &[([1.0, 0.1], [0.5, 0.45])]].concat());
+    let found = enclosure(&decked, 0.01).unwrap();
+    let rim = turn.point(&Vector::from([0.1, 0.3]))[1];
+    let told = found.hollows[0].rim_height(&turn);
+    assert!((told - rim).abs() < 0.006, "{told} for {rim}");
+}
+
+#[test]
 fn shapes_without_an_inside_enclose_nothing() {
     // Two hulls under a deck, a notch less deep than two particles, a plate turned by 20°.
     let cat = compound(&[([0.16, 0.16], [-0.2, 0.0]), ([0.16, 0.16], [0.2, 0.0]), ([0.56, 0.06], [0.0, 0.11])]);
@@ -93,7 +120,7 @@ fn a_closed_ring_of_boxes_has_a_closed_hollow_and_thin_walls_keep_it_closed() {
             ([wall, high], [side, 0.0]),
         ]);
         let found = enclosure(&ring, 0.02).unwrap();
-        assert_eq!((found.hollows.len(), found.hollows[0].rim), (1, None));
+        assert!(found.hollows.len() == 1 && found.hollows[0].is_closed());
         let volume = volume(&found.hollows[0]);
         assert!((volume - long * high).abs() < 0.01 * long * high, "wall {wall}: {volume}");
         let place = |x: [f64; 2]| found.place(&ring, &Vector::from(x));
@@ -121,7 +148,7 @@ fn two_holds_with_different_rims_are_two_hollows() {
         ([0.1, 0.2], [0.45, 0.2]),
     ]);
     let found = enclosure(&holds, 0.02).unwrap();
-    let mut rims: Vec<f64> = found.hollows.iter().filter_map(|hollow| hollow.rim).collect();
+    let mut rims: Vec<f64> = found.hollows.iter().map(|hollow| hollow.rim_height(&Pose::identity())).collect();
     rims.sort_by(f64::total_cmp);
     // The left hold spills over the bulkhead, the right one over the side.
     assert!(rims.len() == 2 && (rims[0] - 0.3).abs() < 0.003 && (rims[1] - 0.4).abs() < 0.003, "{rims:?}");
@@ -148,7 +175,7 @@ fn an_inner_shell_of_a_mesh_is_a_closed_hollow() {
     let shape = hollow_box([0.6, 0.5, 0.4], [0.4, 0.3, 0.2]);
     assert!(may_enclose(&shape, false));
     let found = enclosure(&shape, 0.04).unwrap();
-    assert_eq!((found.hollows.len(), found.hollows[0].rim), (1, None));
+    assert!(found.hollows.len() == 1 && found.hollows[0].is_closed());
     // The distance to an edge of the hollow is less than to its two faces: a cell each along 3.6 m of edges.
     let volume = volume(&found.hollows[0]);
     assert!((volume / 0.024 - 1.0).abs() < 0.03, "{volume}");
@@ -161,7 +188,7 @@ fn the_open_tank_is_a_hull_in_three_dimensions() {
     let tank = Shape::Tank { size: Vector::from([0.5, 0.4, 0.3]), thickness: 0.05 };
     let found = enclosure(&tank, 0.025).unwrap();
     let hollow = &found.hollows[0];
-    assert!((hollow.rim.unwrap() - 0.3).abs() < 0.002);
+    assert!((hollow.rim_height(&Pose::identity()) - 0.3).abs() < 0.002);
     let (volume, _) = hollow.volume_and_moment_below(&Pose::identity(), 0.1);
     assert!((volume / 0.02 - 1.0).abs() < 1e-3, "{volume}");
 }

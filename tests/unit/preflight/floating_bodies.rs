@@ -224,6 +224,24 @@ fn a_spring_that_breaks_at_the_start_is_told_and_bears_nothing() {
 }
 
 #[test]
+fn a_rope_that_breaks_before_the_bodies_are_at_rest_is_told() {
+    // A clump of 0.01 m² with 2000 kg/m³ more than the water hangs on a rope that is slack at the start: 196.2 N/m.
+    let assembly = |strength: f64| {
+        let rope = format!(
+            "[[rope]]\nname = \"line\"\nbetween = [\"float\", \"clump\"]\nfrom = [0.8, 0.5]\nto = [0.8, 0.4]\nlength = 0.2\n\
+             breaks = {{ tension = {strength} }}\n"
+        );
+        let clump = solid("clump", [0.1, 0.1], 3000.0, "x = 0.8, bottom = 0.3");
+        judged(&format!("{}{clump}{rope}", solid("float", [0.6, 0.2], 300.0, "x = 0.8, bottom = 0.5")))
+    };
+    let found = assembly(190.0);
+    let told = &finding(&found, "breaks_at_rest").what;
+    assert!(told.starts_with("rope \"line\"") && told.contains("it has 196 N/m then and bears 190 N/m"), "{told}");
+    let found = assembly(200.0);
+    assert!(!found.findings.iter().any(|finding| finding.topic == "breaks_at_rest"));
+}
+
+#[test]
 fn a_release_after_the_run_and_ballast_that_capsizes_are_told() {
     let raft = |more: &str| {
         judged(

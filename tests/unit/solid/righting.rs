@@ -77,3 +77,33 @@ fn a_raft_turned_about_both_axes_comes_back_and_a_ball_stays() {
     // With its centre of mass below its middle a ball comes back whatever its start.
     assert_turns(angle(turn(Shape::Ball { radius: 0.3 }, [1.0, 0.0, 0.0], -0.05)), 1f64.to_degrees());
 }
+
+#[test]
+fn an_open_hull_rests_with_its_rim_above_the_water_or_floods_as_it_turns() {
+    // 1 m × 0.5 m with walls of 0.02 m, 0.3 m deep in the water, its centre of mass at half its height and `offset` off the middle.
+    // Wall-sided: it rests at tan φ (GM + ½ BM tan² φ) = offset, with BM = 1/(12·0.3) and GM = 0.15 + BM − 0.25. The inner edge of
+    // the wall is 0.48 m off the middle: water comes over it at tan φ = 0.2/0.48.
+    let w = 0.02;
+    let points = [[0.0, 0.0], [1.0, 0.0], [1.0, 0.5], [1.0 - w, 0.5], [1.0 - w, w], [w, w], [w, 0.5], [0.0, 0.5]];
+    let shape = Shape::Polygon { points: points.map(Vector::from).to_vec() };
+    let enclosure = crate::geometry::hollow::Enclosure::of(&shape, &Matrix::identity(), 0.02).unwrap();
+    let bm = 1.0 / 3.6;
+    let turn = |tangent: f64| {
+        let offset = tangent * (bm - 0.1 + 0.5 * bm * tangent * tangent);
+        let spec = SolidSpec::free("hull", shape.clone(), 1000.0);
+        let Role::Free(mut body) = spec.role else { panic!("a free body") };
+        body.mass = 300.0;
+        body.centre = Vector::from([0.5 + offset, 0.25]);
+        let hull = Hull { dry: enclosure.hollows.iter().collect(), ..Hull::new(&shape) };
+        let pose = Pose::identity();
+        let floating =
+            Floating { hull: &hull, body: &body, pose, rho0: 1000.0, level: 0.0, free: vec![0], neutral: 1e-4 };
+        floating.turn()
+    };
+    let Some(Turn::Rests(angle)) = turn(0.38) else { panic!("{:?}", turn(0.38)) };
+    assert_turns(angle.to_degrees(), 0.38f64.atan().to_degrees());
+    let Some(Turn::Floods(angle)) = turn(0.45) else { panic!("{:?}", turn(0.45)) };
+    let exact = (0.2f64 / 0.48).atan().to_degrees();
+    // The grid of 10 mm cells has the rim within half a cell.
+    assert!((angle.to_degrees() - exact).abs() < 0.6, "floods at {}°, exact {exact}°", angle.to_degrees());
+}

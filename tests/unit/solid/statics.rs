@@ -121,6 +121,16 @@ fn a_hinge_to_the_ground_holds_a_heavy_flap_and_an_untied_one_sinks() {
         Vector::zeros(),
     ));
     at_rest(&solids, &ties, |system| assert_eq!(system.support(0), Support::Held));
+    // It has 50 kg/m more than the water that it displaces. A second joint takes an unknown part.
+    let loads = |system: &StaticSystem<2>| system.overloads().iter().map(|own| own.load).collect::<Vec<_>>();
+    ties.joints[0].lifetime.strength = 499.0;
+    at_rest(&solids, &ties, |system| assert!((loads(system)[0] - 500.0).abs() < 1e-6, "{:?}", loads(system)));
+    let second = JointSpec { name: "head".into(), ..ties.joints[0].clone() };
+    ties.joints.push(second);
+    at_rest(&solids, &ties, |system| assert!(loads(system).is_empty()));
+    ties.joints.pop();
+    ties.joints[0].lifetime.strength = 501.0;
+    at_rest(&solids, &ties, |system| assert!(loads(system).is_empty()));
     // On an upright slider it heaves alone, and does not turn.
     ties.joints[0] =
         JointSpec::new("mast", JointKind::Slider, [None, Some(0)], Vector::from([0.0, -0.6]), Vector::from([0.0, 1.0]));

@@ -1,0 +1,54 @@
+//! What ties bodies at rest: lines, motors of sliders and steady forces.
+
+use crate::math::{Bivector, Vector};
+
+/// A line between two bodies, or a body and the ground.
+pub(super) struct Line<const D: usize> {
+    pub(super) name: String,
+    /// Tension at which it breaks, N; infinite if it does not.
+    pub(super) strength: f64,
+    /// Numbers of the bodies; `None`: the ground.
+    pub(super) bodies: [Option<usize>; 2],
+    pub(super) at: [Vector<D>; 2],
+    pub(super) stiffness: f64,
+    /// Length without tension, m.
+    pub(super) length: f64,
+    /// Whether it bears compression.
+    pub(super) pushes: bool,
+    pub(super) is_rope: bool,
+    /// Whether its ends come to hang one above the other.
+    pub(super) hangs: bool,
+}
+
+/// A steady force on a body, N, and its point of application, m.
+pub(super) struct SteadyForce<const D: usize> {
+    pub(super) body: usize,
+    pub(super) at: Vector<D>,
+    pub(super) force: Vector<D>,
+    pub(super) torque: Bivector<D>,
+}
+
+/// The motor of a slider between two bodies, or a body and the ground.
+pub(super) struct Drive {
+    /// Numbers of the bodies; `None`: the ground. It drives the second.
+    pub(super) bodies: [Option<usize>; 2],
+    /// Upward part of its direction, –.
+    pub(super) steep: f64,
+    /// Force (N) where the joint starts.
+    pub(super) force: f64,
+    /// Stiffness, N/m.
+    pub(super) stiffness: f64,
+    /// Largest force, N.
+    pub(super) largest: f64,
+}
+
+/// Returns the force (N) of a line at `at` towards its fixed end: of a spring by its length, of a rope as at rest.
+pub(super) fn tension_towards<const D: usize>(line: &Line<D>, at: &Vector<D>, end: &Vector<D>, rest: f64) -> Vector<D> {
+    let along = end - at;
+    let length = along.norm();
+    let stretch = length - line.length;
+    if rest == 0.0 || length == 0.0 {
+        return Vector::zeros();
+    }
+    along / length * if line.is_rope { rest } else { line.stiffness * stretch }
+}
