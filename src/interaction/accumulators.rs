@@ -144,13 +144,15 @@ pub(super) fn for_each_auxiliary<N, const D: usize>(
 #[inline(always)]
 pub(super) fn for_each_symmetric_entry<N, const D: usize>(
     tensor: &mut [[N; D]; D],
-    mut row: usize,
+    row: usize,
     visit: &mut impl FnMut(usize, &mut N),
 ) {
+    // Loops of constant length, so that the entries stay in registers.
     for (i, entries) in tensor.iter_mut().enumerate() {
-        for entry in &mut entries[..=i] {
-            visit(row, entry);
-            row += 1;
+        for (j, entry) in entries.iter_mut().enumerate() {
+            if j <= i {
+                visit(row + i * (i + 1) / 2 + j, entry);
+            }
         }
     }
 }

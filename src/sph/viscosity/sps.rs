@@ -78,10 +78,12 @@ impl<const D: usize> Term<D> for SpsTerm {
         let half = ab.constant(-0.5) * factor;
         let (of_b, of_a) = (half * ab.b.specific_volume, half * ab.a.specific_volume);
         for i in 0..D {
-            for j in 0..=i {
-                let s = ab.v_ab[i].fma(ab.r_ab[j], ab.v_ab[j] * ab.r_ab[i]);
-                a.strain[i][j] = of_b.fma(s, a.strain[i][j]);
-                b.strain[i][j] = of_a.fma(s, b.strain[i][j]);
+            for j in 0..D {
+                if j <= i {
+                    let s = ab.v_ab[i].fma(ab.r_ab[j], ab.v_ab[j] * ab.r_ab[i]);
+                    a.strain[i][j] = of_b.fma(s, a.strain[i][j]);
+                    b.strain[i][j] = of_a.fma(s, b.strain[i][j]);
+                }
             }
         }
     }
