@@ -7,7 +7,10 @@ use pontoon::{
     error::{Error, ErrorCode, ErrorKind, nearest_name},
     solid::MotorCommand,
 };
-use pyo3::{prelude::*, types::PyDict};
+use pyo3::{
+    prelude::*,
+    types::{PyDict, PyTuple},
+};
 
 use crate::{
     error::{exception, usage},
@@ -191,22 +194,37 @@ pub struct BodyStep {
     names: Arc<Names>,
     step: StepData,
     commands: Commands,
+    /// Whether the callback has returned.
+    is_over: bool,
 }
 
 impl BodyStep {
     /// Creates the object that a callback gets.
     pub fn new(names: Arc<Names>, step: StepData) -> Self {
-        Self { names, step, commands: Commands::default() }
+        Self { names, step, commands: Commands::default(), is_over: false }
     }
 
     /// Makes this the object of a later step.
     pub fn renew(&mut self, step: StepData) {
-        self.step = step;
+        (self.step, self.is_over) = (step, false);
     }
 
-    /// Returns the commands that the callback has given.
-    pub fn commands(&mut self) -> Commands {
+    /// Returns the commands of the callback, which has returned.
+    pub fn finish(&mut self) -> Commands {
+        self.is_over = true;
         std::mem::take(&mut self.commands)
+    }
+
+    /// Returns the commands of the present step.
+    ///
+    /// # Errors
+    /// `UsageError` if the step is over.
+    fn commands(&mut self, py: Python<'_>) -> PyResult<&mut Commands> {
+        if self.is_over {
+            let help = "act in the function that gets the step, or through the simulation";
+            return Err(usage(py, "the step is over: nothing can be done in it", help));
+        }
+        Ok(&mut self.commands)
     }
 
     fn solid(&self, py: Python<'_>, name: &str) -> PyResult<usize> {
@@ -281,6 +299,24 @@ impl BodyStep {
         Ok(loads)
     }
 
+    /// Returns coordinate, rate and motor of a joint in the last step: a `JointReading`.
+    ///
+    /// Raises:
+    ///     UnknownNameError: there is no such joint.
+    fn joint<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
+        let joint = find(py, "joint", name, &self.names.joints)?;
+        py.import("pontoon.simulation")?.getattr("JointReading")?.call1(PyTuple::new(py, self.step.joints[joint])?)
+    }
+
+    /// Returns length, tension and parameters of a spring in the last step: a `SpringReading`.
+    ///
+    /// Raises:
+    ///     UnknownNameError: there is no such spring.
+    fn spring<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
+        let spring = find(py, "spring", name, &self.names.springs)?;
+        py.import("pontoon.simulation")?.getattr("SpringReading")?.call1(PyTuple::new(py, self.step.springs[spring])?)
+    }
+
     /// Pushes a free solid until the next call.
     ///
     /// Args:
@@ -315,7 +351,7 @@ impl BodyStep {
             let moment = if dimension == 2 { [turn(0, 1), 0.0, 0.0] } else { [turn(1, 2), turn(2, 0), turn(0, 1)] };
             torque.iter_mut().zip(moment).for_each(|(sum, part)| *sum += part);
         }
-        self.commands.pushes.push(Push { solid, force, torque });
+        self.commands(py)?.pushes.push(Push { solid, force, torque });
         Ok(())
     }
 
@@ -342,7 +378,7 @@ impl BodyStep {
     ) -> PyResult<()> {
         let joint = find(py, "joint", name, &self.names.joints)?;
         let command = motor(py, [force, torque], [position, velocity, stiffness, damping, max_force])?;
-        self.commands.motors.push((joint, Some(command)));
+        self.commands(py)?.motors.push((joint, Some(command)));
         Ok(())
     }
 
@@ -362,7 +398,7 @@ impl BodyStep {
     ) -> PyResult<()> {
         let number = find(py, "spring", name, &self.names.springs)?;
         let parameters = spring(py, [stiffness, damping, rest_length])?;
-        self.commands.springs.push((number, parameters));
+        self.commands(py)?.springs.push((number, parameters));
         Ok(())
     }
 
@@ -393,7 +429,7 @@ impl BodyStep {
             ..BodyData::default()
         };
         motion.rotation.iter_mut().zip(numbers).for_each(|(to, from)| *to = from);
-        self.commands.motions.push((solid, motion));
+        self.commands(py)?.motions.push((solid, motion));
         Ok(())
     }
 }

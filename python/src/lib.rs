@@ -6,6 +6,7 @@ mod error;
 mod run;
 mod scene;
 mod simulation;
+mod threads;
 mod water;
 mod world;
 
@@ -28,6 +29,13 @@ mod _pontoon {
         version,
         water::Lease,
     };
+    use pyo3::prelude::*;
+
+    #[pymodule_init]
+    fn init(_module: &Bound<'_, PyModule>) -> PyResult<()> {
+        super::threads::remember_process();
+        Ok(())
+    }
 }
 
 /// Returns the version of the program.

@@ -22,7 +22,10 @@ use pontoon::{
 };
 use pyo3::{exceptions::PyRuntimeError, prelude::*, types::PyDict};
 
-use crate::error::{OrRaise, usage};
+use crate::{
+    error::{OrRaise, usage},
+    threads::with_threads,
+};
 
 /// Wall time between two looks at signals and two calls of the progress function.
 pub const LOOK: Duration = Duration::from_millis(50);
@@ -147,7 +150,7 @@ pub fn statistics(
     end: Option<f64>,
 ) -> PyResult<String> {
     let asked = StatisticsFilter { series, from: start, until: end };
-    let all = py.detach(|| run_statistics(&folder, &asked)).or_raise(py)?;
+    let all = py.detach(|| with_threads(|| run_statistics(&folder, &asked))).or_raise(py)?;
     let json = serde_json::json!({ "rows": all.rows, "raos": all.raos, "remarks": all.remarks });
     serde_json::to_string(&json).map_err(|why| usage(py, &why.to_string(), ""))
 }
@@ -155,7 +158,7 @@ pub fn statistics(
 /// Writes the page of the run in `folder` and returns its path.
 #[pyfunction]
 pub fn write_report(py: Python<'_>, folder: PathBuf) -> PyResult<PathBuf> {
-    py.detach(|| pontoon::report::write(&folder)).map(|page| page.path).or_raise(py)
+    py.detach(|| with_threads(|| pontoon::report::write(&folder))).map(|page| page.path).or_raise(py)
 }
 
 /// Returns the unit of a column by its name.

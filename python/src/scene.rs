@@ -17,7 +17,8 @@ use pyo3::prelude::*;
 use crate::{
     error::{OrRaise, usage},
     run::{Ended, watched},
-    simulation::NativeSimulation,
+    simulation::{NativeSimulation, hash},
+    threads::with_threads,
 };
 
 /// The origin of a scene.
@@ -65,6 +66,21 @@ impl NativeScene {
     /// As [`Scene::plan`].
     pub fn plan(&self) -> Result<Plan> {
         self.origin.named(self.scene.plan())
+    }
+
+    /// Returns a hash of the values in force, but for those of outputs, end and guard, which leave states as they are.
+    ///
+    /// # Errors
+    /// As [`Scene::resolve`].
+    fn mark(&self) -> Result<u64> {
+        let values = self.origin.named(self.scene.resolve())?;
+        let counts = |key: &str| {
+            let section = key.split('.').next().unwrap_or_default();
+            !["title", "until", "frames", "probe", "check", "statistic", "checkpoint", "control", "guard"]
+                .contains(&section)
+        };
+        let texts = values.iter().filter(|value| counts(&value.key)).flat_map(|value| [&value.key, &value.value]);
+        Ok(hash(&texts.map(|text| text.as_bytes()).collect::<Vec<_>>()))
     }
 
     /// Returns the scene with another solid at its end, written as the keys of a `[[solid]]` section.
@@ -168,7 +184,8 @@ impl NativeScene {
     /// Returns the inspection as JSON.
     fn inspect(&self, py: Python<'_>, threads: Option<usize>, timing: bool) -> PyResult<String> {
         let asked = InspectOptions { overrides: Vec::new(), threads, timing };
-        let inspection = py.detach(|| self.origin.named(inspect_scene(&self.scene, &asked))).or_raise(py)?;
+        let inspect = || self.origin.named(inspect_scene(&self.scene, &asked));
+        let inspection = py.detach(|| with_threads(inspect)).or_raise(py)?;
         serde_json::to_string(&inspection).map_err(|why| usage(py, &why.to_string(), ""))
     }
 
@@ -177,13 +194,13 @@ impl NativeScene {
     fn export_bodies(&self, py: Python<'_>, out: PathBuf, solids: Vec<String>, panels: usize) -> PyResult<PathBuf> {
         let export =
             || self.origin.named(PanelledScene::new(&self.scene, &solids, panels)).and_then(|all| all.write(&out));
-        py.detach(export).or_raise(py)
+        py.detach(|| with_threads(export)).or_raise(py)
     }
 
     /// Builds a simulation.
     fn build(&self, py: Python<'_>, hosted: bool, threads: Option<usize>) -> PyResult<NativeSimulation> {
-        let world = py.detach(|| self.origin.named(crate::world::build(&self.scene, hosted))).or_raise(py)?;
-        NativeSimulation::new(py, world, threads)
+        let build = || self.origin.named(crate::world::build(&self.scene, hosted));
+        py.detach(|| NativeSimulation::new(build, threads, self.mark()?)).or_raise(py)
     }
 
     /// Runs the scene with its files; `progress` gets folder, time, end, step, number of steps and wall time.

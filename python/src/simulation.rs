@@ -10,19 +10,23 @@ use std::{
 };
 
 use numpy::{PyArray1, PyArrayMethods};
-use pontoon::{Result, run::thread_pool, scene::Scene};
+use pontoon::{
+    Result,
+    error::{Error, ErrorCode, ErrorKind},
+    scene::Scene,
+};
 use pyo3::{
     exceptions::PyRuntimeError,
     prelude::*,
     types::{PyBytes, PyDict},
 };
-use rayon::ThreadPool;
 
 use crate::{
     bodies::{BodyState, BodyStep, find, motor, spring, three, three_axial, unknown},
     error::{OrRaise, usage},
     run::LOOK,
     scene::NativeScene,
+    threads::{OwnThreads, is_forked},
     water::{Field, Lease},
     world::{Commands, Control, Names, ProbeReading, StepData, World},
 };
@@ -36,9 +40,11 @@ pub struct NativeSimulation {
     /// Absent while it is stepped, and after an internal error.
     world: Mutex<Option<Box<dyn World>>>,
     names: Mutex<Arc<Names>>,
-    pool: ThreadPool,
+    threads: OwnThreads,
     /// Number of views of its memory.
     leases: Arc<AtomicUsize>,
+    /// What its states carry: [`NativeScene::mark`].
+    mark: u64,
 }
 
 /// A world taken out of its simulation; it goes back when this is dropped.
@@ -54,14 +60,20 @@ impl Drop for Taken<'_> {
 }
 
 impl NativeSimulation {
-    /// Creates the simulation of `world` with a pool of `threads` threads, by default one for each processor.
+    /// Creates the simulation of the world that `build` makes, with `threads` threads, by default one for each processor. Its
+    /// states carry `mark`.
     ///
     /// # Errors
-    /// `UsageError` if the threads cannot be started.
-    pub fn new(py: Python<'_>, world: Box<dyn World>, threads: Option<usize>) -> PyResult<Self> {
-        let pool = thread_pool(threads).or_raise(py)?;
+    /// Those of `build`, and `Usage` if the threads cannot be started.
+    pub fn new(
+        build: impl FnOnce() -> Result<Box<dyn World>> + Send,
+        threads: Option<usize>,
+        mark: u64,
+    ) -> Result<Self> {
+        let threads = OwnThreads::new(threads)?;
+        let world = threads.pool()?.install(build)?;
         let names = Mutex::new(Arc::new(world.names()));
-        Ok(Self { world: Mutex::new(Some(world)), names, pool, leases: Arc::default() })
+        Ok(Self { world: Mutex::new(Some(world)), names, threads, leases: Arc::default(), mark })
     }
 
     /// Locks the world. No call of Python may happen under this lock: it could let another thread run that waits for the
@@ -80,6 +92,22 @@ impl NativeSimulation {
     /// `UsageError` while it is stepped.
     fn read<T>(&self, py: Python<'_>, read: impl FnOnce(&dyn World) -> T) -> PyResult<T> {
         let outcome = self.lock().as_ref().map(|world| read(&**world));
+        outcome.ok_or_else(|| busy(py))
+    }
+
+    /// Calls `compute` with the world, as [`NativeSimulation::read`] does, with threads that a forked process has too.
+    ///
+    /// # Errors
+    /// `UsageError` while it is stepped.
+    fn compute<T: Send>(&self, py: Python<'_>, compute: impl FnOnce(&dyn World) -> T + Send) -> PyResult<T> {
+        if !is_forked() {
+            return self.read(py, compute);
+        }
+        let pool = self.threads.pool().or_raise(py)?;
+        let outcome = self.lock().as_mut().map(|world| {
+            let world = &mut **world;
+            pool.install(move || compute(world))
+        });
         outcome.ok_or_else(|| busy(py))
     }
 
@@ -108,9 +136,30 @@ impl NativeSimulation {
     /// # Errors
     /// As [`NativeSimulation::take`].
     fn change<T: Send>(&self, py: Python<'_>, change: impl FnOnce(&mut dyn World) -> T + Send) -> PyResult<T> {
+        let pool = self.threads.pool().or_raise(py)?;
         let mut taken = self.take(py)?;
         let world = taken.world.as_mut().ok_or_else(|| busy(py))?;
-        Ok(py.detach(|| self.pool.install(|| change(&mut **world))))
+        Ok(py.detach(|| pool.install(|| change(&mut **world))))
+    }
+
+    /// Returns what the state `saved` holds beside its mark and its checksum.
+    ///
+    /// # Errors
+    /// `Restart` if it is damaged or belongs to another scene.
+    fn opened<'a>(&self, saved: &'a [u8]) -> Result<&'a [u8]> {
+        let damaged =
+            || Error::new(ErrorKind::Restart, "the state is damaged").help("restore the bytes that save returned");
+        let ([mark, sum], state) =
+            saved.as_chunks::<8>().0.first_chunk::<2>().map(|head| (head, &saved[16..])).ok_or_else(damaged)?;
+        if u64::from_le_bytes(*sum) != hash(&[mark, state]) {
+            return Err(damaged());
+        }
+        if u64::from_le_bytes(*mark) != self.mark {
+            return Err(Error::new(ErrorKind::Restart, "the state belongs to another scene")
+                .with_code(ErrorCode::OtherSetup)
+                .help("restore it in a simulation of its own scene: outputs, until and guard may differ"));
+        }
+        Ok(state)
     }
 
     /// Reads the names anew, after solids were added or removed.
@@ -137,6 +186,17 @@ impl NativeSimulation {
             role => Err(usage(py, &format!("solid {name:?} is {role}, not free"), "name a free solid")),
         }
     }
+}
+
+/// Returns a hash of the bytes of `parts`, which a change of any of them changes.
+pub fn hash(parts: &[&[u8]]) -> u64 {
+    let mix = |hash: u64, word: u64| (hash.rotate_left(23) ^ word).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    let of = |hash: u64, part: &&[u8]| {
+        let (words, rest) = part.as_chunks::<8>();
+        let hash = words.iter().fold(hash, |hash, word| mix(hash, u64::from_le_bytes(*word)));
+        rest.iter().fold(mix(hash, part.len() as u64), |hash, byte| mix(hash, u64::from(*byte)))
+    };
+    parts.iter().fold(0xcbf2_9ce4_8422_2325, of)
 }
 
 /// Whether nothing else refers to `object`.
@@ -182,8 +242,10 @@ impl CallBack {
             }
             None => Py::new(py, BodyStep::new(self.names.clone(), step))?,
         };
-        self.call.call1(py, (&object,))?;
-        let commands = object.borrow_mut(py).commands();
+        let answer = self.call.call1(py, (&object,));
+        // Another thread may hold it.
+        let commands = object.try_borrow_mut(py)?.finish();
+        answer?;
         self.object = Some(object);
         Ok(commands)
     }
@@ -224,7 +286,7 @@ impl NativeSimulation {
     /// Number of threads.
     #[getter]
     fn threads(&self) -> usize {
-        self.pool.current_num_threads()
+        self.threads.count()
     }
 
     /// Names of the solids, of the joints, of the springs.
@@ -237,6 +299,7 @@ impl NativeSimulation {
     #[pyo3(signature = (end, single, control=None, every=0.0))]
     fn advance(&self, py: Python<'_>, end: f64, single: bool, control: Option<Py<PyAny>>, every: f64) -> PyResult<()> {
         py.check_signals()?;
+        let pool = self.threads.pool().or_raise(py)?;
         let mut taken = self.take(py)?;
         let world = taken.world.as_mut().ok_or_else(|| busy(py))?;
         let (stop, signal) = (AtomicBool::new(false), Mutex::new(None));
@@ -253,9 +316,9 @@ impl NativeSimulation {
         };
         let outcome = py.detach(|| {
             if single {
-                return Some(self.pool.install(advance));
+                return Some(pool.install(advance));
             }
-            self.pool.in_place_scope(|scope| {
+            pool.in_place_scope(|scope| {
                 let (done, finished) = mpsc::channel();
                 scope.spawn(move |_| {
                     // One thread state for all callbacks; the receiver waits for the outcome.
@@ -290,7 +353,7 @@ impl NativeSimulation {
     fn water<'py>(slf: &Bound<'py, Self>, name: &str) -> PyResult<Bound<'py, PyAny>> {
         let (py, own) = (slf.py(), slf.get());
         let dimension = own.names().dimension;
-        let computed = own.read(py, |world| match name {
+        let computed = own.compute(py, |world| match name {
             "pressure" => Some((world.pressures(), 1)),
             "acceleration" => Some((world.accelerations(), dimension)),
             _ => None,
@@ -331,10 +394,10 @@ impl NativeSimulation {
     #[pyo3(signature = (scene=None))]
     fn read_probes<'py>(&self, py: Python<'py>, scene: Option<&NativeScene>) -> PyResult<Bound<'py, PyDict>> {
         let all = match scene {
-            None => self.read(py, |world| world.read_own())?,
+            None => self.compute(py, |world| world.read_own())?,
             Some(scene) => {
                 let plan = scene.plan().or_raise(py)?;
-                self.read(py, |world| world.read(&plan))?.or_raise(py)?
+                self.compute(py, |world| world.read(&plan))?.or_raise(py)?
             }
         };
         readings(py, all)
@@ -362,13 +425,14 @@ impl NativeSimulation {
 
     /// The state, as bytes.
     fn save<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
-        let state = self.read(py, |world| world.save())?.or_raise(py)?;
-        Ok(PyBytes::new(py, &state))
+        let state = self.compute(py, |world| world.save())?.or_raise(py)?;
+        let head = [self.mark, hash(&[&self.mark.to_le_bytes(), &state])].map(u64::to_le_bytes);
+        Ok(PyBytes::new(py, &[head.as_flattened(), &state].concat()))
     }
 
     /// Returns to a state.
     fn restore(&self, py: Python<'_>, state: &[u8]) -> PyResult<()> {
-        self.change(py, |world| world.restore(state))?.or_raise(py)
+        self.change(py, |world| world.restore(self.opened(state)?))?.or_raise(py)
     }
 
     /// Adds a solid, written as the keys of a `[[solid]]` section, to a simulation of `scene`; returns the number of
@@ -389,7 +453,7 @@ impl NativeSimulation {
         added: Vec<String>,
     ) -> PyResult<()> {
         let scenes = added.iter().map(|solid| scene.with_solid(solid)).collect::<Result<Vec<Scene>>>().or_raise(py)?;
-        self.change(py, |world| world.restore_with_added(state, &scenes))?.or_raise(py)?;
+        self.change(py, |world| world.restore_with_added(self.opened(state)?, &scenes))?.or_raise(py)?;
         self.update_names(py)
     }
 

@@ -58,6 +58,10 @@ pub struct StepData {
     pub dt: f64,
     /// The solids at the start of the step with the loads of the step.
     pub bodies: Vec<BodyData>,
+    /// Coordinate, rate, motor force and energy that the motor took of each joint in the last step.
+    pub joints: Vec<[f64; 4]>,
+    /// Length (m), tension (N; N/m in 2-D), stiffness (N/m), damping (N s/m) and rest length (m) of each spring.
+    pub springs: Vec<[f64; 5]>,
 }
 
 /// The commands that a callback returns.
@@ -295,19 +299,33 @@ impl<const D: usize> Running<D>
 where
     Dim<D>: Dimension<D>,
 {
-    /// Calls the callback with the `bodies` at the start of the step, if it is due, and applies the forces that it asked for.
+    /// Returns what a callback sees at the start of a step, without time and loads.
+    fn at_start(&mut self) -> StepData {
+        let [joints, springs] = self.constraints.each_ref().map(Vec::len);
+        let spring = |i| {
+            let ([length, tension], [stiffness, damping, rest_length]) =
+                (self.spring(i), self.set_spring(i, [None; 3]));
+            [length, tension, stiffness, damping, rest_length]
+        };
+        let springs = (0..springs).map(spring).collect();
+        let joints = (0..joints).map(|i| self.joint(i)).collect();
+        StepData { bodies: self.bodies(), joints, springs, ..StepData::default() }
+    }
+
+    /// Calls the callback with what it sees at the `start` of the step, if it is due, and applies the forces that it asked for.
     fn between(
         step: &mut BodyStep<D>,
-        bodies: Option<Vec<BodyData>>,
+        start: Option<StepData>,
         call: &mut Callback<'_>,
         pushes: &mut Vec<Push>,
     ) -> Result<Commands> {
         let mut commands = Commands::default();
-        if let Some(mut bodies) = bodies {
-            for (body, load) in bodies.iter_mut().zip(step.loads()) {
+        if let Some(mut start) = start {
+            for (body, load) in start.bodies.iter_mut().zip(step.loads()) {
                 (body.force, body.torque) = (three(&load.force), axial(&load.torque));
             }
-            commands = call(StepData { time: step.time(), dt: step.dt(), bodies });
+            (start.time, start.dt) = (step.time(), step.dt());
+            commands = call(start);
             *pushes = std::mem::take(&mut commands.pushes);
             for (solid, motion) in &commands.motions {
                 step.solids[*solid] = kinematics(motion);
@@ -329,12 +347,12 @@ where
         if due {
             self.called = Some(now);
         }
-        let mut bodies = due.then(|| self.bodies());
+        let mut start = due.then(|| self.at_start());
         let (hosted, mut failed) = (self.sim.has_external_bodies(), false);
         let (mut commands, mut spent, pushes) = (Commands::default(), Duration::ZERO, &mut self.pushes);
         let outcome = self.sim.step_with(end, |step| {
             let begun = Instant::now();
-            commands = Self::between(step, bodies.take(), control.call, pushes)?;
+            commands = Self::between(step, start.take(), control.call, pushes)?;
             spent += begun.elapsed();
             failed = commands.failed;
             if failed && hosted {

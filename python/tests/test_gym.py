@@ -1,5 +1,8 @@
 """The environment of gymnasium."""
 
+from pathlib import Path
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -130,3 +133,14 @@ def test_what_does_not_fit_is_told_at_construction(railed: pt.Scene) -> None:
     railed["joint.rail.motor"] = {"damping": 1.0}
     with pytest.raises(pt.UsageError, match="strongest"):
         FloatEnv(railed, act={"rail": "force"}, see=[], reward=still, dt=0.1)
+
+
+def test_the_environment_of_the_guide_is_one() -> None:
+    guide = (Path(__file__).parents[2] / "docs" / "how-to" / "use-from-python.md").read_text(encoding="utf-8")
+    blocks = [part.split("```")[0] for part in guide.split("```python")[1:]]
+    block = next(block for block in blocks if "FloatEnv" in block)
+    names: dict[str, Any] = {"pt": pt}
+    exec(block, names)
+    env = names["env"]
+    env.reset(seed=1)
+    assert env.observation_space.contains(env.step(env.action_space.sample())[0])

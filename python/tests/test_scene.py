@@ -6,6 +6,7 @@ import re
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -103,6 +104,13 @@ def test_a_scene_is_a_dictionary_too() -> None:
         }
     )
     assert scene.inspect()["size"]["fluid"] == 20 * 10
+
+
+def test_a_dictionary_of_another_kind_is_refused() -> None:
+    kinds: list[Any] = [3, None, [], {1: 2}, {"dp": object()}]
+    for wrong in kinds:
+        with pytest.raises(TypeError):
+            pt.Scene.from_dict(wrong)
 
 
 def test_modules_that_need_other_packages_are_imported_on_use() -> None:

@@ -2,11 +2,13 @@
 
 import copy
 import gc
+import multiprocessing
 import os
 import pickle
 import signal
 import threading
 from collections.abc import Callable
+from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any
 
@@ -321,6 +323,58 @@ def test_a_state_of_another_scene_is_refused_and_changes_nothing(tank: pt.Scene)
     assert state(sim) == state(twin)
 
 
+@pytest.mark.parametrize(
+    ("key", "value"),
+    [("solid.crate.free.density", 520.0), ("model.c0", 40.0), ("gravity", 9.7), ("solid.crate.at", {"x": 0.51, "y": 0.5})],
+)
+def test_a_state_of_a_scene_with_as_many_particles_is_refused(tank: pt.Scene, key: str, value: Any) -> None:
+    tank["solid.crate.at"] = {"x": 0.5, "y": 0.5}
+    sim = tank.build()
+    sim.advance(0.02)
+    saved = sim.save()
+    tank[key] = value
+    other = tank.build()
+    before = other.save()
+    assert len(other.water) == len(sim.water), "the numbers alone would fit"
+    with pytest.raises(pt.RestartError, match="another scene") as told:
+        other.restore(saved)
+    assert told.value.code == "other-setup" and other.save() == before
+
+
+def test_a_state_is_restored_where_only_outputs_and_end_differ(tank: pt.Scene) -> None:
+    sim = tank.build()
+    sim.advance(0.02)
+    later = tank.set(until=9.0, title="Another", frames="off", probe=[{"motion": "crate"}]).build()
+    later.restore(sim.save())
+    for each in (sim, later):
+        each.advance(0.04)
+    assert state(sim) == state(later)
+
+
+def test_every_changed_byte_of_a_state_is_noticed(tank: pt.Scene) -> None:
+    sim = tank.build()
+    sim.advance(0.02)
+    saved, twin = sim.save(), tank.build()
+    for place in range(0, len(saved), max(1, len(saved) // 300)):
+        with pytest.raises(pt.RestartError):
+            sim.restore(saved[:place] + bytes([saved[place] ^ 0x10]) + saved[place + 1 :])
+    twin.advance(0.02)
+    assert sim.save() == saved == twin.save()
+
+
+def test_times_that_are_no_numbers_are_refused(tank: pt.Scene) -> None:
+    sim, hosted = tank.build(), tank.build_hosted()
+    with pytest.raises(pt.UsageError, match="nan"):
+        sim.advance(float("nan"))
+    with pytest.raises(pt.UsageError, match="nan"):
+        hosted.advance(float("nan"), lambda h: {})
+    wrong: Any = 3
+    with pytest.raises(TypeError):
+        sim.add_solid(wrong)
+    with pytest.raises(pt.UsageError, match="host"):
+        hosted.step(lambda h: {"crate": wrong})
+
+
 def test_a_step_that_a_function_keeps_stays_as_it_was(tank: pt.Scene) -> None:
     kept: list[pt.BodyStep] = []
     times: list[float] = []
@@ -415,6 +469,74 @@ def test_joints_are_driven_and_springs_changed(tank: pt.Scene) -> None:
         sim.drive("rai")
     with pytest.raises(pt.UsageError):
         sim.set_spring("line", damping=-1.0)
+
+
+def test_a_function_reads_joints_and_springs(tank: pt.Scene) -> None:
+    tank["joint"] = [{"name": "rail", "kind": "slider", "between": ["crate"], "at": [0.5, 0.5], "along": [0.0, 1.0]}]
+    tank["spring"] = [
+        {"name": "line", "between": ["crate"], "from": [0.5, 0.6], "to": [0.5, 1.5], "stiffness": 100.0, "length": 0.9}
+    ]
+    sim, seen = tank.build(), []
+
+    def brake(h: pt.BodyStep) -> None:
+        seen.append((h.joint("rail"), h.spring("line")))
+        h.drive("rail", force=20.0 - 50.0 * h.joint("rail").rate)
+
+    for _ in range(20):
+        before = (sim.joint("rail"), sim.spring("line"))
+        sim.step(brake)
+        assert seen[-1] == before, "what the last step left"
+    rate = seen[-1][0].rate
+    # The command of a step acts in the next one.
+    assert rate > 0.0 and sim.joint("rail").motor_force == pytest.approx(20.0 - 50.0 * seen[-2][0].rate)
+    for wrong in (lambda h: h.joint("rai"), lambda h: h.spring("lin")):
+        with pytest.raises(pt.UnknownNameError, match="there is no"):
+            sim.step(wrong)
+
+
+def test_a_kept_step_takes_no_commands(tank: pt.Scene) -> None:
+    kept: list[pt.BodyStep] = []
+    sim = tank.build()
+    sim.step(kept.append)
+    with pytest.raises(pt.UsageError, match="over"):
+        kept[0].push("crate", [1.0, 0.0])
+    assert kept[0]["crate"].name == "crate"
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork")
+@pytest.mark.filterwarnings("ignore:.*fork.*:DeprecationWarning")
+def test_a_forked_process_goes_on_to_the_same_bits(tank: pt.Scene) -> None:
+    tank["probe"] = [{"balance": "crate"}, {"budget": True}]
+    bundled = pt.Scene.read("still-tank")
+    sim = tank.build(threads=2)
+    sim.advance(0.02)
+    # The common threads of this process are at work before the fork, too.
+    saved, here = sim.save(), sim.sample()
+    tank.inspect()
+
+    def work(answer: Connection) -> None:
+        assert sim.save() == saved and sim.sample() == here and sim.threads == 2
+        fresh = tank.build(threads=2)
+        fresh.restore(saved)
+        for each in (sim, fresh):
+            each.advance(0.05)
+        tank.inspect()
+        bundled.inspect()
+        answer.send((sim.save(), fresh.save()))
+
+    context = multiprocessing.get_context("fork")
+    receiver, sender = context.Pipe(duplex=False)
+    child = context.Process(target=work, args=(sender,))
+    child.start()
+    try:
+        assert receiver.poll(60.0), "the child does not hang"
+        states = receiver.recv()
+    finally:
+        child.join(10.0)
+        child.kill()
+    sim.advance(0.05)
+    assert states == (sim.save(), sim.save())
+    bundled.inspect()
 
 
 @needs_signals

@@ -3,6 +3,7 @@
 use std::{
     fs,
     path::{MAIN_SEPARATOR, Path, PathBuf},
+    process,
     sync::atomic::{AtomicUsize, Ordering},
 };
 
@@ -15,6 +16,8 @@ use crate::{
 pub struct FoundScene {
     path: PathBuf,
     temporary: Option<PathBuf>,
+    /// The process that laid it out. A copy of this in a process that was forked from it does not remove the folder.
+    process: u32,
 }
 
 impl FoundScene {
@@ -38,7 +41,7 @@ impl FoundScene {
 
 impl Drop for FoundScene {
     fn drop(&mut self) {
-        if let Some(folder) = &self.temporary {
+        if let Some(folder) = self.temporary.as_ref().filter(|_| self.process == process::id()) {
             // Left over, it does no harm.
             let _ = fs::remove_dir_all(folder);
         }
@@ -65,7 +68,7 @@ pub fn find_scene(word: &Path) -> Result<FoundScene> {
     let beside = Path::new("scenes").join(word);
     for path in [word, &beside] {
         if path.is_file() || path.join("scene.toml").is_file() {
-            return Ok(FoundScene { path: path.to_owned(), temporary: None });
+            return Ok(FoundScene { path: path.to_owned(), temporary: None, process: process::id() });
         }
     }
     let shelf = bundled_scenes();
@@ -86,8 +89,8 @@ pub fn find_scene(word: &Path) -> Result<FoundScene> {
 fn unpack((name, text, files): &BundledScene) -> Result<FoundScene> {
     static UNPACKED: AtomicUsize = AtomicUsize::new(0);
     let number = UNPACKED.fetch_add(1, Ordering::Relaxed);
-    let temporary = std::env::temp_dir().join(format!("pontoon-{}-{number}", std::process::id()));
-    let found = FoundScene { path: temporary.join(name), temporary: Some(temporary) };
+    let temporary = std::env::temp_dir().join(format!("pontoon-{}-{number}", process::id()));
+    let found = FoundScene { path: temporary.join(name), temporary: Some(temporary), process: process::id() };
     let refused = |why| Error::write(&found.path, "written", &why);
     fs::create_dir_all(&found.path).map_err(refused)?;
     for (file, text) in files.iter().chain([&("scene.toml", *text)]) {

@@ -25,7 +25,7 @@ impl<const D: usize> Simulation<D> {
             return Err(Error::scene(
                 "joints, springs, ropes, forces and contacts of a simulation with external bodies",
             )
-            .help("put them into the world that moves the bodies, and leave setup.links as Links::default()"));
+            .help("put them into the world that moves the bodies, and leave them out here"));
         }
         setup.solids.iter().try_for_each(refuse_ballast)?;
         Ok((Dim::<D>::compiled().set_up)(setup, None, true, &Ranks::default())?.without_rollback())

@@ -7,6 +7,8 @@ from typing import Any, final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from .simulation import JointReading, SpringReading
+
 __all__ = [
     "BodyState",
     "BodyStep",
@@ -91,6 +93,18 @@ class BodyStep:
         """Loads of the water in this step, by the name of the solid."""
     def __getitem__(self, name: str, /) -> BodyState:
         """Returns a solid at the start of the step, with the load of this step."""
+    def joint(self, name: str) -> JointReading:
+        """Returns coordinate, rate and motor of a joint in the last step.
+
+        Raises:
+            UnknownNameError: there is no such joint.
+        """
+    def spring(self, name: str) -> SpringReading:
+        """Returns length, tension and parameters of a spring in the last step.
+
+        Raises:
+            UnknownNameError: there is no such spring.
+        """
     def push(
         self,
         name: str,

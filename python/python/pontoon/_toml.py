@@ -37,9 +37,13 @@ def value(x: Any) -> str:
 
 def section(x: Mapping[str, Any]) -> str:
     """Returns `x` as the lines of a TOML section."""
+    if not isinstance(x, Mapping):
+        raise TypeError(f"{type(x).__name__} is no dictionary of keys and values")
     return "\n".join(f"{_key(k)} = {value(v)}" for k, v in x.items())
 
 
-def _key(name: str) -> str:
+def _key(name: object) -> str:
+    if not isinstance(name, str):
+        raise TypeError(f"the key {name!r} is no string")
     plain = name.replace("_", "").replace("-", "")
     return name if plain.isascii() and plain.isalnum() else json.dumps(name, ensure_ascii=False)

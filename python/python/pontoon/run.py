@@ -474,17 +474,17 @@ class _Line:
     """Prints progress on one line of standard error, twice a second."""
 
     def __init__(self) -> None:
-        self._last = 0.0
+        self._last, self._ended = 0.0, False
 
     def __call__(self, now: Progress) -> None:
         done = now.time >= now.until
-        if clock.monotonic() - self._last < 0.5 and not done:
+        if self._ended or (clock.monotonic() - self._last < 0.5 and not done):
             return
-        self._last = clock.monotonic()
+        self._last, self._ended = clock.monotonic(), done
         share = now.time / now.until
-        left = now.wall * (1.0 - share) / share if share > 0.0 else float("nan")
-        text = f"\r{100.0 * share:3.0f} %  t = {now.time:.4g} of {now.until:.4g} s, {now.steps} steps, {left:.0f} s left "
-        sys.stderr.write(text + ("\n" if done else ""))
+        left = f", {now.wall * (1.0 - share) / share:.0f} s left" if 0.0 < share < 1.0 else ""
+        text = f"\r{100.0 * share:3.0f} %  t = {now.time:.4g} of {now.until:.4g} s, {now.steps} steps{left} "
+        sys.stderr.write(text.ljust(72) + ("\n" if done else ""))
         sys.stderr.flush()
 
 

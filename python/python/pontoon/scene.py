@@ -139,7 +139,8 @@ class Scene:
         A value is a number, a string, a list or a dictionary.
 
         Raises:
-            SceneError: the scene has no such key, or the value is wrong. The scene is then as before.
+            SceneError: the scene has no such key, or the value is of the wrong kind. The scene is then as before. Whether values
+                fit together is told when the scene is inspected, built or run.
         """
         self._native = self._native.with_overrides([(key, _toml.value(value))])
 

@@ -402,6 +402,8 @@ class Simulation(_Stepped):
         if every is not None and not every >= 0.0:
             raise usage(f"every = {every} s is no interval", "give 0 or more")
         end = self._scene.until if until is None else float(until)
+        if math.isnan(end):
+            raise usage("until = nan is no time", "give seconds")
         self._native.advance(end, False, control, 0.0 if every is None else float(every))
 
     def push(self, name: str, force: ArrayLike, *, at: ArrayLike | None = None) -> None:
@@ -524,13 +526,18 @@ class HostedSimulation(_Stepped):
         """
 
         def exchange(step: BodyStep) -> None:
-            for name, motion in host(step).items():
+            motions = host(step)
+            if not isinstance(motions, Mapping) or not all(isinstance(motion, Motion) for motion in motions.values()):
+                raise usage(f"the host has returned {motions!r}", "return a dictionary: a Motion by the name of each solid")
+            for name, motion in motions.items():
                 self._set(step, name, motion)
 
         self._native.advance(float(until), True, exchange, 0.0)
 
     def advance(self, until: float, host: Callable[[BodyStep], Mapping[str, Motion]]) -> None:
         """Steps with `host` to the time `until` (s)."""
+        if math.isnan(until):
+            raise usage("until = nan is no time", "give seconds")
         while self.time < until:
             self.step(host, until=until)
 
