@@ -68,6 +68,18 @@ impl<const D: usize> Particles<D> {
         self.id[i] = numbers[2 * D + 1] as u32;
     }
 
+    /// As [`Particles::take`]; what is there already is not written, so that zeros that nothing has written still take no memory.
+    pub(crate) fn take_changed(&mut self, i: usize, numbers: &[f64]) {
+        let set = |place: &mut f64, x: f64| {
+            if place.to_bits() != x.to_bits() {
+                *place = x;
+            }
+        };
+        let places = self.r[i].iter_mut().chain(self.v[i].iter_mut()).chain([&mut self.rho[i]]);
+        places.zip(numbers).for_each(|(place, x)| set(place, *x));
+        self.id[i] = numbers[2 * D + 1] as u32;
+    }
+
     /// Arrays of `n` particles, whose places take no memory until they are written.
     pub(crate) fn unwritten(n: usize) -> Self {
         Self { r: zeros(n), v: zeros(n), rho: zeros(n), id: zeros(n) }

@@ -14,7 +14,7 @@ mod controls;
 mod device;
 mod runner;
 mod energy_drift;
-mod orders;
+pub(crate) mod orders;
 pub(crate) mod run_folder;
 mod inspect;
 pub(crate) mod resume_point;

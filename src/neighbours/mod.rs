@@ -257,7 +257,7 @@ impl<const D: usize> NeighbourLists<D> {
         };
         let take = |(water, then, corrections): &mut Data<'_, D>, i: usize, given: &[f64]| {
             if takes {
-                water.take(i, given);
+                water.take_changed(i, given);
                 then[i] = Vector::from_column_slice(&given[numbers..numbers + D]);
                 let correction = &given[numbers + D..];
                 corrections.iter_mut().for_each(|all| all[i] = Matrix::from_column_slice(correction));

@@ -146,6 +146,13 @@ impl Ranks {
         all.chunks_exact(N).map(|words| std::array::from_fn(|k| words[k])).collect()
     }
 
+    /// The words of all ranks in their order; each gives as many.
+    pub(crate) fn gather_lists(&self, own: &[u32]) -> Vec<u32> {
+        let mut all = vec![0; own.len() * self.count()];
+        self.gather(own, &vec![own.len(); self.count()], &mut all);
+        all
+    }
+
     /// Completes `rows`, of which each rank has filled its own of the `parts`.
     pub(crate) fn share_rows(&self, rows: &mut [LaneRow], parts: &[Range<usize>]) {
         let pack = |row: &LaneRow| row.0.map(f32::to_bits);

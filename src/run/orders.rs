@@ -1,13 +1,13 @@
 //! A run on several ranks. The first rank leads it: it writes the files and tells the others what to do next. The others have the
 //! same simulation and take the same steps.
 
-use std::{fs, path::Path};
+use std::{fs, io, path::Path};
 
 use super::{controls::Controls, probe_factory, run_folder};
 use crate::{
     error::{Error, ErrorKind, Result},
-    output::{Checkpoint, checkpoint},
-    plan::{ControlChange, Plan},
+    output::{Checkpoint, checkpoint, frame},
+    plan::{ControlChange, FramesPlan, Plan},
     ranks::{Ranks, from_words, words_of},
     scene::{BuiltScene, Scene},
     simulation::{Dimension, Setup, Simulation},
@@ -21,6 +21,10 @@ pub(super) enum Order {
     Step,
     /// Complete the water on the first rank.
     Gather,
+    /// Give the first rank what a frame has of the water, also after a fault that all ranks have met.
+    Frame,
+    /// Give the first rank what a checkpoint with the first `rollbacks` rollbacks has of the water.
+    Save { rollbacks: usize },
     /// Set a control to a value.
     Set { control: usize, value: f64 },
     /// The run is over.
@@ -46,6 +50,8 @@ impl Message {
             Some(Order::Set { control, value }) => (2, control as u32, value),
             Some(Order::End) => (3, 0, 0.0),
             Some(Order::Gather) => (4, 0, 0.0),
+            Some(Order::Save { rollbacks }) => (5, rollbacks as u32, 0.0),
+            Some(Order::Frame) => (6, 0, 0.0),
         };
         let ([t0, t1], [v0, v1]) = (words_of(self.time), words_of(value));
         [kind, control, v0, v1, t0, t1, u32::from(self.failed)]
@@ -57,6 +63,8 @@ impl Message {
             2 => Some(Order::Set { control: control as usize, value: from_words(v0, v1) }),
             3 => Some(Order::End),
             4 => Some(Order::Gather),
+            5 => Some(Order::Save { rollbacks: control as usize }),
+            6 => Some(Order::Frame),
             _ => None,
         };
         Self { order, failed: failed != 0, time: from_words(t0, t1) }
@@ -75,7 +83,7 @@ fn exchange(ranks: &Ranks, own: &Message) -> Result<Order> {
         return Ok(order);
     }
     for (rank, other) in all.iter().enumerate() {
-        if other.failed {
+        if other.failed && order != Order::Frame {
             let what = format!("rank {rank} cannot go on at t = {:.6} s: its own message says why", first.time);
             return Err(Error::new(ErrorKind::Fault, what));
         }
@@ -89,11 +97,11 @@ fn exchange(ranks: &Ranks, own: &Message) -> Result<Order> {
 }
 
 /// The first rank's hold on the others, whom it tells at the end that the run is over.
-pub(super) struct Leader(Ranks);
+pub(crate) struct Leader(Ranks);
 
 impl Leader {
     /// Leads `ranks`; all others call [`follow`].
-    pub(super) fn new(ranks: Ranks) -> Self {
+    pub(crate) fn new(ranks: Ranks) -> Self {
         Self(ranks)
     }
 
@@ -181,7 +189,10 @@ where
         let time = follower.as_ref().map_or(0.0, |follower| follower.sim.time());
         match exchange(ranks, &Message { order: None, failed: failure.is_some(), time }) {
             Ok(Order::End) => return Ok(()),
-            Ok(order) => failure = follower.as_mut().and_then(|follower| follower.follow(order).err()),
+            Ok(order) => {
+                let failed = follower.as_mut().and_then(|follower| follower.follow(order).err());
+                failure = failed.or(failure.filter(|_| order == Order::Frame));
+            }
             Err(_) => {
                 let _ = exchange(ranks, &Message { order: None, failed: true, time });
                 return failure.map_or(Ok(()), Err);
@@ -230,6 +241,16 @@ where
                 self.changes.extend(self.controls.set(&mut self.sim, control, value));
             }
             Order::Gather => self.sim.gather_water(false),
+            Order::Frame => {
+                if let Some(FramesPlan { fields, crop, .. }) = &self.plan.frames {
+                    let nothing = frame::water_file(self.sim.system(), fields, crop.as_ref());
+                    nothing.map_err(|e| Error::new(ErrorKind::File, e.to_string()))?;
+                }
+            }
+            Order::Save { rollbacks } => {
+                let nothing_is_written = self.sim.write_state(rollbacks, &mut io::sink());
+                nothing_is_written.map_err(|e| Error::new(ErrorKind::File, e.to_string()))?;
+            }
             Order::End => {}
         }
         Ok(())
