@@ -68,16 +68,21 @@ impl<const D: usize> Particles<D> {
         self.id[i] = numbers[2 * D + 1] as u32;
     }
 
-    /// As [`Particles::take`]; what is there already is not written, so that zeros that nothing has written still take no memory.
+    /// As [`Particles::take`]; a zero is not written where one is, so that zeros that nothing has written still take no memory.
     pub(crate) fn take_changed(&mut self, i: usize, numbers: &[f64]) {
-        let set = |place: &mut f64, x: f64| {
-            if place.to_bits() != x.to_bits() {
-                *place = x;
-            }
-        };
-        let places = self.r[i].iter_mut().chain(self.v[i].iter_mut()).chain([&mut self.rho[i]]);
-        places.zip(numbers).for_each(|(place, x)| set(place, *x));
+        self.take_motion(i, &numbers[..2 * D]);
+        self.rho[i] = numbers[2 * D];
         self.id[i] = numbers[2 * D + 1] as u32;
+    }
+
+    /// Sets position and velocity of particle `i` to the first numbers that [`Particles::give`] appended, as
+    /// [`Particles::take_changed`].
+    pub(crate) fn take_motion(&mut self, i: usize, numbers: &[f64]) {
+        for (place, x) in self.r[i].iter_mut().chain(self.v[i].iter_mut()).zip(numbers) {
+            if place.to_bits() != x.to_bits() {
+                *place = *x;
+            }
+        }
     }
 
     /// Arrays of `n` particles, whose places take no memory until they are written.

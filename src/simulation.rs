@@ -92,6 +92,17 @@ struct Clock {
     steps: u64,
 }
 
+/// What comes together at set-up where each rank has its own water.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum WaterAtSetup {
+    /// All, on all ranks.
+    All,
+    /// All, on the first rank.
+    First,
+    /// Places and velocities, on the first rank, as the checks of a run before its first step read them.
+    Places,
+}
+
 /// The state of a simulation in a checkpoint; what is large is borrowed where it is written.
 #[derive(Serialize, Deserialize)]
 struct SimulationState<'a, const D: usize> {
@@ -127,16 +138,20 @@ impl<const D: usize> Simulation<D> {
     where
         Dim<D>: Dimension<D>,
     {
-        Self::set_up(setup, ranks, true)
+        Self::set_up(setup, ranks, WaterAtSetup::All)
     }
 
-    /// As [`Simulation::on_ranks`]; all water is on the first rank, or on all if `everyone`.
-    pub(crate) fn set_up(setup: Setup<D>, ranks: &Ranks, everyone: bool) -> Result<Self>
+    /// As [`Simulation::on_ranks`], with this `water` together.
+    pub(crate) fn set_up(setup: Setup<D>, ranks: &Ranks, water: WaterAtSetup) -> Result<Self>
     where
         Dim<D>: Dimension<D>,
     {
         let mut simulation = (Dim::<D>::compiled().set_up)(setup, None, false, ranks)?;
-        simulation.gather_water(everyone);
+        match water {
+            WaterAtSetup::All => simulation.gather_water(true),
+            WaterAtSetup::First => simulation.gather_water(false),
+            WaterAtSetup::Places => own_water::gather_places(&mut simulation.system),
+        }
         Ok(simulation)
     }
 

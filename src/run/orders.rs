@@ -10,7 +10,7 @@ use crate::{
     plan::{ControlChange, FramesPlan, Plan},
     ranks::{Ranks, from_words, words_of},
     scene::{BuiltScene, Scene},
-    simulation::{Dimension, Setup, Simulation},
+    simulation::{Dimension, Setup, Simulation, WaterAtSetup},
     solid::Dim,
 };
 
@@ -127,31 +127,6 @@ impl Drop for Leader {
     }
 }
 
-/// What all ranks have prepared, if all could and `digest` gives the same text for each.
-///
-/// # Errors
-/// This rank's own error; `Usage` if another rank failed or has something else, with its number.
-pub(crate) fn agree<T>(ranks: &Ranks, prepared: Result<T>, digest: impl Fn(&T) -> String) -> Result<T> {
-    if ranks.count() == 1 {
-        return prepared;
-    }
-    let own = prepared.as_ref().map_or_else(|error| format!("!{error}"), |prepared| format!("={}", digest(prepared)));
-    let all = ranks.gather_bytes(own.as_bytes());
-    let prepared = prepared?;
-    for (rank, text) in all.iter().enumerate() {
-        let text = String::from_utf8_lossy(text);
-        if let Some(why) = text.strip_prefix('!') {
-            return Err(Error::new(ErrorKind::Usage, format!("rank {rank} cannot begin: {why}")));
-        }
-        if text.as_bytes() != all[0] {
-            let what = format!("rank {rank} has another program, scene or file than rank 0");
-            return Err(Error::new(ErrorKind::Usage, what)
-                .help("start the same program on a file system that all machines share"));
-        }
-    }
-    Ok(prepared)
-}
-
 /// A text that tells programs and scenes apart, with the files in `folder` that the scene names.
 pub(super) fn scene_digest(scene: &Scene, folder: &Path) -> String {
     let words = scene.to_toml().unwrap_or_default();
@@ -171,6 +146,11 @@ pub(super) fn water_digest<const D: usize>(setup: &Setup<D>) -> String {
     format!("{} solids, {hash:x}", setup.solids.len())
 }
 
+/// The water that comes together for the set-up of a run of this plan: probes may read all from the start.
+pub(super) fn water_at_setup(plan: &Plan) -> WaterAtSetup {
+    if plan.probes.is_empty() { WaterAtSetup::Places } else { WaterAtSetup::First }
+}
+
 /// Takes the steps of a run that the first of the `ranks` leads, from the start of `scene` or from `checkpoint`, until that ends it.
 ///
 /// # Errors
@@ -179,7 +159,7 @@ pub(super) fn follow<const D: usize>(scene: &Scene, checkpoint: Option<Checkpoin
 where
     Dim<D>: Dimension<D>,
 {
-    let built = agree(ranks, scene.build::<D>(), |built| water_digest(&built.setup));
+    let built = ranks.agree(scene.build_on::<D>(ranks), |built| water_digest(&built.setup));
     // The first rank reports what all know.
     let Ok(BuiltScene { setup, plan, .. }) = built else { return Ok(()) };
     let mut failure = None;
@@ -215,7 +195,7 @@ where
     Dim<D>: Dimension<D>,
 {
     fn new(setup: Setup<D>, ranks: &Ranks, plan: Plan, checkpoint: Option<Checkpoint>) -> Result<Self> {
-        let mut sim = Simulation::set_up(setup, ranks, false)?;
+        let mut sim = Simulation::set_up(setup, ranks, water_at_setup(&plan))?;
         // They are not read here; but what they read is recorded in the steps.
         probe_factory::probes_from_plan(&plan, &mut sim)?;
         let mut changes = Vec::new();

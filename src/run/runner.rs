@@ -65,11 +65,12 @@ where
     /// Builds the scene and, once all is known to be right, makes the run's folder or opens it again.
     pub(crate) fn new(scene: &Scene, origin: RunOrigin, ranks: &Ranks) -> Result<Self> {
         let (begun, begun_cpu) = (Instant::now(), ProcessorTime::now());
-        let built = scene.build::<D>().and_then(|built| device::check_ranks(scene, ranks).map(|()| built));
+        let built = scene.build_on::<D>(ranks).and_then(|built| device::check_ranks(scene, ranks).map(|()| built));
         let digest = |built: &BuiltScene<D>| orders::water_digest(&built.setup);
-        let BuiltScene { setup, plan, initial_water, file_notes } = orders::agree(ranks, built, digest)?;
+        let BuiltScene { setup, plan, initial_water, file_notes } = ranks.agree(built, digest)?;
         let leader = Leader::new(ranks.clone());
-        let mut sim = Simulation::set_up(setup, ranks, false).map_err(|e| scene.with_location(e))?;
+        let mut sim =
+            Simulation::set_up(setup, ranks, orders::water_at_setup(&plan)).map_err(|e| scene.with_location(e))?;
         let probes = probe_factory::probes_from_plan(&plan, &mut sim)?;
         let checks = probe_factory::checks_from_plan(&plan, &probes).map_err(|e| scene.with_location(e))?;
         let columns: Vec<usize> = probes.iter().map(|p| p.columns().len()).collect();

@@ -93,6 +93,24 @@ pub(crate) fn gather<const D: usize>(system: &mut System<D>, everyone: bool) {
     system.status.has_all_water = everyone || is_first;
 }
 
+/// Gives the first rank the places and velocities of all water, for which the lists have just been made.
+pub(crate) fn gather_places<const D: usize>(system: &mut System<D>) {
+    let Some(division) = divided(&system.neighbours) else { return };
+    let (is_first, own) = (division.ranks.rank() == 0, division.own_water().map_or(&[][..], |(own, _)| own));
+    let give = |water: &&mut Particles<D>, i: usize, numbers: &mut Vec<f64>| {
+        numbers.extend(water.r[i].iter().chain(water.v[i].iter()));
+    };
+    let take = |water: &mut &mut Particles<D>, i: usize, numbers: &[f64]| {
+        if is_first {
+            water.take_motion(i, numbers);
+        }
+    };
+    division.share_water(own, &mut (&mut system.fluid.particles), 2 * D, give, take);
+    if is_first {
+        system.neighbours.find_at(&system.fluid.particles.r);
+    }
+}
+
 /// Whether ranks lack the present water of others: the same for all ranks.
 pub(crate) fn is_apart<const D: usize>(neighbours: &NeighbourLists<D>) -> bool {
     neighbours.division().is_some_and(|division| division.is_apart)
