@@ -21,7 +21,8 @@ use serde::Serialize;
 
 use crate::{
     error::{Error, ErrorKind, Result},
-    run::{outputs, probe_factory, thread_pool},
+    ranks::Ranks,
+    run::{orders::Leader, outputs, probe_factory, thread_pool},
     scene::{BuiltScene, Scene},
     simulation::{Dimension, Simulation, TimeSpent},
     solid::Dim,
@@ -316,7 +317,7 @@ impl<const D: usize> TimedCase for PreparedCase<D> {
     fn step(&mut self) -> Result<()> {
         self.sim.step()?;
         if let Some((outputs, _)) = &mut self.outputs {
-            outputs.write_due(&self.sim)?;
+            outputs.write_due(&self.sim, &Leader::new(Ranks::default()))?;
         }
         Ok(())
     }

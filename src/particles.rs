@@ -68,6 +68,23 @@ impl<const D: usize> Particles<D> {
         self.id[i] = numbers[2 * D + 1] as u32;
     }
 
+    /// As [`Particles::take`]; a zero is not written where one is, so that zeros that nothing has written still take no memory.
+    pub(crate) fn take_changed(&mut self, i: usize, numbers: &[f64]) {
+        self.take_motion(i, &numbers[..2 * D]);
+        self.rho[i] = numbers[2 * D];
+        self.id[i] = numbers[2 * D + 1] as u32;
+    }
+
+    /// Sets position and velocity of particle `i` to the first numbers that [`Particles::give`] appended, as
+    /// [`Particles::take_changed`].
+    pub(crate) fn take_motion(&mut self, i: usize, numbers: &[f64]) {
+        for (place, x) in self.r[i].iter_mut().chain(self.v[i].iter_mut()).zip(numbers) {
+            if place.to_bits() != x.to_bits() {
+                *place = *x;
+            }
+        }
+    }
+
     /// Arrays of `n` particles, whose places take no memory until they are written.
     pub(crate) fn unwritten(n: usize) -> Self {
         Self { r: zeros(n), v: zeros(n), rho: zeros(n), id: zeros(n) }

@@ -14,7 +14,7 @@ mod controls;
 mod device;
 mod runner;
 mod energy_drift;
-mod orders;
+pub(crate) mod orders;
 pub(crate) mod run_folder;
 mod inspect;
 pub(crate) mod resume_point;
@@ -35,7 +35,6 @@ pub(crate) use lock::Lock;
 #[doc(hidden)]
 pub use lock::lock_owner;
 #[cfg(feature = "cli")]
-pub(crate) use orders::agree;
 #[doc(hidden)]
 pub use statistics::{RAO_FILE, RaoResult, RunStatistics, SPECTRA_FILE, Statistic, StatisticsFilter, statistics};
 
@@ -211,7 +210,7 @@ pub fn run_on(
     let file = run_folder::scene_file(path);
     let prepared = || Ok((thread_pool(options.threads)?, Scene::read(&file, &options.overrides)?));
     let digest = |(_, scene): &(_, Scene)| orders::scene_digest(scene, file.parent().unwrap_or(Path::new("")));
-    match orders::agree(ranks, prepared(), digest) {
+    match ranks.agree(prepared(), digest) {
         Err(_) if ranks.rank() > 0 => Ok(None),
         prepared => {
             let (pool, scene) = prepared?;
@@ -281,7 +280,7 @@ pub fn resume_on(
         let scene = orders::scene_digest(&point.scene, &folder.join("scene"));
         format!("{scene} {:x}", crate::output::checkpoint::fnv1a(&point.checkpoint.state))
     };
-    match orders::agree(ranks, prepared(), digest) {
+    match ranks.agree(prepared(), digest) {
         Err(_) if ranks.rank() > 0 => Ok(None),
         prepared => {
             let (pool, lock, ResumePoint { checkpoint, scene, warning }) = prepared?;

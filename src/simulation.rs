@@ -42,7 +42,9 @@ use crate::{
     ranks::Ranks,
     solid::{ContactForce, Dim, HasEngine as _, Role, SolidSpec, constraint::assembly::Assembly},
     system::{
-        LimitViolation, System, SystemState, own_water, set_buffer_time, set_gravity_at, update_buffer, update_current,
+        LimitViolation, SavedWater, System, SystemState,
+        own_water::{self, OwnNames},
+        set_buffer_time, set_gravity_at, update_buffer, update_current,
     },
     time_integration::{Stepper, step_size},
 };
@@ -90,6 +92,17 @@ struct Clock {
     steps: u64,
 }
 
+/// What comes together at set-up where each rank has its own water.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum WaterAtSetup {
+    /// All, on all ranks.
+    All,
+    /// All, on the first rank.
+    First,
+    /// Places and velocities, on the first rank, as the checks of a run before its first step read them.
+    Places,
+}
+
 /// The state of a simulation in a checkpoint; what is large is borrowed where it is written.
 #[derive(Serialize, Deserialize)]
 struct SimulationState<'a, const D: usize> {
@@ -125,16 +138,20 @@ impl<const D: usize> Simulation<D> {
     where
         Dim<D>: Dimension<D>,
     {
-        Self::set_up(setup, ranks, true)
+        Self::set_up(setup, ranks, WaterAtSetup::All)
     }
 
-    /// As [`Simulation::on_ranks`]; all water is on the first rank, or on all if `everyone`.
-    pub(crate) fn set_up(setup: Setup<D>, ranks: &Ranks, everyone: bool) -> Result<Self>
+    /// As [`Simulation::on_ranks`], with this `water` together.
+    pub(crate) fn set_up(setup: Setup<D>, ranks: &Ranks, water: WaterAtSetup) -> Result<Self>
     where
         Dim<D>: Dimension<D>,
     {
         let mut simulation = (Dim::<D>::compiled().set_up)(setup, None, false, ranks)?;
-        simulation.gather_water(everyone);
+        match water {
+            WaterAtSetup::All => simulation.gather_water(true),
+            WaterAtSetup::First => simulation.gather_water(false),
+            WaterAtSetup::Places => own_water::gather_places(&mut simulation.system),
+        }
         Ok(simulation)
     }
 
@@ -226,13 +243,13 @@ impl<const D: usize> Simulation<D> {
         outcome
     }
 
-    /// Advances by one step, not past time `end` (s). Where ranks share the water, each has its own after that, and all water if the
-    /// step fails: see [`Simulation::gather_water`].
+    /// Advances by one step, not past time `end` (s). Where ranks share the water, each has its own after that: see
+    /// [`Simulation::gather_water`].
     pub(crate) fn step_with_own_water(&mut self, end: f64) -> Result<()> {
-        self.make_step_with(end, &mut |_| Ok(())).inspect_err(|_| self.gather_water(true))
+        self.make_step_with(end, &mut |_| Ok(()))
     }
 
-    /// Completes the water and its sums on the first rank, or on all if `everyone`. All ranks must call this.
+    /// Completes the water on the first rank, or on all if `everyone`, and its sums there. All ranks must call this.
     pub(crate) fn gather_water(&mut self, everyone: bool) {
         (self.compiled.gather_water)(self, everyone);
     }
@@ -250,7 +267,6 @@ impl<const D: usize> Simulation<D> {
         }
         let start = Instant::now();
         if self.needs_rollback_state() {
-            self.gather_water(false);
             self.rollback.drop_oldest_state();
             let state = self.rollback_state()?;
             self.rollback.store(self.clock.steps, self.clock.time, state);
@@ -317,15 +333,17 @@ impl<const D: usize> Simulation<D> {
         on_device::fetch_loads(self)
     }
 
-    /// The present state: in the folder for such states, or in memory if there is none or it cannot be written to.
-    /// Of ranks that share the water the first alone stores it.
+    /// The present state: in the folder for such states, or in memory if there is none or it cannot be written to. Of ranks that have
+    /// water of their own each stores that; of others the first alone stores the state.
     fn rollback_state(&self) -> Result<StoredState> {
-        if own_water::ranks(&self.system).rank() > 0 {
+        let own = own_water::own_names(&self.system);
+        if own.is_none() && own_water::ranks(&self.system).rank() > 0 {
             return Ok(StoredState::Memory(Vec::new()));
         }
-        let write = |out: &mut dyn Write| self.write_state(self.rollback.log.len(), out);
+        let state = (own, self.state(self.rollback.log.len(), SavedWater::Own)?);
+        let write = |out: &mut dyn Write| postcard::to_io(&state, out).map(drop).map_err(io::Error::other);
         let stored = self.rollback.folder.as_ref().and_then(|folder| StoredState::in_folder(folder, write).ok());
-        stored.map_or_else(|| self.save().map(StoredState::Memory), Ok)
+        stored.map_or_else(|| bytes_of(&state).map(StoredState::Memory), Ok)
     }
 
     /// Rolls back to a good state after the alarm `error`, or returns it if there is none.
@@ -333,11 +351,18 @@ impl<const D: usize> Simulation<D> {
         if error.kind != ErrorKind::Fault {
             return Err(error);
         }
-        let of_first = |own: Vec<u8>| own_water::ranks(&self.system).gather_bytes(&own).swap_remove(0);
-        let stored = self.rollback.state_before(&error.message, self.clock.steps, self.clock.time, of_first);
+        let ranks = own_water::ranks(&self.system);
+        let shared = |own: Vec<u8>| rollback::shared_state(&ranks, own);
+        let stored = self.rollback.state_before(&error.message, self.clock.steps, self.clock.time, shared);
         let Some(good) = stored else { return Err(error) };
         let rescue = std::mem::take(&mut self.rollback);
-        self.restore(&good)?;
+        let (own, kept): (Option<OwnNames>, SimulationState<'static, D>) = read(&good)?;
+        drop(good);
+        let planned = match own {
+            Some(_) => self.planned_removals(&kept.removed_solids),
+            None => self.check_state(&kept)?,
+        };
+        self.take_state(kept, &planned, own)?;
         self.rollback = rescue;
         Ok(())
     }
@@ -389,7 +414,7 @@ impl<const D: usize> Simulation<D> {
         // The last two steps have equal lengths, so that none is far shorter than the others.
         let dt = if left <= allowed { left } else { allowed.min(0.5 * left) };
         if dt.is_nan() || dt <= 0.0 {
-            self.gather_water(true);
+            own_water::tell_of(&mut self.system, 0);
             return Err(self.fault((0, ErrorCode::NoTimeStep, "time step of no length", NO_STEP)));
         }
         let over = Interval { t: self.clock.time, dt };
@@ -449,9 +474,6 @@ impl<const D: usize> Simulation<D> {
 
     /// Stops at the first particle that has left the valid range.
     fn guard(&mut self) -> Result<()> {
-        if !self.system.status.step_check.valid {
-            self.gather_water(true);
-        }
         match self.system.first_invalid_particle() {
             None => Ok(()),
             Some(violation) => Err(self.fault(violation)),
@@ -558,26 +580,22 @@ impl<const D: usize> Simulation<D> {
     }
 
     fn state_bytes(&self) -> Result<Vec<u8>> {
-        let cannot = |e: &dyn std::fmt::Display| Error::new(ErrorKind::Restart, format!("cannot write the state: {e}"));
-        let state = self.state(self.rollback.log.len())?;
-        let length = postcard::experimental::serialized_size(&state).map_err(|e| cannot(&e))?;
-        postcard::to_extend(&state, Vec::with_capacity(length)).map_err(|e| cannot(&e))
+        bytes_of(&self.state(self.rollback.log.len(), SavedWater::All)?)
     }
 
-    /// Writes the state of [`Simulation::save`] with the first `rollbacks` rollbacks only.
+    /// Writes the state of [`Simulation::save`] with the first `rollbacks` rollbacks only. Where each rank has its own water, all must
+    /// call this: the first writes all water, and has a piece of that of the others at a time.
     pub(crate) fn write_state(&self, rollbacks: usize, out: &mut dyn Write) -> io::Result<()> {
-        let state = self.state(rollbacks).map_err(|e| io::Error::other(e.message))?;
-        match postcard::to_io(&state, &mut *out) {
-            Ok(_) => Ok(()),
-            // The writer tells what postcard leaves out.
-            Err(e) => out.flush().and(Err(io::Error::other(e))),
-        }
+        let state = self.state(rollbacks, SavedWater::All).map_err(|e| io::Error::other(e.message))?;
+        let mut out = ToTheEnd { out, failure: None };
+        let written = postcard::to_io(&state, &mut out).map(drop).map_err(io::Error::other);
+        out.failure.map_or(written, Err)
     }
 
     /// The state with the first `rollbacks` rollbacks.
-    fn state(&self, rollbacks: usize) -> Result<SimulationState<'_, D>> {
+    fn state(&self, rollbacks: usize, water: SavedWater) -> Result<SimulationState<'_, D>> {
         Ok(SimulationState {
-            system: self.system.save(),
+            system: self.system.save(water),
             stepper: Cow::Borrowed(&self.stepper),
             clock: self.clock,
             bodies: self.bodies.save()?,
@@ -594,11 +612,6 @@ impl<const D: usize> Simulation<D> {
         solids.filter(|(_, solid)| solid.boundary.is_empty()).map(|(i, _)| i as u32).collect()
     }
 
-    fn read(bytes: &[u8]) -> Result<SimulationState<'static, D>> {
-        postcard::from_bytes(bytes)
-            .map_err(|e| Error::new(ErrorKind::Restart, format!("the checkpoint's state is damaged: {e}")))
-    }
-
     /// Returns to a state from [`Simulation::save`], in a simulation made from the same setup.
     ///
     /// # Errors
@@ -608,11 +621,21 @@ impl<const D: usize> Simulation<D> {
     }
 
     fn restore_state(&mut self, bytes: &[u8]) -> Result<()> {
-        let kept = Self::read(bytes)?;
+        let kept: SimulationState<'static, D> = read(bytes)?;
         let planned = self.check_state(&kept)?;
-        self.delete_solids(&planned);
+        self.take_state(kept, &planned, None)
+    }
+
+    /// Takes the state `kept` once the solids `planned` are removed; `own` are the names of its water, if that is this rank's alone.
+    fn take_state(
+        &mut self,
+        kept: SimulationState<'static, D>,
+        planned: &[usize],
+        own: Option<OwnNames>,
+    ) -> Result<()> {
+        self.delete_solids(planned);
         self.bodies.restore(kept.bodies, kept.clock.steps)?;
-        self.system.restore(kept.system);
+        self.system.restore(kept.system, own);
         if let (Some(accounting), Some(state)) = (&mut self.bodies.accounting, kept.accounting) {
             accounting.restore(state);
         }
@@ -649,6 +672,41 @@ impl<const D: usize> Simulation<D> {
         self.system.check_state(&kept.system, &planned)?;
         Ok(planned)
     }
+}
+
+/// What is written to the end of a state, also after an error of the file: other ranks know of none, and go on with the exchange.
+struct ToTheEnd<'a> {
+    out: &'a mut dyn Write,
+    failure: Option<io::Error>,
+}
+
+impl Write for ToTheEnd<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        if self.failure.is_none() {
+            self.failure = self.out.write_all(bytes).err();
+        }
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        if self.failure.is_none() {
+            self.failure = self.out.flush().err();
+        }
+        Ok(())
+    }
+}
+
+/// The bytes of a state.
+fn bytes_of(state: &impl Serialize) -> Result<Vec<u8>> {
+    let cannot = |e: postcard::Error| Error::new(ErrorKind::Restart, format!("cannot write the state: {e}"));
+    let length = postcard::experimental::serialized_size(state).map_err(cannot)?;
+    postcard::to_extend(state, Vec::with_capacity(length)).map_err(cannot)
+}
+
+/// The state of these bytes.
+fn read<T: serde::de::DeserializeOwned>(bytes: &[u8]) -> Result<T> {
+    postcard::from_bytes(bytes)
+        .map_err(|e| Error::new(ErrorKind::Restart, format!("the checkpoint's state is damaged: {e}")))
 }
 
 const NO_STEP: &str = "The accelerations are not finite, or the end lies in the past.";

@@ -144,7 +144,7 @@ fn on_all_processes<T>(
     if ranks.rank() > 0 {
         // Ctrl-C stops the first, which stops the others.
         let prepared = watch_interrupts(|| {}).and_then(|()| find());
-        let Ok(found) = run::agree(ranks, prepared, |_| String::new()) else { return Ok(0) };
+        let Ok(found) = ranks.agree(prepared, |_| String::new()) else { return Ok(0) };
         let threads = threads.or_else(|| ranks::default_threads(ranks));
         return run(ranks, threads, &found, &mut |_: &Progress| true)
             .map(|_| 0)
@@ -152,7 +152,7 @@ fn on_all_processes<T>(
     }
     let led = || {
         let prepared = find().and_then(|found| Ok((found, make_observer(log_args)?)));
-        let (found, (mut watch, live)) = run::agree(ranks, prepared, |_| String::new())?;
+        let (found, (mut watch, live)) = ranks.agree(prepared, |_| String::new())?;
         let threads = threads.or_else(|| ranks::default_threads(ranks));
         let outcome = run(ranks, threads, &found, &mut *watch).and_then(run::of_first_rank);
         finish(outcome, watch, live, log_args)

@@ -14,6 +14,7 @@ use super::{
 use crate::{
     error::{Error, Result},
     math::{Bounds, Matrix, Pose, Vector},
+    ranks::Ranks,
 };
 
 /// A region of water.
@@ -58,6 +59,8 @@ pub(crate) struct Filling<'a, const D: usize> {
     /// Shapes, poses, and whether open polylines are beds, with ground below.
     pub(crate) solids: &'a [(&'a Shape<D>, &'a Pose<D>, bool)],
     pub(crate) spaces: &'a [EnclosedSpace<'a, D>],
+    /// Those that make the same filling and share its work.
+    pub(crate) ranks: &'a Ranks,
 }
 
 /// Water with its origin.
@@ -118,7 +121,7 @@ pub(crate) fn fill_around<const D: usize>(
     solids: &[(&Shape<D>, &Pose<D>, bool)],
     dp: f64,
 ) -> Result<FilledWater<D>> {
-    Ok(Filling { regions, inside: Vec::new(), solids, spaces: &[] }.fill(dp)?.water)
+    Ok(Filling { regions, inside: Vec::new(), solids, spaces: &[], ranks: &Ranks::default() }.fill(dp)?.water)
 }
 
 impl<const D: usize> Filling<'_, D> {
@@ -160,7 +163,7 @@ impl<const D: usize> Filling<'_, D> {
                 }
             });
         }
-        pack_around_obstacles(&mut filled.r, &home, &lattices, &mut obstacles, dp);
+        pack_around_obstacles(self.ranks, &mut filled.r, &home, &lattices, &mut obstacles, dp);
         if obstacles.iter().any(Obstacle::needs_packing) {
             let before = filled.r.len();
             let keep =

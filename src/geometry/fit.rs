@@ -7,6 +7,7 @@ use super::{Shape, fill::Lattice, packing, wall::is_closed};
 use crate::{
     math::{Bounds, Pose, Vector},
     particles::PARTICLES_PER_TASK,
+    ranks::Ranks,
 };
 
 /// Water moves up to this distance from a solid that does not fit, dp: enough to distribute half a row of particles.
@@ -174,6 +175,7 @@ fn below_bed<const D: usize>(x: &Vector<D>, line: &[Vector<D>]) -> bool {
 
 /// Packs the water around the solids that do not fit the lattice; `home` contains the lattice index of each point.
 pub(super) fn pack_around_obstacles<const D: usize>(
+    ranks: &Ranks,
     water: &mut [Vector<D>],
     home: &[usize],
     lattices: &[Lattice<D>],
@@ -206,7 +208,7 @@ pub(super) fn pack_around_obstacles<const D: usize>(
         let skin = o.shape.boundary_points(dp, LAYERS);
         points.extend(skin.iter().map(|p| o.pose.point(&p.r)).filter(|x| near.contains(x)));
     }
-    packing::spread_points(&mut points, all_movable, dp, |i, _, x| {
+    packing::spread_points_on(ranks, &mut points, all_movable, dp, |i, _, x| {
         let room = movable.get(i).map_or(f64::INFINITY, |&w| lattices[home[w]].clamp_to_sides(x));
         // Two passes: a point that moves out of one face of a corner may move into the other face.
         (0..2).flat_map(|_| &*obstacles).fold(room, |room, o| room.min(o.push_out(x)))

@@ -4,12 +4,12 @@
 //! boundary layers: δ = −β dp² ∇C, V = dp^D. If every face has boundary layers behind it, the even packing ends half a
 //! dp from the face.
 
-use std::f64::consts::PI;
+use std::{f64::consts::PI, ops::Range};
 
 use rayon::prelude::*;
 
 use super::cells::PointCells;
-use crate::math::Vector;
+use crate::{math::Vector, ranks::Ranks};
 
 /// Smoothing length, dp. Tests from 1.0 to 1.5 on boxes, discs, balls and slopes show the smallest gaps at this value.
 const H: f64 = 1.0;
@@ -55,14 +55,28 @@ pub(super) fn spread_points<const D: usize>(
     dp: f64,
     confine: impl Fn(usize, &Vector<D>, &mut Vector<D>) -> f64 + Sync,
 ) {
+    spread_points_on(&Ranks::default(), points, movable, dp, confine);
+}
+
+/// As [`spread_points`], with the work and the neighbour lists shared among `ranks`, which have the same points.
+pub(super) fn spread_points_on<const D: usize>(
+    ranks: &Ranks,
+    points: &mut [Vector<D>],
+    movable: usize,
+    dp: f64,
+    confine: impl Fn(usize, &Vector<D>, &mut Vector<D>) -> f64 + Sync,
+) {
     let pace = Pace::of(D);
-    let (mut next, mut room) = (points[..movable].to_vec(), vec![0.0; movable]);
+    let end = |rank: usize| (movable.div_ceil(CHUNK) * rank / ranks.count() * CHUNK).min(movable);
+    let own = end(ranks.rank())..end(ranks.rank() + 1);
+    let parts: Vec<Range<usize>> = (0..ranks.count()).map(|rank| D * end(rank)..D * end(rank + 1)).collect();
+    let (mut next, mut room) = (points[own.clone()].to_vec(), vec![0.0; own.len()]);
     let (mut lists, mut travelled) = (Vec::new(), f64::INFINITY);
     for _ in 0..pace.passes {
         if 2.0 * travelled >= pace.margin * dp {
             // The old lists go first: lists are most of the memory here.
             lists.clear();
-            List::append_all(&mut lists, points, movable, (SUPPORT_RADIUS_DP + pace.margin) * dp);
+            List::append_all(&mut lists, points, own.clone(), (SUPPORT_RADIUS_DP + pace.margin) * dp);
             travelled = 0.0;
         }
         let chunks = lists.par_iter().zip(next.par_chunks_mut(CHUNK)).zip(room.par_chunks_mut(CHUNK)).enumerate();
@@ -75,14 +89,15 @@ pub(super) fn spread_points<const D: usize>(
                 *room -= (*x - at).norm();
                 if *room <= 0.0 {
                     // The factor is slightly below 1, because the sum of the moves has rounding errors.
-                    *room = 0.999 * confine(c * CHUNK + k, &at, x);
+                    *room = 0.999 * confine(own.start + c * CHUNK + k, &at, x);
                 }
                 moved = moved.max((*x - at).norm());
             }
             moved
         });
-        let moved = moves.reduce(|| 0.0, f64::max);
-        points[..movable].copy_from_slice(&next);
+        let moved = ranks.max(moves.reduce(|| 0.0, f64::max));
+        points[own.clone()].copy_from_slice(&next);
+        ranks.share_doubles(bytemuck::cast_slice_mut(&mut points[..movable]), &parts);
         if moved < REST * dp {
             return;
         }
@@ -121,8 +136,8 @@ struct List {
 }
 
 impl List {
-    /// Appends to `lists` the neighbour lists of the first `movable` of `points`, with all points within `reach` (m).
-    fn append_all<const D: usize>(lists: &mut Vec<Self>, points: &[Vector<D>], movable: usize, reach: f64) {
+    /// Appends to `lists` the neighbour lists of `these` of the `points`, with all points within `reach` (m).
+    fn append_all<const D: usize>(lists: &mut Vec<Self>, points: &[Vector<D>], these: Range<usize>, reach: f64) {
         let cells = PointCells::new(points, reach);
         let list = |(row, index): &mut (Vec<f64>, Vec<u32>), points: &[Vector<D>]| {
             index.clear();
@@ -132,7 +147,7 @@ impl List {
             });
             Self { end: end.collect(), index: index.as_slice().into() }
         };
-        lists.par_extend(points[..movable].par_chunks(CHUNK).map_init(Default::default, list));
+        lists.par_extend(points[these].par_chunks(CHUNK).map_init(Default::default, list));
     }
 
     /// Returns the indices of the neighbours of the `k`-th point.

@@ -54,26 +54,14 @@ pub(super) fn complete_sums(sums: &mut [LaneRow], clusters: &Clusters, lengths: 
     }
 }
 
-/// The sums of all water particles, of which this rank's are `own(i)`: for the first rank, or for all if `everyone`. Empty if no sums
-/// are lacking, or for the others.
-pub(super) fn gather_sums<const D: usize>(
-    clusters: &Clusters,
-    everyone: bool,
-    own: impl Fn(usize) -> PairSums<D>,
-) -> Vec<PairSums<D>> {
+/// The sums of all water particles, of which this rank's are `own(i)`. Empty if no sums are lacking.
+pub(super) fn gather_sums<const D: usize>(clusters: &Clusters, own: impl Fn(usize) -> PairSums<D>) -> Vec<PairSums<D>> {
     let division = &clusters.division;
     let Some((these, _)) = division.own_water() else { return Vec::new() };
-    let takes = everyone || division.ranks.rank() == 0;
-    let mut all = vec![PairSums::zero(); if takes { clusters.fluid_slots.len() } else { 0 }];
-    if takes {
-        these.iter().for_each(|&i| all[i as usize] = own(i as usize));
-    }
+    let mut all = vec![PairSums::zero(); clusters.fluid_slots.len()];
+    these.iter().for_each(|&i| all[i as usize] = own(i as usize));
     let give = |_: &Vec<PairSums<D>>, i: usize, numbers: &mut Vec<f64>| own(i).give(numbers);
-    let take = |all: &mut Vec<PairSums<D>>, i: usize, numbers: &[f64]| {
-        if takes {
-            all[i] = PairSums::taken(numbers);
-        }
-    };
+    let take = |all: &mut Vec<PairSums<D>>, i: usize, numbers: &[f64]| all[i] = PairSums::taken(numbers);
     division.share_water(these, &mut all, D + 1, give, take);
     all
 }

@@ -134,10 +134,9 @@ pub trait PairLoop<const D: usize>: Send + Sync {
     /// Frees the buffers of a pass, before the neighbour lists are rebuilt; the sums of the last pass go with them.
     fn free_buffers(&mut self);
 
-    /// Completes the sums of the water by the last [`PairLoop::rates`] on the first rank, or on all if `everyone`, where ranks have
-    /// those of their own particles only.
-    fn share_fluid_sums(&mut self, neighbours: &NeighbourLists<D>, everyone: bool) {
-        let _ = (neighbours, everyone);
+    /// Completes the sums of the water by the last [`PairLoop::rates`] on all ranks, where these have those of their own particles only.
+    fn share_fluid_sums(&mut self, neighbours: &NeighbourLists<D>) {
+        let _ = neighbours;
     }
 
     /// The sums of water particle `i`, gravity included, by the last [`PairLoop::rates`], which had these lists.

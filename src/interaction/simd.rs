@@ -327,11 +327,11 @@ impl<const D: usize> PairLoop<D> for SimdPairLoop<D> {
         (self.has_rates, self.gathered) = (false, Vec::new());
     }
 
-    fn share_fluid_sums(&mut self, neighbours: &NeighbourLists<D>, everyone: bool) {
+    fn share_fluid_sums(&mut self, neighbours: &NeighbourLists<D>) {
         if !self.has_rates {
             return;
         }
-        self.gathered = exchange::gather_sums(clusters(neighbours), everyone, |i| self.fluid_sums(neighbours, i));
+        self.gathered = exchange::gather_sums(clusters(neighbours), |i| self.fluid_sums(neighbours, i));
     }
 
     fn fluid_sums(&self, neighbours: &NeighbourLists<D>, i: usize) -> PairSums<D> {

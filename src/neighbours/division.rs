@@ -2,12 +2,17 @@
 
 use std::ops::Range;
 
+use bytemuck::Pod;
+
 use super::clusters::{PAD, Slab};
 use crate::{
     math::simd::LANES,
     math::{Bounds, Vector},
     ranks::{self, Ranks},
 };
+
+/// Particles of which the first rank gets the numbers at a time.
+const PIECE: usize = 1 << 13;
 
 /// The division; of a single rank, which has everything, it is empty.
 #[derive(Clone, Debug, Default)]
@@ -207,6 +212,45 @@ impl Division {
             take(data, words[0] as usize, &taken);
         };
         self.ranks.share_items(data, (&counts, 1 + 2 * width), pack, unpack);
+    }
+
+    /// Gives the first rank the items of `all`, of which each rank has those of its own water, in order and a piece at a time: `use_piece`
+    /// gets the pieces there. All ranks must call this.
+    pub(crate) fn collect<T: Pod>(&self, all: &[T], mut use_piece: impl FnMut(&[T])) {
+        let (ranks, width) = (&self.ranks, size_of::<T>() / 4);
+        let pieces: Vec<Range<usize>> =
+            (0..all.len()).step_by(PIECE).map(|start| start..all.len().min(start + PIECE)).collect();
+        let place = |i: usize| self.own.partition_point(|&k| (k as usize) < i);
+        let own = |piece: &Range<usize>| &self.own[place(piece.start)..place(piece.end)];
+        let given: Vec<u32> = pieces.iter().map(|piece| own(piece).len() as u32).collect();
+        let counts = ranks.gather_lists(&given);
+        let (mut words, mut whole) = (Vec::<u32>::new(), Vec::new());
+        for (k, piece) in pieces.into_iter().enumerate() {
+            words.clear();
+            if ranks.rank() > 0 {
+                for &i in own(&piece) {
+                    words.push(i);
+                    words.extend_from_slice(bytemuck::cast_slice(std::slice::from_ref(&all[i as usize])));
+                }
+                if !words.is_empty() {
+                    ranks.pass((Some(0), &words), (None, &mut []));
+                }
+                continue;
+            }
+            whole.clear();
+            whole.extend_from_slice(&all[piece.clone()]);
+            for (rank, counts) in counts.chunks_exact(given.len()).enumerate().skip(1) {
+                words.resize(counts[k] as usize * (1 + width), 0);
+                if !words.is_empty() {
+                    ranks.pass((None, &[]), (Some(rank), &mut words));
+                }
+                for words in words.chunks_exact(1 + width) {
+                    whole[words[0] as usize - piece.start] =
+                        bytemuck::pod_read_unaligned(bytemuck::cast_slice(&words[1..]));
+                }
+            }
+            use_piece(&whole);
+        }
     }
 
     /// The number that each rank gives.

@@ -230,6 +230,11 @@ impl<const D: usize> NeighbourLists<D> {
         (self.grids, self.known) = ([OnceLock::from(grid), OnceLock::new()], Some(these));
     }
 
+    /// Lets queries at a point find the positions `water` (m), for which the lists were built and of which this rank may lack some.
+    pub(crate) fn find_at(&mut self, water: &[Vector<D>]) {
+        self.grids[0] = OnceLock::from(CellGrid::new(water, self.list_radius()));
+    }
+
     /// Lets queries at a point find all positions at the last build again.
     pub(crate) fn forget_known(&mut self) {
         (self.grids, self.known) = (Default::default(), None);
@@ -257,7 +262,7 @@ impl<const D: usize> NeighbourLists<D> {
         };
         let take = |(water, then, corrections): &mut Data<'_, D>, i: usize, given: &[f64]| {
             if takes {
-                water.take(i, given);
+                water.take_changed(i, given);
                 then[i] = Vector::from_column_slice(&given[numbers..numbers + D]);
                 let correction = &given[numbers + D..];
                 corrections.iter_mut().for_each(|all| all[i] = Matrix::from_column_slice(correction));

@@ -9,16 +9,19 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use bytemuck::Pod;
+
 use super::{
     cannot_write,
     frame_index::FrameIndex,
     sync_folder,
-    vtu::{self, Cells, DataArray, Values},
-    write_atomically,
+    vtu::{self, ArrayPieces, Cells, DataArray, FileParts, Values},
+    write_atomically, write_parts_atomically,
 };
 use crate::{
     error::{Error, ErrorCode, Result, nearest_name},
     math::Vector,
+    neighbours::Division,
     particles::ParticlesView,
     plan::FramesPlan,
     solid::MooringReading,
@@ -39,8 +42,8 @@ pub fn particle_bytes(fields: &[String]) -> (f64, f64) {
     (COMPRESSED * (place + fields), COMPRESSED * (place + fields + 4.0))
 }
 
-/// VTK's number of a cell that is one point.
-const VERTEX: u8 = 1;
+/// Particles whose values are compressed at a time.
+const PIECE: usize = 1 << 13;
 
 /// VTK's number of a cell that is a line between two points.
 const LINE: u8 = 3;
@@ -140,21 +143,23 @@ impl FrameWriter {
         t: f64,
     ) -> Result<()> {
         let number = self.times.len();
-        let water = system.fluid();
-        let kept = self.crop.as_ref().map(|[min, max]| {
-            let inside = |i: &usize| (0..D).all(|k| (min[k]..=max[k]).contains(&water.r[*i][k]));
-            water.select((0..water.len()).filter(inside))
-        });
-        let water = kept.as_ref().map_or(water, |kept| kept.first_n(kept.len()));
         let names = self.piece_names(number);
-        let mut bytes = self.write_piece(&names[0], system, water, None)?;
+        let path = self.folder.join("frames").join(&names[0]);
+        let water = water_file(system, &self.fields, self.crop.as_ref()).map_err(|why| cannot_write(&path, &why))?;
+        write_parts_atomically(&path, &water.parts())?;
+        let mut bytes = water.len() as u64;
+        drop(water);
         let ranges: Vec<Range<usize>> = (0..system.solids().len()).map(|i| system.home_boundary(i)).collect();
         let owner = ranges.iter().enumerate().flat_map(|(i, range)| range.clone().map(move |_| i as f32)).collect();
         let boundary = system.boundary();
         let has_copies = ranges.iter().map(Range::len).sum::<usize>() < boundary.len();
         let kept = has_copies.then(|| boundary.select(ranges.into_iter().flatten()));
         let boundary = kept.as_ref().map_or(boundary, |kept| kept.first_n(kept.len()));
-        bytes += self.write_piece(&names[1], system, boundary, Some(owner))?;
+        let path = self.folder.join("frames").join(&names[1]);
+        let file = Shown { particles: boundary, division: None, kept: None }.file(system, &self.fields, Some(owner));
+        let file = file.map_err(|why| cannot_write(&path, &why))?;
+        write_parts_atomically(&path, &file.parts())?;
+        bytes += file.len() as u64;
         if let Some(name) = names.get(2) {
             bytes += self.write_lines(name, moorings)?;
         }
@@ -207,44 +212,96 @@ impl FrameWriter {
         write_atomically(&path, &bytes)?;
         Ok(bytes.len() as u64)
     }
-
-    /// Writes one part of a frame; returns its size, B.
-    fn write_piece<const D: usize>(
-        &self,
-        name: &str,
-        system: &System<D>,
-        particles: ParticlesView<'_, D>,
-        owner: Option<Vec<f32>>,
-    ) -> Result<u64> {
-        let mut fields: Vec<DataArray> = self.fields.iter().map(|name| field(name, system, particles)).collect();
-        fields.extend(owner.map(|numbers| DataArray::new("solid", 1, numbers)));
-        let path = self.folder.join("frames").join(name);
-        let bytes = points_vtu(particles.r, fields).map_err(|why| cannot_write(&path, &why))?;
-        write_atomically(&path, &bytes)?;
-        Ok(bytes.len() as u64)
-    }
 }
 
-/// Returns the field called `name` of all particles.
-fn field<const D: usize>(name: &str, system: &System<D>, particles: ParticlesView<'_, D>) -> DataArray {
-    let all = |f: &dyn Fn(usize) -> f64| (0..particles.len()).map(|i| f(i) as f32).collect();
-    match name {
-        "velocity" => DataArray::new(name, 3, to_3d(particles.v)),
-        "density" => DataArray::new(name, 1, all(&|i| particles.rho[i])),
-        "pressure" => DataArray::new(name, 1, all(&|i| system.pressure(particles.rho[i]))),
-        _ => DataArray { name: name.into(), components: 1, values: Values::U32(particles.id.to_vec()) },
+/// Returns the file of the water in a frame with these `fields`, in the box with the corners `crop` (m) if there is one. Where each rank
+/// has its own water, all must call this, and the first has the file: it gets a piece of the water of the others at a time.
+///
+/// # Errors
+/// Errors of the compression only, which writes to memory.
+pub(crate) fn water_file<const D: usize>(
+    system: &System<D>,
+    fields: &[String],
+    crop: Option<&[Vec<f64>; 2]>,
+) -> io::Result<FileParts> {
+    let mut water = Shown { particles: system.fluid(), division: system.divided_water(), kept: None };
+    water.kept = crop.map(|[min, max]| {
+        let mut kept = Vec::new();
+        let is_inside = |r: &Vector<D>| (0..D).all(|k| (min[k]..=max[k]).contains(&r[k]));
+        water.give(water.particles.r, |piece| kept.extend(piece.iter().map(is_inside)));
+        kept
+    });
+    water.file(system, fields, None)
+}
+
+/// Particles of a part of a frame.
+struct Shown<'a, const D: usize> {
+    particles: ParticlesView<'a, D>,
+    /// How ranks share the particles, if each has its own.
+    division: Option<&'a Division>,
+    /// Which particles are in the frame; all if there is none.
+    kept: Option<Vec<bool>>,
+}
+
+impl<'a, const D: usize> Shown<'a, D> {
+    /// Number of particles in the frame; 0 on ranks that write none.
+    fn count(&self) -> usize {
+        match (&self.kept, self.division.is_some_and(|division| division.ranks.rank() > 0)) {
+            (_, true) => 0,
+            (Some(kept), _) => kept.iter().filter(|kept| **kept).count(),
+            (None, _) => self.particles.len(),
+        }
+    }
+
+    /// Gives the values in `all` of the particles in the frame to `use_piece`, a piece at a time.
+    fn give<T: Pod>(&self, all: &[T], mut use_piece: impl FnMut(&[T])) {
+        let mut rest = self.kept.as_deref();
+        let mut chosen = Vec::new();
+        let use_kept = |piece: &[T]| match &mut rest {
+            None => use_piece(piece),
+            Some(rest) => {
+                let (these, later) = rest.split_at(piece.len());
+                *rest = later;
+                chosen.clear();
+                chosen.extend(piece.iter().zip(these).filter(|(_, kept)| **kept).map(|(x, _)| *x));
+                use_piece(&chosen);
+            }
+        };
+        match self.division {
+            Some(division) => division.collect(all, use_kept),
+            None => all.chunks(PIECE).for_each(use_kept),
+        }
+    }
+
+    /// Returns the file of the particles with these `fields` and, if they are of solids, the number of the `owner` of each.
+    fn file(&self, system: &'a System<D>, fields: &[String], owner: Option<Vec<f32>>) -> io::Result<FileParts> {
+        let ParticlesView { r, v, rho, id } = self.particles;
+        let count = self.count();
+        let vectors = move |all: &'a [Vector<D>]| {
+            move |use_piece: &mut dyn FnMut(&Values)| self.give(all, |piece| use_piece(&Values::F32(to_3d(piece))))
+        };
+        let scalars = |name: &str, of: Box<dyn Fn(f64) -> f64 + 'a>| {
+            ArrayPieces::new((name, 1), (Values::F32(Vec::new()), count), move |use_piece| {
+                self.give(rho, |piece| use_piece(&Values::F32(piece.iter().map(|&rho| of(rho) as f32).collect())));
+            })
+        };
+        let field = |name: &String| match name.as_str() {
+            "velocity" => ArrayPieces::new((name, 3), (Values::F32(Vec::new()), 3 * count), vectors(v)),
+            "density" => scalars(name, Box::new(|rho| rho)),
+            "pressure" => scalars(name, Box::new(|rho| system.pressure(rho))),
+            _ => ArrayPieces::new((name, 1), (Values::U32(Vec::new()), count), move |use_piece| {
+                self.give(id, |piece| use_piece(&Values::U32(piece.to_vec())));
+            }),
+        };
+        let mut fields: Vec<ArrayPieces<'_>> = fields.iter().map(field).collect();
+        fields.extend(owner.map(|numbers| DataArray::new("solid", 1, numbers).into()));
+        vtu::write_vertices(count, vectors(r), fields)
     }
 }
 
 /// Returns three components for each vector, in a single list.
 fn to_3d<const D: usize>(vectors: &[Vector<D>]) -> Vec<f32> {
     vectors.iter().flat_map(|v| (0..3).map(|i| if i < D { v[i] as f32 } else { 0.0 })).collect()
-}
-
-/// Returns a .vtu file with a vertex at each point.
-fn points_vtu<const D: usize>(points: &[Vector<D>], fields: Vec<DataArray>) -> io::Result<Vec<u8>> {
-    let connectivity = (0..points.len() as i64).collect();
-    vtu::write(to_3d(points), Cells { connectivity, points_per_cell: 1, cell_type: VERTEX }, fields)
 }
 
 #[cfg(test)]

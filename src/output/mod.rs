@@ -42,7 +42,15 @@ use crate::error::{Error, ErrorCode, Result};
 /// # Errors
 /// `File`, with the name of the file, if the disk is full or the folder is not writable; the old file remains.
 pub(crate) fn write_atomically(path: &Path, bytes: &[u8]) -> Result<()> {
-    write_partial(path, |file| file.write_all(bytes))?;
+    write_parts_atomically(path, &[bytes])
+}
+
+/// Writes a file whose bytes are these `parts` as [`write_atomically`].
+///
+/// # Errors
+/// As [`write_atomically`].
+fn write_parts_atomically(path: &Path, parts: &[&[u8]]) -> Result<()> {
+    write_partial(path, |file| parts.iter().try_for_each(|part| file.write_all(part)))?;
     commit_partial(path)
 }
 

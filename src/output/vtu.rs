@@ -3,7 +3,10 @@
 //! The writer appends all arrays as raw bytes, compressed by zlib. The reader accepts these files, and files of earlier
 //! program versions, in which each element contains its compressed array in base 64.
 
-use std::io::{self, Read, Write};
+use std::{
+    io::{self, Read, Write},
+    ops::Range,
+};
 
 use flate2::{Compression, read::ZlibDecoder, write::ZlibEncoder};
 use roxmltree::{Document, Node};
@@ -12,6 +15,15 @@ use super::base64;
 
 /// Uncompressed size of a block, bytes; each block is compressed separately.
 const BLOCK: usize = 1 << 16;
+
+/// VTK's number of a cell that is one point.
+const VERTEX: u8 = 1;
+
+/// Name of the array with the coordinates of the points.
+const POINTS: &str = "Points";
+
+/// Name of the array with the points of the cells.
+const CONNECTIVITY: &str = "connectivity";
 
 /// First bytes of the element that precedes the appended arrays.
 const APPENDED: &[u8] = b"<AppendedData";
@@ -40,6 +52,27 @@ pub(crate) struct DataArray {
     pub values: Values,
 }
 
+/// Uses the pieces of an array in order.
+type PieceUser<'u> = &'u mut dyn FnMut(&Values);
+
+/// An array that is written a piece at a time, so that no more of it is in memory.
+pub(crate) struct ArrayPieces<'a> {
+    name: String,
+    components: usize,
+    /// No values of the type of the array.
+    kind: Values,
+    /// Number of values.
+    count: usize,
+    /// Gives the pieces in order.
+    give: Box<dyn FnOnce(PieceUser<'_>) + 'a>,
+}
+
+/// The two parts of a file, in order; together they would be in memory twice for a while.
+pub(crate) struct FileParts {
+    text: Vec<u8>,
+    data: Vec<u8>,
+}
+
 /// Cells of one type.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Cells {
@@ -55,6 +88,44 @@ impl DataArray {
     /// Makes an array of single precision.
     pub(crate) fn new(name: &str, components: usize, values: Vec<f32>) -> Self {
         Self { name: name.into(), components, values: Values::F32(values) }
+    }
+}
+
+impl<'a> ArrayPieces<'a> {
+    /// The array `name` of `count` values of the type of `kind`, with `components` per point or cell: `give` gives the pieces in order.
+    pub(crate) fn new(
+        (name, components): (&str, usize),
+        (kind, count): (Values, usize),
+        give: impl FnOnce(PieceUser<'_>) + 'a,
+    ) -> Self {
+        Self { name: name.into(), components, kind, count, give: Box::new(give) }
+    }
+
+    /// An array with one value for each cell or point of `count`: `of` gives those of a range.
+    pub(crate) fn computed(name: &str, kind: Values, count: usize, of: impl Fn(Range<usize>) -> Values + 'a) -> Self {
+        Self::new((name, 1), (kind, count), move |use_piece| {
+            for start in (0..count).step_by(BLOCK) {
+                use_piece(&of(start..count.min(start + BLOCK)));
+            }
+        })
+    }
+}
+
+impl From<DataArray> for ArrayPieces<'_> {
+    fn from(DataArray { name, components, values }: DataArray) -> Self {
+        Self::new((&name, components), (values.none(), values.len()), move |use_piece| use_piece(&values))
+    }
+}
+
+impl FileParts {
+    /// The parts in order.
+    pub(crate) fn parts(&self) -> [&[u8]; 2] {
+        [&self.text, &self.data]
+    }
+
+    /// Size of the file, B.
+    pub(crate) fn len(&self) -> usize {
+        self.text.len() + self.data.len()
     }
 }
 
@@ -77,13 +148,32 @@ impl Values {
         }
     }
 
-    /// Appends the values to `data` in compressed form.
-    fn append(&self, data: &mut Vec<u8>) -> io::Result<()> {
+    /// No values of the same type.
+    fn none(&self) -> Self {
         match self {
-            Self::F32(x) => append_blocks(x, f32::to_le_bytes, data),
-            Self::U32(x) => append_blocks(x, u32::to_le_bytes, data),
-            Self::I64(x) => append_blocks(x, i64::to_le_bytes, data),
-            Self::U8(x) => append_blocks(x, u8::to_le_bytes, data),
+            Self::F32(_) => Self::F32(Vec::new()),
+            Self::U32(_) => Self::U32(Vec::new()),
+            Self::I64(_) => Self::I64(Vec::new()),
+            Self::U8(_) => Self::U8(Vec::new()),
+        }
+    }
+
+    /// Size of a value, B.
+    fn size(&self) -> usize {
+        match self {
+            Self::F32(_) | Self::U32(_) => 4,
+            Self::I64(_) => 8,
+            Self::U8(_) => 1,
+        }
+    }
+
+    /// Adds the values to an array in compressed form.
+    fn add_to(&self, blocks: &mut Blocks<'_>) {
+        match self {
+            Self::F32(x) => x.iter().for_each(|x| blocks.add(x.to_le_bytes())),
+            Self::U32(x) => x.iter().for_each(|x| blocks.add(x.to_le_bytes())),
+            Self::I64(x) => x.iter().for_each(|x| blocks.add(x.to_le_bytes())),
+            Self::U8(x) => x.iter().for_each(|x| blocks.add([*x])),
         }
     }
 
@@ -106,25 +196,52 @@ fn numbers<T, const N: usize>(bytes: &[u8], of: fn([u8; N]) -> T) -> Option<Vec<
     rest.is_empty().then(|| whole.iter().map(|bytes| of(*bytes)).collect())
 }
 
-/// Appends a header and the compressed blocks of `values` to `data`. The header has 64-bit entries: number of blocks,
-/// bytes per block, bytes of an incomplete last block or 0, and compressed bytes of each block.
-fn append_blocks<T: Copy, const N: usize>(values: &[T], bytes: fn(T) -> [u8; N], data: &mut Vec<u8>) -> io::Result<()> {
-    let blocks = values.chunks(BLOCK / N);
-    let mut header = vec![blocks.len(), BLOCK, values.len() * N % BLOCK];
-    let start = data.len();
-    data.resize(start + (header.len() + blocks.len()) * 8, 0);
-    for block in blocks {
-        let before = data.len();
-        let raw: Vec<u8> = block.iter().flat_map(|x| bytes(*x)).collect();
-        let mut encoder = ZlibEncoder::new(&mut *data, Compression::fast());
-        encoder.write_all(&raw)?;
-        encoder.finish()?;
-        header.push(data.len() - before);
+/// The compressed blocks of an array at the end of `data`.
+struct Blocks<'a> {
+    data: &'a mut Vec<u8>,
+    /// Bytes of a block that is not full yet.
+    raw: Vec<u8>,
+    /// Compressed size of each block, B.
+    sizes: Vec<usize>,
+    outcome: io::Result<()>,
+}
+
+impl Blocks<'_> {
+    /// Adds the bytes of a value; blocks have a whole number of values.
+    fn add<const N: usize>(&mut self, bytes: [u8; N]) {
+        self.raw.extend(bytes);
+        if self.raw.len() == BLOCK {
+            self.close();
+        }
     }
-    for (word, place) in header.iter().zip(data[start..].chunks_exact_mut(8)) {
+
+    /// Compresses the bytes gathered.
+    fn close(&mut self) {
+        let before = self.data.len();
+        let mut encoder = ZlibEncoder::new(&mut *self.data, Compression::fast());
+        let packed = encoder.write_all(&self.raw).and_then(|()| encoder.finish().map(drop));
+        self.outcome = std::mem::replace(&mut self.outcome, Ok(())).and(packed);
+        self.sizes.push(self.data.len() - before);
+        self.raw.clear();
+    }
+}
+
+/// Appends a header and the compressed blocks of `array` to `data`. The header has 64-bit entries: number of blocks,
+/// bytes per block, bytes of an incomplete last block or 0, and compressed bytes of each block.
+fn append_blocks(array: ArrayPieces<'_>, data: &mut Vec<u8>) -> io::Result<()> {
+    let (bytes, start) = (array.count * array.kind.size(), data.len());
+    let header = [bytes.div_ceil(BLOCK), BLOCK, bytes % BLOCK];
+    data.resize(start + (header.len() + header[0]) * 8, 0);
+    let mut blocks = Blocks { data, raw: Vec::with_capacity(BLOCK), sizes: Vec::new(), outcome: Ok(()) };
+    (array.give)(&mut |piece| piece.add_to(&mut blocks));
+    if !blocks.raw.is_empty() {
+        blocks.close();
+    }
+    let Blocks { data, sizes, outcome, .. } = blocks;
+    for (word, place) in header.iter().chain(&sizes).zip(data[start..].chunks_exact_mut(8)) {
         place.copy_from_slice(&(*word as u64).to_le_bytes());
     }
-    Ok(())
+    outcome
 }
 
 /// Returns the file of a grid: `points` with three coordinates each (m), `cells`, and fields of the points.
@@ -132,7 +249,35 @@ fn append_blocks<T: Copy, const N: usize>(values: &[T], bytes: fn(T) -> [u8; N],
 /// # Errors
 /// Errors of the compression only, which writes to memory.
 pub(crate) fn write(points: Vec<f32>, cells: Cells, fields: Vec<DataArray>) -> io::Result<Vec<u8>> {
-    let (point_count, cell_count) = (points.len() / 3, cells.connectivity.len() / cells.points_per_cell);
+    let Cells { connectivity, points_per_cell, cell_type } = cells;
+    let connectivity = DataArray { name: CONNECTIVITY.into(), components: 1, values: Values::I64(connectivity) };
+    let points = DataArray::new(POINTS, 3, points).into();
+    let fields = fields.into_iter().map(ArrayPieces::from).collect();
+    write_grid(points, (connectivity.into(), points_per_cell, cell_type), fields).map(|file| file.parts().concat())
+}
+
+/// Returns the file of a grid with a vertex at each of the `points`, three coordinates each (m), and fields of the points.
+///
+/// # Errors
+/// Errors of the compression only, which writes to memory.
+pub(crate) fn write_vertices<'a>(
+    count: usize,
+    points: impl FnOnce(PieceUser<'_>) + 'a,
+    fields: Vec<ArrayPieces<'a>>,
+) -> io::Result<FileParts> {
+    let points = ArrayPieces::new((POINTS, 3), (Values::F32(Vec::new()), 3 * count), points);
+    let numbers = |range: Range<usize>| Values::I64(range.map(|i| i as i64).collect());
+    let connectivity = ArrayPieces::computed(CONNECTIVITY, Values::I64(Vec::new()), count, numbers);
+    write_grid(points, (connectivity, 1, VERTEX), fields)
+}
+
+/// Returns the file of a grid: `points`, the points of each cell and their number, the type of the cells, and fields of the points.
+fn write_grid(
+    points: ArrayPieces<'_>,
+    (connectivity, points_per_cell, cell_type): (ArrayPieces<'_>, usize, u8),
+    fields: Vec<ArrayPieces<'_>>,
+) -> io::Result<FileParts> {
+    let (point_count, cell_count) = (points.count / 3, connectivity.count / points_per_cell);
     let name_of =
         |components: usize| fields.iter().find(|field| field.components == components).map(|field| &field.name);
     // ParaView and similar readers display these fields by default.
@@ -144,42 +289,44 @@ pub(crate) fn write(points: Vec<f32>, cells: Cells, fields: Vec<DataArray>) -> i
          <Piece NumberOfPoints=\"{point_count}\" NumberOfCells=\"{cell_count}\">\n<PointData{}>\n",
         shown.collect::<String>()
     );
-    let offsets = (1..=cell_count).map(|i| (i * cells.points_per_cell) as i64).collect();
-    let of_cells = |name: &str, values| DataArray { name: name.into(), components: 1, values };
+    let offset = |range: Range<usize>| Values::I64(range.map(|i| ((i + 1) * points_per_cell) as i64).collect());
+    let kind = |range: Range<usize>| Values::U8(vec![cell_type; range.len()]);
     let cells = vec![
-        of_cells("connectivity", Values::I64(cells.connectivity)),
-        of_cells("offsets", Values::I64(offsets)),
-        of_cells("types", Values::U8(vec![cells.cell_type; cell_count])),
+        connectivity,
+        ArrayPieces::computed("offsets", Values::I64(Vec::new()), cell_count, offset),
+        ArrayPieces::computed("types", Values::U8(Vec::new()), cell_count, kind),
     ];
     // The data of the last element come first: meshio 5.3 reads wrong offsets if the arrays are in the order of their
     // elements.
     let mut data = Vec::new();
     let cells = append_arrays(cells, &mut data)?;
-    let points = append_arrays(vec![DataArray::new("Points", 3, points)], &mut data)?;
+    let points = append_arrays(vec![points], &mut data)?;
     text += &append_arrays(fields, &mut data)?;
     text += &format!(
         "</PointData>\n<Points>\n{points}</Points>\n<Cells>\n{cells}</Cells>\n</Piece>\n</UnstructuredGrid>\n"
     );
-    let mut file = (text + "<AppendedData encoding=\"raw\">\n_").into_bytes();
-    file.append(&mut data);
-    file.extend(b"\n</AppendedData>\n</VTKFile>\n");
-    Ok(file)
+    text += "<AppendedData encoding=\"raw\">\n_";
+    data.extend(b"\n</AppendedData>\n</VTKFile>\n");
+    Ok(FileParts { text: text.into_bytes(), data })
 }
 
 /// Appends `arrays` to `data`, the last array first; returns their XML elements.
-fn append_arrays(arrays: Vec<DataArray>, data: &mut Vec<u8>) -> io::Result<String> {
+fn append_arrays(arrays: Vec<ArrayPieces<'_>>, data: &mut Vec<u8>) -> io::Result<String> {
     let mut text = String::new();
-    for DataArray { name, components, values } in arrays.into_iter().rev() {
+    for array in arrays.into_iter().rev() {
         // The format's default is a single component; meshio makes a column of an array that states it.
-        let components = if components == 1 { String::new() } else { format!(" NumberOfComponents=\"{components}\"") };
-        let (kind, offset) = (values.type_name(), data.len());
+        let components = match array.components {
+            1 => String::new(),
+            components => format!(" NumberOfComponents=\"{components}\""),
+        };
+        let (name, kind, offset) = (&array.name, array.kind.type_name(), data.len());
         text.insert_str(
             0,
             &format!(
                 "<DataArray type=\"{kind}\" Name=\"{name}\"{components} format=\"appended\" offset=\"{offset}\"/>\n"
             ),
         );
-        values.append(data)?;
+        append_blocks(array, data)?;
     }
     Ok(text)
 }

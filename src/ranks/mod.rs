@@ -17,7 +17,10 @@ use std::{
 #[cfg(feature = "mpi")]
 pub use mpi::World;
 
-use crate::math::simd::{LANES, LaneRow};
+use crate::{
+    error::{Error, ErrorKind, Result},
+    math::simd::{LANES, LaneRow},
+};
 
 /// Rows that each rank gives in one exchange, so that the buffers stay small.
 const BLOCK: usize = 1 << 13;
@@ -144,6 +147,44 @@ impl Ranks {
         let mut all = vec![0; N * self.count()];
         self.gather(&own, &vec![N; self.count()], &mut all);
         all.chunks_exact(N).map(|words| std::array::from_fn(|k| words[k])).collect()
+    }
+
+    /// The words of all ranks in their order; each gives as many.
+    pub(crate) fn gather_lists(&self, own: &[u32]) -> Vec<u32> {
+        let mut all = vec![0; own.len() * self.count()];
+        self.gather(own, &vec![own.len(); self.count()], &mut all);
+        all
+    }
+
+    /// The largest of the numbers that the ranks give, none of which is NaN.
+    pub(crate) fn max(&self, own: f64) -> f64 {
+        self.gather_words(words_of(own)).into_iter().fold(own, |most, [low, high]| most.max(from_words(low, high)))
+    }
+
+    /// What all ranks have prepared, if all could and `digest` gives the same text for each.
+    ///
+    /// # Errors
+    /// This rank's own error; `Usage` if another rank failed or has something else, with its number.
+    pub(crate) fn agree<T>(&self, prepared: Result<T>, digest: impl Fn(&T) -> String) -> Result<T> {
+        if self.count() == 1 {
+            return prepared;
+        }
+        let own =
+            prepared.as_ref().map_or_else(|error| format!("!{error}"), |prepared| format!("={}", digest(prepared)));
+        let all = self.gather_bytes(own.as_bytes());
+        let prepared = prepared?;
+        for (rank, text) in all.iter().enumerate() {
+            let text = String::from_utf8_lossy(text);
+            if let Some(why) = text.strip_prefix('!') {
+                return Err(Error::new(ErrorKind::Usage, format!("rank {rank} cannot begin: {why}")));
+            }
+            if text.as_bytes() != all[0] {
+                let what = format!("rank {rank} has another program, scene or file than rank 0");
+                return Err(Error::new(ErrorKind::Usage, what)
+                    .help("start the same program on a file system that all machines share"));
+            }
+        }
+        Ok(prepared)
     }
 
     /// Completes `rows`, of which each rank has filled its own of the `parts`.

@@ -8,9 +8,10 @@ use super::{
 use crate::device::refused;
 #[cfg(not(feature = "gpu"))]
 use crate::error::ErrorCode;
+#[cfg(feature = "gpu")]
+use crate::probe::ProbeReads;
 use crate::{
     error::{Error, ErrorKind, Result},
-    probe::ProbeReads,
     ranks::Ranks,
     scene::Scene,
     simulation::Simulation,
@@ -86,14 +87,14 @@ pub(super) fn step<const D: usize>(
     }
     leader.order(Order::Step, sim.time())?;
     sim.step_with_own_water(until)?;
-    if outputs.reads_at(sim.time()).contains(&ProbeReads::Water) { fetch(sim, leader) } else { Ok(()) }
+    fetch(sim, leader, outputs.read_water(Some(sim.time())))
 }
 
-/// Fetches the state from a device or from other ranks, if they have it.
-pub(super) fn fetch<const D: usize>(sim: &mut Simulation<D>, leader: &Leader) -> Result<()> {
+/// Fetches the state from a device, if one has it, and if `from_ranks` the water of other ranks, if they have it.
+pub(super) fn fetch<const D: usize>(sim: &mut Simulation<D>, leader: &Leader, from_ranks: bool) -> Result<()> {
     #[cfg(feature = "gpu")]
     sim.fetch_from_device()?;
-    if !sim.system().status.has_all_water {
+    if from_ranks && !sim.system().status.has_all_water {
         leader.order(Order::Gather, sim.time())?;
         sim.gather_water(false);
     }

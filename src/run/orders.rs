@@ -1,16 +1,16 @@
 //! A run on several ranks. The first rank leads it: it writes the files and tells the others what to do next. The others have the
 //! same simulation and take the same steps.
 
-use std::{fs, path::Path};
+use std::{fs, io, path::Path};
 
 use super::{controls::Controls, probe_factory, run_folder};
 use crate::{
     error::{Error, ErrorKind, Result},
-    output::{Checkpoint, checkpoint},
-    plan::{ControlChange, Plan},
+    output::{Checkpoint, checkpoint, frame},
+    plan::{ControlChange, FramesPlan, Plan},
     ranks::{Ranks, from_words, words_of},
     scene::{BuiltScene, Scene},
-    simulation::{Dimension, Setup, Simulation},
+    simulation::{Dimension, Setup, Simulation, WaterAtSetup},
     solid::Dim,
 };
 
@@ -21,6 +21,10 @@ pub(super) enum Order {
     Step,
     /// Complete the water on the first rank.
     Gather,
+    /// Give the first rank what a frame has of the water, also after a fault that all ranks have met.
+    Frame,
+    /// Give the first rank what a checkpoint with the first `rollbacks` rollbacks has of the water.
+    Save { rollbacks: usize },
     /// Set a control to a value.
     Set { control: usize, value: f64 },
     /// The run is over.
@@ -46,6 +50,8 @@ impl Message {
             Some(Order::Set { control, value }) => (2, control as u32, value),
             Some(Order::End) => (3, 0, 0.0),
             Some(Order::Gather) => (4, 0, 0.0),
+            Some(Order::Save { rollbacks }) => (5, rollbacks as u32, 0.0),
+            Some(Order::Frame) => (6, 0, 0.0),
         };
         let ([t0, t1], [v0, v1]) = (words_of(self.time), words_of(value));
         [kind, control, v0, v1, t0, t1, u32::from(self.failed)]
@@ -57,6 +63,8 @@ impl Message {
             2 => Some(Order::Set { control: control as usize, value: from_words(v0, v1) }),
             3 => Some(Order::End),
             4 => Some(Order::Gather),
+            5 => Some(Order::Save { rollbacks: control as usize }),
+            6 => Some(Order::Frame),
             _ => None,
         };
         Self { order, failed: failed != 0, time: from_words(t0, t1) }
@@ -75,7 +83,7 @@ fn exchange(ranks: &Ranks, own: &Message) -> Result<Order> {
         return Ok(order);
     }
     for (rank, other) in all.iter().enumerate() {
-        if other.failed {
+        if other.failed && order != Order::Frame {
             let what = format!("rank {rank} cannot go on at t = {:.6} s: its own message says why", first.time);
             return Err(Error::new(ErrorKind::Fault, what));
         }
@@ -89,11 +97,11 @@ fn exchange(ranks: &Ranks, own: &Message) -> Result<Order> {
 }
 
 /// The first rank's hold on the others, whom it tells at the end that the run is over.
-pub(super) struct Leader(Ranks);
+pub(crate) struct Leader(Ranks);
 
 impl Leader {
     /// Leads `ranks`; all others call [`follow`].
-    pub(super) fn new(ranks: Ranks) -> Self {
+    pub(crate) fn new(ranks: Ranks) -> Self {
         Self(ranks)
     }
 
@@ -119,31 +127,6 @@ impl Drop for Leader {
     }
 }
 
-/// What all ranks have prepared, if all could and `digest` gives the same text for each.
-///
-/// # Errors
-/// This rank's own error; `Usage` if another rank failed or has something else, with its number.
-pub(crate) fn agree<T>(ranks: &Ranks, prepared: Result<T>, digest: impl Fn(&T) -> String) -> Result<T> {
-    if ranks.count() == 1 {
-        return prepared;
-    }
-    let own = prepared.as_ref().map_or_else(|error| format!("!{error}"), |prepared| format!("={}", digest(prepared)));
-    let all = ranks.gather_bytes(own.as_bytes());
-    let prepared = prepared?;
-    for (rank, text) in all.iter().enumerate() {
-        let text = String::from_utf8_lossy(text);
-        if let Some(why) = text.strip_prefix('!') {
-            return Err(Error::new(ErrorKind::Usage, format!("rank {rank} cannot begin: {why}")));
-        }
-        if text.as_bytes() != all[0] {
-            let what = format!("rank {rank} has another program, scene or file than rank 0");
-            return Err(Error::new(ErrorKind::Usage, what)
-                .help("start the same program on a file system that all machines share"));
-        }
-    }
-    Ok(prepared)
-}
-
 /// A text that tells programs and scenes apart, with the files in `folder` that the scene names.
 pub(super) fn scene_digest(scene: &Scene, folder: &Path) -> String {
     let words = scene.to_toml().unwrap_or_default();
@@ -163,6 +146,11 @@ pub(super) fn water_digest<const D: usize>(setup: &Setup<D>) -> String {
     format!("{} solids, {hash:x}", setup.solids.len())
 }
 
+/// The water that comes together for the set-up of a run of this plan: probes may read all from the start.
+pub(super) fn water_at_setup(plan: &Plan) -> WaterAtSetup {
+    if plan.probes.is_empty() { WaterAtSetup::Places } else { WaterAtSetup::First }
+}
+
 /// Takes the steps of a run that the first of the `ranks` leads, from the start of `scene` or from `checkpoint`, until that ends it.
 ///
 /// # Errors
@@ -171,7 +159,7 @@ pub(super) fn follow<const D: usize>(scene: &Scene, checkpoint: Option<Checkpoin
 where
     Dim<D>: Dimension<D>,
 {
-    let built = agree(ranks, scene.build::<D>(), |built| water_digest(&built.setup));
+    let built = ranks.agree(scene.build_on::<D>(ranks), |built| water_digest(&built.setup));
     // The first rank reports what all know.
     let Ok(BuiltScene { setup, plan, .. }) = built else { return Ok(()) };
     let mut failure = None;
@@ -181,7 +169,10 @@ where
         let time = follower.as_ref().map_or(0.0, |follower| follower.sim.time());
         match exchange(ranks, &Message { order: None, failed: failure.is_some(), time }) {
             Ok(Order::End) => return Ok(()),
-            Ok(order) => failure = follower.as_mut().and_then(|follower| follower.follow(order).err()),
+            Ok(order) => {
+                let failed = follower.as_mut().and_then(|follower| follower.follow(order).err());
+                failure = failed.or(failure.filter(|_| order == Order::Frame));
+            }
             Err(_) => {
                 let _ = exchange(ranks, &Message { order: None, failed: true, time });
                 return failure.map_or(Ok(()), Err);
@@ -204,7 +195,7 @@ where
     Dim<D>: Dimension<D>,
 {
     fn new(setup: Setup<D>, ranks: &Ranks, plan: Plan, checkpoint: Option<Checkpoint>) -> Result<Self> {
-        let mut sim = Simulation::set_up(setup, ranks, false)?;
+        let mut sim = Simulation::set_up(setup, ranks, water_at_setup(&plan))?;
         // They are not read here; but what they read is recorded in the steps.
         probe_factory::probes_from_plan(&plan, &mut sim)?;
         let mut changes = Vec::new();
@@ -230,6 +221,16 @@ where
                 self.changes.extend(self.controls.set(&mut self.sim, control, value));
             }
             Order::Gather => self.sim.gather_water(false),
+            Order::Frame => {
+                if let Some(FramesPlan { fields, crop, .. }) = &self.plan.frames {
+                    let nothing = frame::water_file(self.sim.system(), fields, crop.as_ref());
+                    nothing.map_err(|e| Error::new(ErrorKind::File, e.to_string()))?;
+                }
+            }
+            Order::Save { rollbacks } => {
+                let nothing_is_written = self.sim.write_state(rollbacks, &mut io::sink());
+                nothing_is_written.map_err(|e| Error::new(ErrorKind::File, e.to_string()))?;
+            }
             Order::End => {}
         }
         Ok(())

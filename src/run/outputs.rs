@@ -8,6 +8,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use super::orders::{Leader, Order};
 use crate::{
     error::{Error, ErrorCode, ErrorKind, Result},
     output::{CsvTable, FrameWriter, IntervalMean, OutputPositions, manifest::FrameTotals},
@@ -24,13 +25,22 @@ struct OutputSchedule {
 }
 
 impl OutputSchedule {
+    /// Returns the multiple that time `t` (s) reaches: round-off may leave a time slightly below one that it should equal.
+    fn reached(t: f64) -> f64 {
+        t * (1.0 + 1e-12)
+    }
+
+    /// Returns whether time `t` (s) reaches the next multiple.
+    fn is_due(&self, t: f64) -> bool {
+        Self::reached(t) >= self.next as f64 * self.every
+    }
+
     /// Returns whether time `t` (s) reaches the next multiple; if so, advances past this and all missed multiples.
     fn advance_if_due(&mut self, t: f64) -> bool {
-        // Round-off may leave a time slightly below the multiple that it should equal.
-        let reached = t * (1.0 + 1e-12);
-        if reached < self.next as f64 * self.every {
+        if !self.is_due(t) {
             return false;
         }
+        let reached = Self::reached(t);
         self.next = if self.every > 0.0 { ((reached / self.every) as u64).saturating_add(1) } else { 0 };
         true
     }
@@ -184,11 +194,20 @@ impl<const D: usize> Outputs<D> {
     }
 
     /// Returns the parts of the simulation that the outputs read which are due at time `t` (s).
+    #[cfg(feature = "gpu")]
     pub(crate) fn reads_at(&self, t: f64) -> Vec<ProbeReads> {
-        let is_due = |due: &OutputSchedule| t * (1.0 + 1e-12) >= due.next as f64 * due.every;
-        let probes = self.probes.iter().filter(|own| own.mean.is_some() || is_due(&own.due));
-        let rest = self.frames.iter().map(|(_, due)| due).chain(&self.checkpoint).filter(|due| is_due(due));
-        probes.map(|own| own.probe.reads()).chain(rest.map(|_| ProbeReads::Water)).collect()
+        let rest = self.frames.iter().map(|(_, due)| due).chain(&self.checkpoint).filter(|due| due.is_due(t));
+        self.due_probes(t).map(|own| own.probe.reads()).chain(rest.map(|_| ProbeReads::Water)).collect()
+    }
+
+    /// Returns whether a probe reads the water that is due at time `t` (s), or one of all if there is no time.
+    pub(crate) fn read_water(&self, t: Option<f64>) -> bool {
+        self.due_probes(t.unwrap_or(f64::INFINITY)).any(|own| own.probe.reads() == ProbeReads::Water)
+    }
+
+    /// Returns the probes that are due at time `t` (s).
+    fn due_probes(&self, t: f64) -> impl Iterator<Item = &ProbeOutput<D>> {
+        self.probes.iter().filter(move |own| own.mean.is_some() || own.due.is_due(t))
     }
 
     /// Returns the name of the first probe that reads the force on each boundary particle.
@@ -202,7 +221,7 @@ impl<const D: usize> Outputs<D> {
     ///
     /// # Errors
     /// `File` if something cannot be written.
-    pub(crate) fn write_due(&mut self, sim: &Simulation<D>) -> Result<StepOutput> {
+    pub(crate) fn write_due(&mut self, sim: &Simulation<D>, leader: &Leader) -> Result<StepOutput> {
         let t = sim.time();
         let mut written = StepOutput::default();
         for watched in &mut self.probes {
@@ -218,6 +237,7 @@ impl<const D: usize> Outputs<D> {
             && due.advance_if_due(t)
             && frames.times().last().is_none_or(|&last| last < t)
         {
+            leader.order(Order::Frame, t)?;
             frames.write(sim.system(), &sim.mooring_readings(), t)?;
             written.frame = true;
         }
@@ -229,7 +249,7 @@ impl<const D: usize> Outputs<D> {
     ///
     /// # Errors
     /// `File` if something cannot be written.
-    pub(crate) fn finish(&mut self, sim: &Simulation<D>) -> Result<()> {
+    pub(crate) fn finish(&mut self, sim: &Simulation<D>, leader: &Leader) -> Result<()> {
         for watched in &mut self.probes {
             watched.sample(sim, true)?;
             watched.table.sync()?;
@@ -238,16 +258,17 @@ impl<const D: usize> Outputs<D> {
             list.sample(sim)?;
             list.table.sync()?;
         }
-        self.write_last_frame(sim)
+        self.write_last_frame(sim, leader)
     }
 
     /// Writes a frame of this instant, unless one is already written.
     ///
     /// # Errors
     /// `File` if it cannot be written.
-    pub(crate) fn write_last_frame(&mut self, sim: &Simulation<D>) -> Result<()> {
+    pub(crate) fn write_last_frame(&mut self, sim: &Simulation<D>, leader: &Leader) -> Result<()> {
         match &mut self.frames {
             Some((frames, _)) if frames.times().last().is_none_or(|&t| t < sim.time()) => {
+                leader.order(Order::Frame, sim.time())?;
                 frames.write(sim.system(), &sim.mooring_readings(), sim.time())
             }
             _ => Ok(()),

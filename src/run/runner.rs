@@ -1,6 +1,6 @@
 //! The course of one run: from the built scene to its end, its interruption or its failure.
 
-use std::{path::PathBuf, time::Instant};
+use std::{io, path::PathBuf, time::Instant};
 
 use super::{
     FinalBodyState, Progress, RunObserver, RunOrigin, RunOutcome, RunRequest, RunStart,
@@ -65,11 +65,12 @@ where
     /// Builds the scene and, once all is known to be right, makes the run's folder or opens it again.
     pub(crate) fn new(scene: &Scene, origin: RunOrigin, ranks: &Ranks) -> Result<Self> {
         let (begun, begun_cpu) = (Instant::now(), ProcessorTime::now());
-        let built = scene.build::<D>().and_then(|built| device::check_ranks(scene, ranks).map(|()| built));
+        let built = scene.build_on::<D>(ranks).and_then(|built| device::check_ranks(scene, ranks).map(|()| built));
         let digest = |built: &BuiltScene<D>| orders::water_digest(&built.setup);
-        let BuiltScene { setup, plan, initial_water, file_notes } = orders::agree(ranks, built, digest)?;
+        let BuiltScene { setup, plan, initial_water, file_notes } = ranks.agree(built, digest)?;
         let leader = Leader::new(ranks.clone());
-        let mut sim = Simulation::set_up(setup, ranks, false).map_err(|e| scene.with_location(e))?;
+        let mut sim =
+            Simulation::set_up(setup, ranks, orders::water_at_setup(&plan)).map_err(|e| scene.with_location(e))?;
         let probes = probe_factory::probes_from_plan(&plan, &mut sim)?;
         let checks = probe_factory::checks_from_plan(&plan, &probes).map_err(|e| scene.with_location(e))?;
         let columns: Vec<usize> = probes.iter().map(|p| p.columns().len()).collect();
@@ -172,7 +173,7 @@ impl<const D: usize> Runner<D> {
     /// Steps and writes the outputs, and returns the resulting status.
     fn advance(&mut self, watch: &mut dyn RunObserver) -> Result<RunStatus> {
         if !self.resumed {
-            self.outputs.write_due(&self.sim)?;
+            self.outputs.write_due(&self.sim, &self.leader)?;
         }
         let until = self.manifest.until_s;
         let mut going = self.report_step(watch)?;
@@ -192,7 +193,7 @@ impl<const D: usize> Runner<D> {
             stepped?;
             self.follow_rollback(rescued, watch)?;
             self.sim.events().iter().skip(known_events).for_each(|event| watch.event(event));
-            let mut written = self.outputs.write_due(&self.sim)?;
+            let mut written = self.outputs.write_due(&self.sim, &self.leader)?;
             // The clock on the wall decides when the state is kept, never what it is.
             written.checkpoint |= self.last_checkpoint.0.elapsed().as_secs_f64() >= self.last_checkpoint.1;
             if written.checkpoint {
@@ -210,8 +211,8 @@ impl<const D: usize> Runner<D> {
             self.write_removed()?;
             return Ok(RunStatus::Interrupted);
         }
-        device::fetch(&mut self.sim, &self.leader)?;
-        self.outputs.finish(&self.sim)?;
+        device::fetch(&mut self.sim, &self.leader, self.outputs.read_water(None))?;
+        self.outputs.finish(&self.sim, &self.leader)?;
         self.write_removed()?;
         Ok(RunStatus::Finished)
     }
@@ -276,7 +277,7 @@ impl<const D: usize> Runner<D> {
 
     /// Writes the checkpoint, of outputs that are on the disk.
     fn save_checkpoint(&mut self) -> Result<()> {
-        device::fetch(&mut self.sim, &self.leader)?;
+        device::fetch(&mut self.sim, &self.leader, false)?;
         self.outputs.sync()?;
         self.write_checkpoint(self.sim.rollbacks().len(), self.outputs.positions())
     }
@@ -286,7 +287,17 @@ impl<const D: usize> Runner<D> {
     fn write_checkpoint(&mut self, rollbacks: usize, outputs: OutputPositions) -> Result<()> {
         let (time, wall, cpu) = (self.sim.time(), self.wall_seconds(), self.cpu_seconds());
         let now = Checkpoint { time, wall_seconds: wall, cpu_seconds: cpu, outputs, ..self.checkpoint.clone() };
-        now.write(&self.folder, self.last_checkpoint_valid, |out| self.sim.write_state(rollbacks, out))?;
+        self.leader.order(Order::Save { rollbacks }, time)?;
+        let mut is_given = false;
+        let written = now.write(&self.folder, self.last_checkpoint_valid, |out| {
+            is_given = true;
+            self.sim.write_state(rollbacks, out)
+        });
+        if !is_given {
+            // The others give what the file cannot take.
+            let _ = self.sim.write_state(rollbacks, &mut io::sink());
+        }
+        written?;
         (self.last_checkpoint_valid, self.last_checkpoint.0) = (true, Instant::now());
         Ok(())
     }
@@ -296,7 +307,7 @@ impl<const D: usize> Runner<D> {
         let mut reports = Vec::new();
         if let Some(fault) = &error.fault {
             // Whatever of this fails, the fault itself is what the user must hear.
-            reports.push(self.outputs.write_last_frame(&self.sim));
+            reports.push(self.outputs.write_last_frame(&self.sim, &self.leader));
             reports.push(self.write_removed());
             let text = serde_json::to_vec_pretty(fault).unwrap_or_default();
             reports.push(write_atomically(&self.folder.join(run_folder::FAILURE), &text));

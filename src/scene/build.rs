@@ -26,6 +26,7 @@ use crate::{
     math::{Bounds, Pose, Vector, in_dimension},
     model::{Model, TimeScheme},
     plan::{ControlPlan, FramesPlan, Plan},
+    ranks::Ranks,
     simulation::{Driving, OpenBoundary, Setup, TowedFrame},
     solid::{Constraints, Role, SolidSpec, TimeFunction},
     system::{Periodic, buffer_length, check_open_boundary, periodic},
@@ -118,18 +119,26 @@ impl Scene {
     /// `Usage` if `D` is not the scene's dimension; `Scene` if the scene is wrong, a shape is not valid,
     /// a body sinks that should float, or the particles are too many; `File` if a table cannot be read.
     pub fn build<const D: usize>(&self) -> Result<BuiltScene<D>> {
-        let built = in_dimension((), |()| self.build_2d(), |()| self.build_3d());
+        self.build_on(&Ranks::default())
+    }
+
+    /// As [`Scene::build`], with the work of the filling shared among the `ranks`, of which each has the whole.
+    ///
+    /// # Errors
+    /// As [`Scene::build`]; `Usage` if another rank cannot open its files.
+    pub(crate) fn build_on<const D: usize>(&self, ranks: &Ranks) -> Result<BuiltScene<D>> {
+        let built = in_dimension((), |()| self.build_2d(ranks), |()| self.build_3d(ranks));
         built.unwrap_or_else(|| Err(self.other_dimension(D)))
     }
 
     #[inline(never)]
-    fn build_2d(&self) -> Result<BuiltScene<2>> {
-        self.parts()?.fill()
+    fn build_2d(&self, ranks: &Ranks) -> Result<BuiltScene<2>> {
+        ranks.agree(self.parts(), |_| String::new())?.fill(ranks)
     }
 
     #[inline(never)]
-    fn build_3d(&self) -> Result<BuiltScene<3>> {
-        self.parts()?.fill()
+    fn build_3d(&self, ranks: &Ranks) -> Result<BuiltScene<3>> {
+        ranks.agree(self.parts(), |_| String::new())?.fill(ranks)
     }
 
     fn other_dimension(&self, asked: usize) -> Error {
@@ -346,11 +355,11 @@ impl<const D: usize> SceneParts<D> {
         self.scene.size_estimate(&self.scene.context(), &self.water, &self.model, &self.placed.specs)
     }
 
-    /// Creates the water particles.
+    /// Creates the water particles, with the work shared among the `ranks`, of which each has all.
     ///
     /// # Errors
     /// `Scene` if no water is left, or the plan of the run is wrong; `File` if a table cannot be read.
-    pub(crate) fn fill(self) -> Result<BuiltScene<D>> {
+    pub(crate) fn fill(self, ranks: &Ranks) -> Result<BuiltScene<D>> {
         let Self { scene, mut water, still, gravity_law, model, mut placed, constraints, domain, periodic, file_notes } =
             self;
         let (ctx, solids) = (&scene.context(), &placed.specs);
@@ -379,7 +388,7 @@ impl<const D: usize> SceneParts<D> {
             solids.iter().zip(&starts).map(|(s, start)| (&s.shape, start, rests(s))).collect();
         let spaces = placed.spaces(&starts);
         let inside = water.iter().map(|body| body.inside).collect();
-        let filling = Filling { regions: &regions, inside, solids: &solid_shapes, spaces: &spaces };
+        let filling = Filling { regions: &regions, inside, solids: &solid_shapes, spaces: &spaces, ranks };
         let Filled { water: mut filled, mut home, has_own_water } =
             filling.fill(scene.dp).map_err(|e| ctx.with_location(e, "water"))?;
         if scene.water.iter().any(|w| w.level.is_some() && w.fill.shape.is_some()) {

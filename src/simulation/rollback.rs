@@ -13,6 +13,8 @@ use std::{
 
 use serde::{Deserialize, Serialize};
 
+use crate::ranks::Ranks;
+
 /// Steps from one kept state to the next: a state costs about a step's time to keep, so this costs less than 1 %.
 const EVERY: u64 = 500;
 
@@ -79,6 +81,17 @@ impl StoredState {
                 Ok(bytes)
             }
         }
+    }
+}
+
+/// The state to go back to, of what this rank has stored: its own, if all ranks could read theirs, or that of the first. Empty if there
+/// is none. A state begins with the byte 1 if it has the water of a rank alone.
+pub(super) fn shared_state(ranks: &Ranks, own: Vec<u8>) -> Vec<u8> {
+    let all = ranks.gather_words([u32::from(!own.is_empty()), u32::from(own.first() == Some(&1))]);
+    match all[0][1] {
+        0 => ranks.gather_bytes(&own).swap_remove(0),
+        _ if all.iter().all(|[is_there, _]| *is_there == 1) => own,
+        _ => Vec::new(),
     }
 }
 

@@ -8,12 +8,14 @@ use super::{
     AxisSet, Escape, FaceExchange, System,
     driving::CurrentState,
     open_boundary::{Buffer, BufferTag},
-    own_water,
+    own_water::{self, OwnNames},
+    water_column::WaterColumn,
 };
 use crate::{
     error::{Error, ErrorKind, Result},
     interaction::PairSums,
     math::{Bivector, Matrix, Pose, Vector},
+    neighbours::Division,
     particles::Particles,
     solid::{Kinematics, Load, Solid},
     wavemaker::AbsorptionState,
@@ -26,7 +28,7 @@ const FARTHEST: f64 = 1e100;
 /// particles follow from their solids.
 #[derive(Serialize, Deserialize)]
 pub(crate) struct SystemState<'a, const D: usize> {
-    fluid: Cow<'a, Particles<D>>,
+    fluid: WaterState<'a, D>,
     /// Index of the original of each image; the images are the last of the fluid.
     images: Cow<'a, [u32]>,
     /// Along which axes each image is reflected; empty without a symmetry plane.
@@ -44,10 +46,46 @@ pub(crate) struct SystemState<'a, const D: usize> {
     accelerations: Vec<(Vector<D>, Bivector<D>)>,
     absorption: Vec<AbsorptionState>,
     stress: Cow<'a, [Matrix<D>]>,
-    gradient_correction: Cow<'a, [Matrix<D>]>,
+    gradient_correction: WaterColumn<'a, Matrix<D>>,
     /// Positions of the water and poses of the solids when the neighbour lists were built.
-    at_rebuild: (Cow<'a, [Vector<D>]>, Cow<'a, [Pose<D>]>),
+    at_rebuild: (WaterColumn<'a, Vector<D>>, Cow<'a, [Pose<D>]>),
     passes: u64,
+}
+
+/// Place, velocity, density and name of the water particles, as in [`Particles`].
+#[derive(Serialize, Deserialize)]
+struct WaterState<'a, const D: usize> {
+    r: WaterColumn<'a, Vector<D>>,
+    v: WaterColumn<'a, Vector<D>>,
+    rho: WaterColumn<'a, f64>,
+    id: WaterColumn<'a, u32>,
+}
+
+/// Which water a state has.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum SavedWater {
+    /// All, as the other ranks write it at the same time.
+    All,
+    /// That of this rank alone, if each has its own.
+    Own,
+}
+
+/// How the columns of the water are saved.
+struct Columns<'a> {
+    division: Option<&'a Division>,
+    which: SavedWater,
+}
+
+impl<'a> Columns<'a> {
+    fn of<T: Clone>(&self, all: &'a [T]) -> WaterColumn<'a, T> {
+        match (self.division, self.which) {
+            (None, _) => WaterColumn::Read(Cow::Borrowed(all)),
+            (Some(division), SavedWater::All) => WaterColumn::Shared(all, division),
+            (Some(division), SavedWater::Own) => {
+                WaterColumn::Own(all, division.own_water().map_or(&[][..], |(own, _)| own))
+            }
+        }
+    }
 }
 
 impl<const D: usize> SystemState<'_, D> {
@@ -59,11 +97,13 @@ impl<const D: usize> SystemState<'_, D> {
 
 impl<const D: usize> System<D> {
     /// The state from which [`System::restore`] continues with the same bits.
-    pub(crate) fn save(&self) -> SystemState<'_, D> {
+    pub(crate) fn save(&self, which: SavedWater) -> SystemState<'_, D> {
+        let Particles { r, v, rho, id } = &self.fluid.particles;
+        let column = Columns { division: own_water::divided(&self.neighbours), which };
         let of_solids = |solid: &Solid<D>| (solid.acceleration, solid.angular_acceleration);
         let density = (0u32..).zip(&self.boundary.particles.rho).map(|(i, &rho)| (i, rho));
         SystemState {
-            fluid: Cow::Borrowed(&self.fluid.particles),
+            fluid: WaterState { r: column.of(r), v: column.of(v), rho: column.of(rho), id: column.of(id) },
             images: Cow::Borrowed(&self.fluid.images.originals),
             reflections: Cow::Borrowed(&self.fluid.images.reflections),
             buffer: (
@@ -79,9 +119,12 @@ impl<const D: usize> System<D> {
             accelerations: self.solids.iter().map(of_solids).collect(),
             absorption: self.solids.iter().map(|s| s.absorption).collect(),
             stress: Cow::Borrowed(self.fluid.stress.as_deref().unwrap_or_default()),
-            gradient_correction: Cow::Borrowed(self.fluid.gradient_correction.as_deref().unwrap_or_default()),
+            gradient_correction: match &self.fluid.gradient_correction {
+                Some(corrections) => column.of(corrections),
+                None => WaterColumn::Read(Cow::Borrowed(&[])),
+            },
             at_rebuild: (
-                Cow::Borrowed(self.neighbours.positions_at_build()),
+                column.of(self.neighbours.positions_at_build()),
                 Cow::Borrowed(self.boundary.poses_at_rebuild.as_deref().unwrap_or_default()),
             ),
             passes: self.status.passes,
@@ -90,8 +133,9 @@ impl<const D: usize> System<D> {
 
     /// Whether `state` has the numbers of particles and solids of this system without the solids `gone`.
     fn matches(&self, state: &SystemState<D>, gone: &[usize]) -> bool {
-        let whole = |p: &Particles<D>| p.v.len() == p.len() && p.rho.len() == p.len() && p.id.len() == p.len();
-        let (count, solids) = (state.fluid.len(), self.solids.len());
+        let WaterState { r, v, rho, id } = &state.fluid;
+        let (count, solids) = (r.as_slice().len(), self.solids.len());
+        let whole = [v.as_slice().len(), rho.as_slice().len(), id.as_slice().len()].iter().all(|n| *n == count);
         let skin_gone: usize = gone.iter().map(|&i| self.solids[i].boundary.len()).sum();
         let tensors = |own: &Option<Vec<Matrix<D>>>, kept: &[Matrix<D>]| {
             kept.len() == if own.as_ref().is_none_or(Vec::is_empty) { 0 } else { count }
@@ -121,10 +165,10 @@ impl<const D: usize> System<D> {
             && state.absorption.len() == solids
             && state.absorption.iter().all(AbsorptionState::is_finite)
             && tensors(&self.fluid.stress, &state.stress)
-            && tensors(&self.fluid.gradient_correction, &state.gradient_correction)
-            && state.at_rebuild.0.len() == count
+            && tensors(&self.fluid.gradient_correction, state.gradient_correction.as_slice())
+            && state.at_rebuild.0.as_slice().len() == count
             && state.at_rebuild.1.len() == solids
-            && whole(&state.fluid)
+            && whole
     }
 
     /// Checks that [`System::restore`] can return to `state` once the solids `gone` are removed.
@@ -138,7 +182,7 @@ impl<const D: usize> System<D> {
         }
         // No run continues with water outside its domain, but images lie beyond periodic sides.
         let around = self.fluid_domain.domain.grown(self.fluid_domain.domain.size().max());
-        let near = state.at_rebuild.0.iter().chain(state.fluid.r.iter()).all(|x| around.contains(x));
+        let near = state.at_rebuild.0.as_slice().iter().chain(state.fluid.r.as_slice()).all(|x| around.contains(x));
         // A solid takes no particle further than the furthest corner of the box around them.
         let poses = state.at_rebuild.1.iter().chain(state.kinematics.iter().map(|kinematics| &kinematics.pose));
         let boxes = self.boundary.local_bounds.iter().cycle();
@@ -149,16 +193,16 @@ impl<const D: usize> System<D> {
         Ok(())
     }
 
-    /// Returns to a saved state of the same scene, which [`System::check_state`] has let pass.
-    pub(crate) fn restore(&mut self, state: SystemState<D>) {
-        let (water, poses) = (state.at_rebuild.0, state.at_rebuild.1.into_owned());
+    /// Returns to a saved state of the same scene, which [`System::check_state`] has let pass, or to one of this rank's water, which
+    /// `own` names then.
+    pub(crate) fn restore(&mut self, state: SystemState<D>, own: Option<OwnNames>) {
+        let (water, poses) = (state.at_rebuild.0.into_vec(), state.at_rebuild.1.into_owned());
         let boundary = self.boundary.positions_at(&poses, &self.solids, &self.fluid.images);
         self.status.passes = state.passes;
-        own_water::set_apart(self, false);
-        self.fluid.particles = state.fluid.into_owned();
+        let WaterState { r, v, rho, id } = state.fluid;
+        let particles = Particles { r: r.into_vec(), v: v.into_vec(), rho: rho.into_vec(), id: id.into_vec() };
         self.fluid.stress = self.fluid.stress.take().map(|_| state.stress.into_owned());
-        self.fluid.gradient_correction =
-            self.fluid.gradient_correction.take().map(|_| state.gradient_correction.into_owned());
+        let corrections = self.fluid.gradient_correction.take().map(|_| state.gradient_correction.into_vec());
         let (tags, next_id, exchange) = state.buffer;
         self.driving.current = state.current;
         let rows = std::mem::take(&mut self.fluid.buffer.rows);
@@ -181,7 +225,15 @@ impl<const D: usize> System<D> {
             (solid.acceleration, solid.angular_acceleration) = rates;
             solid.absorption = yielding;
         }
-        self.neighbours.build(&water, &boundary);
+        self.pair_loop.free_buffers();
+        match own {
+            Some(own) => own_water::restore(self, own, (particles, corrections), &water, &boundary),
+            None => {
+                own_water::set_apart(self, false);
+                (self.fluid.particles, self.fluid.gradient_correction) = (particles, corrections);
+                self.neighbours.build(&water, &boundary);
+            }
+        }
         self.rates.boundary.resize(self.neighbours.boundary_near_fluid().len(), PairSums::zero());
         self.boundary.poses_at_rebuild = Some(poses);
         self.find_gaps(&boundary);

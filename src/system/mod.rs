@@ -24,9 +24,10 @@ mod symmetric_setup;
 pub(crate) mod symmetry;
 mod thin_layers;
 mod view;
+mod water_column;
 
 pub(crate) use boundary::Boundary;
-pub(crate) use checkpoint::SystemState;
+pub(crate) use checkpoint::{SavedWater, SystemState};
 use driving::DrivingState;
 pub use driving::{Current, Driving, TowedFrame};
 pub(crate) use driving::{driven_speeds, set_gravity_at, update_current};
@@ -333,7 +334,8 @@ impl<const D: usize> System<D> {
     pub(crate) fn rebuild_within_step(&mut self, at_start: &mut WaterAtStart<D>) {
         if self.needs_rebuild() {
             self.pair_loop.free_buffers();
-            let columns = own_water::is_apart(&self.neighbours).then(|| own_water::share_out(self, Some(at_start)));
+            let columns =
+                own_water::is_apart(&self.neighbours).then(|| own_water::share_out(self, Some(at_start), false));
             self.rebuild_lists(columns);
         }
     }
@@ -360,7 +362,7 @@ impl<const D: usize> System<D> {
         self.pair_loop.free_buffers();
         let mut dried = self.neighbours.boundary_near_fluid().to_vec();
         if own_water::is_apart(&self.neighbours) {
-            let columns = columns.unwrap_or_else(|| own_water::share_out(self, None));
+            let columns = columns.unwrap_or_else(|| own_water::share_out(self, None, false));
             let next = own_water::take_next_slab(self, &columns);
             self.neighbours.build_own(&columns, &self.fluid.particles.r, &next, &self.boundary.particles.r);
         } else {

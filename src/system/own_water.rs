@@ -79,15 +79,36 @@ pub(super) fn divide_at_start<const D: usize>(system: &mut System<D>) {
     set_apart(system, true);
 }
 
-/// Completes the water and its sums of the last force pass on the first rank, or on all if `everyone`.
+/// Completes the water on the first rank, or on all if `everyone`: there with the sums of the last force pass and the gradient
+/// corrections.
 pub(crate) fn gather<const D: usize>(system: &mut System<D>, everyone: bool) {
     let Some(division) = division(&system.neighbours).filter(|division| division.is_apart) else { return };
     let is_first = division.ranks.rank() == 0;
-    system.pair_loop.share_fluid_sums(&system.neighbours, everyone);
+    if everyone {
+        system.pair_loop.share_fluid_sums(&system.neighbours);
+    }
     let Fluid { particles, gradient_correction, .. } = &mut system.fluid;
-    system.neighbours.share_water(particles, gradient_correction.as_deref_mut(), everyone);
+    system.neighbours.share_water(particles, gradient_correction.as_deref_mut().filter(|_| everyone), everyone);
     set_apart(system, !everyone);
     system.status.has_all_water = everyone || is_first;
+}
+
+/// Gives the first rank the places and velocities of all water, for which the lists have just been made.
+pub(crate) fn gather_places<const D: usize>(system: &mut System<D>) {
+    let Some(division) = divided(&system.neighbours) else { return };
+    let (is_first, own) = (division.ranks.rank() == 0, division.own_water().map_or(&[][..], |(own, _)| own));
+    let give = |water: &&mut Particles<D>, i: usize, numbers: &mut Vec<f64>| {
+        numbers.extend(water.r[i].iter().chain(water.v[i].iter()));
+    };
+    let take = |water: &mut &mut Particles<D>, i: usize, numbers: &[f64]| {
+        if is_first {
+            water.take_motion(i, numbers);
+        }
+    };
+    division.share_water(own, &mut (&mut system.fluid.particles), 2 * D, give, take);
+    if is_first {
+        system.neighbours.find_at(&system.fluid.particles.r);
+    }
 }
 
 /// Whether ranks lack the present water of others: the same for all ranks.
@@ -113,6 +134,27 @@ pub(crate) fn combine_checks<const D: usize>(system: &mut System<D>) {
         |[low, high, valid]: [u32; 3]| StepCheck { max_displacement2: ranks::from_words(low, high), valid: valid != 0 };
     system.status.step_check = all.into_iter().map(check).fold(StepCheck::INITIAL, StepCheck::combine);
     set_apart(system, true);
+}
+
+/// The least of the numbers of particles that the ranks name, each of its own water if it has that alone. All ranks get the state of that
+/// particle.
+pub(super) fn share_first<const D: usize>(system: &mut System<D>, own: Option<usize>) -> Option<usize> {
+    let Some(division) = divided(&system.neighbours) else { return own };
+    let named = division.ranks.gather_words([own.map_or(u32::MAX, |i| i as u32)]);
+    let first = named.into_iter().map(|[i]| i).min().filter(|&i| i < u32::MAX)?;
+    let these = own.filter(|&i| i == first as usize).map_or(Vec::new(), |i| vec![i as u32]);
+    let give = |water: &&mut Particles<D>, i: usize, numbers: &mut Vec<f64>| water.give(i, numbers);
+    let take = |water: &mut &mut Particles<D>, i: usize, numbers: &[f64]| water.take(i, numbers);
+    division.share_water(&these, &mut (&mut system.fluid.particles), Particles::<D>::NUMBERS, give, take);
+    Some(first as usize)
+}
+
+/// Gives all ranks the state of particle `i`.
+pub(crate) fn tell_of<const D: usize>(system: &mut System<D>, i: usize) {
+    let is_own = divided(&system.neighbours)
+        .and_then(Division::own_water)
+        .is_some_and(|(_, is_own)| is_own.get(i) == Some(&true));
+    share_first(system, is_own.then_some(i));
 }
 
 /// The division of the water, if each rank advances its own.
@@ -151,9 +193,69 @@ pub(super) fn share_boundary_velocity<const D: usize>(neighbours: &NeighbourList
     division.share_boundary(&mut { v }, D, give, take);
 }
 
-/// Shares the slabs out anew and gives each particle, with its state in `start`, to the rank that has its slab now. Returns the columns
-/// for new lists.
-pub(super) fn share_out<const D: usize>(system: &mut System<D>, start: Option<&mut WaterAtStart<D>>) -> Columns<D> {
+/// The numbers of a rank's water particles in ascending order, and how many all ranks have.
+pub(crate) type OwnNames = (Vec<u32>, usize);
+
+/// How ranks share the water, if each has its own and none needs to have that of others.
+pub(super) fn divided<const D: usize>(neighbours: &NeighbourLists<D>) -> Option<&Division> {
+    division(neighbours).filter(|division| division.is_apart)
+}
+
+/// The names of this rank's water, if ranks lack that of others.
+pub(crate) fn own_names<const D: usize>(system: &System<D>) -> Option<OwnNames> {
+    let (own, _) = divided(&system.neighbours)?.own_water()?;
+    Some((own.to_vec(), system.fluid.particles.len()))
+}
+
+/// Gives each rank `water` with gradient corrections that it had stored, of the particles `own`, and makes the lists for the places
+/// `then` (m) of these and for the places `boundary` (m). The ranks may part it otherwise now.
+pub(super) fn restore<const D: usize>(
+    system: &mut System<D>,
+    (own, count): OwnNames,
+    (water, corrections): (Particles<D>, Option<Vec<Matrix<D>>>),
+    then: &[Vector<D>],
+    boundary: &[Vector<D>],
+) {
+    let mut now = Particles::unwritten(count);
+    scatter(&mut now.r, &water.r, &own);
+    scatter(&mut now.v, &water.v, &own);
+    scatter(&mut now.rho, &water.rho, &own);
+    scatter(&mut now.id, &water.id, &own);
+    drop(water);
+    system.fluid.particles = Particles::unwritten(count);
+    scatter(&mut system.fluid.particles.r, then, &own);
+    system.fluid.gradient_correction = corrections.map(|corrections| {
+        let mut all = zeros(count);
+        scatter(&mut all, &corrections, &own);
+        all
+    });
+    if let Some(division) = system.neighbours.division_mut() {
+        division.by_owner = true;
+        division.set_own_water(own, count);
+    }
+    set_apart(system, true);
+    let mut now = WaterAtStart(now);
+    let columns = share_out(system, Some(&mut now), true);
+    let next = take_next_slab(system, &columns);
+    system.neighbours.build_own(&columns, &system.fluid.particles.r, &next, boundary);
+    system.fluid.particles = now.0;
+    if let Some(corrections) = &mut system.fluid.gradient_correction {
+        take_next_corrections(&system.neighbours, corrections);
+    }
+}
+
+/// Sets the items `these` of `all`.
+fn scatter<T: Copy>(all: &mut [T], items: &[T], these: &[u32]) {
+    these.iter().zip(items).for_each(|(&i, item)| all[i as usize] = *item);
+}
+
+/// Shares the slabs out anew and gives each particle, with its state in `start` and, if `corrected`, its gradient correction, to the rank
+/// that has its slab now. Returns the columns for new lists.
+pub(super) fn share_out<const D: usize>(
+    system: &mut System<D>,
+    start: Option<&mut WaterAtStart<D>>,
+    corrected: bool,
+) -> Columns<D> {
     let columns = system.neighbours.share_out(&system.fluid.particles.r);
     let count = system.fluid.particles.len();
     let Some(division) = division(&system.neighbours) else { return columns };
@@ -163,21 +265,28 @@ pub(super) fn share_out<const D: usize>(system: &mut System<D>, start: Option<&m
     let (mut own, leaving): (Vec<u32>, Vec<u32>) = own.iter().partition(|&&i| owner(&now.r[i as usize]) == rank);
     let mut arrived = Vec::new();
     let numbers = Particles::<D>::NUMBERS;
-    let width = if start.is_some() { 2 * numbers } else { numbers };
-    type Data<'a, const D: usize> = (&'a mut Particles<D>, Option<&'a mut Particles<D>>);
-    let give = |(now, start): &Data<'_, D>, i: usize, numbers: &mut Vec<f64>| {
+    let Fluid { particles, gradient_correction, .. } = &mut system.fluid;
+    let corrections = gradient_correction.as_mut().filter(|_| corrected);
+    let start = start.map(|WaterAtStart(start)| start);
+    let states = if start.is_some() { 2 } else { 1 };
+    let width = states * numbers + if corrections.is_some() { D * D } else { 0 };
+    type Data<'a, const D: usize> =
+        (&'a mut Particles<D>, Option<&'a mut Particles<D>>, Option<&'a mut Vec<Matrix<D>>>);
+    let give = |(now, start, corrections): &Data<'_, D>, i: usize, numbers: &mut Vec<f64>| {
         now.give(i, numbers);
         start.iter().for_each(|start| start.give(i, numbers));
+        corrections.iter().for_each(|corrections| numbers.extend(corrections[i].iter()));
     };
-    let take = |(now, start): &mut Data<'_, D>, i: usize, given: &[f64]| {
+    let take = |(now, start, corrections): &mut Data<'_, D>, i: usize, given: &[f64]| {
         if owner(&Vector::from_column_slice(&given[..D])) == rank {
             now.take(i, given);
             start.iter_mut().for_each(|start| start.take(i, &given[numbers..]));
+            let correction = &given[states * numbers..];
+            corrections.iter_mut().for_each(|all| all[i] = Matrix::from_column_slice(correction));
             arrived.push(i as u32);
         }
     };
-    let start = start.map(|WaterAtStart(start)| start);
-    division.share_water(&leaving, &mut (&mut system.fluid.particles, start), width, give, take);
+    division.share_water(&leaving, &mut (particles, start, corrections), width, give, take);
     own.extend(arrived);
     own.sort_unstable();
     if let Some(division) = system.neighbours.division_mut() {
@@ -189,7 +298,7 @@ pub(super) fn share_out<const D: usize>(system: &mut System<D>, start: Option<&m
 /// Sorts the water along the columns, as [`System::sort_water`] does, where each rank has its own: takes out what has left the domain,
 /// and gives every rank what was taken out. Returns the columns for new lists, if no more than the order has changed.
 pub(super) fn sort<const D: usize>(system: &mut System<D>) -> (Option<Columns<D>>, Vec<RemovedParticle<D>>) {
-    let columns = share_out(system, None);
+    let columns = share_out(system, None, false);
     let mut order = system.neighbours.own_order(&columns, &system.fluid.particles.r);
     let removed = system.remove_outside(&mut order);
     let Some(division) = division(&system.neighbours) else { return (None, removed) };

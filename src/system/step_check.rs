@@ -195,32 +195,39 @@ impl<const D: usize> System<D> {
         }
     }
 
-    /// The first water particle that has left the valid range, with what is wrong and its usual cause.
-    pub(crate) fn first_invalid_particle(&self) -> Option<LimitViolation> {
+    /// The first water particle that has left the valid range, with what is wrong and its usual cause. All ranks get its state.
+    pub(crate) fn first_invalid_particle(&mut self) -> Option<LimitViolation> {
         if self.status.step_check.valid {
             return None;
         }
-        let ValidRange { speed2, rho: [least, most], domain } = self.valid_range();
-        let bad = |i: usize| {
-            let (r, v, rho) = (&self.fluid.particles.r[i], &self.fluid.particles.v[i], self.fluid.particles.rho[i]);
-            let finite = r.iter().chain(v.iter()).all(|x| x.is_finite()) && rho.is_finite();
-            if !finite {
-                Some((ErrorCode::NonFiniteState, "non-finite state", NON_FINITE))
-            } else if v.norm_squared() > speed2 {
-                Some((ErrorCode::SpeedLimit, "speed too near the speed of sound (guard.speed)", TOO_FAST))
-            } else if !(least..=most).contains(&rho) {
-                Some((ErrorCode::DensityLimit, "density out of bounds (guard.density)", TOO_FAST))
-            } else if !domain.contains(r) {
-                Some((ErrorCode::LeftDomain, "escape from the domain", ESCAPED))
-            } else {
-                None
-            }
+        let count = self.fluid.particles.len();
+        let (these, own) = if own_water::is_apart(&self.neighbours) {
+            own_water::own(&self.neighbours, count)
+        } else {
+            (0..count, None)
         };
-        let i = (0..self.fluid.particles.len())
-            .into_par_iter()
-            .with_min_len(PARTICLES_PER_TASK)
-            .find_first(|&i| bad(i).is_some())?;
-        bad(i).map(|(code, what, cause)| (i, code, what, cause))
+        let is_bad = |i: &usize| own.is_none_or(|own| own[*i]) && self.violation(*i).is_some();
+        let first = these.into_par_iter().with_min_len(PARTICLES_PER_TASK).find_first(is_bad);
+        let i = own_water::share_first(self, first)?;
+        self.violation(i).map(|(code, what, cause)| (i, code, what, cause))
+    }
+
+    /// What is wrong with water particle `i`, and its usual cause.
+    fn violation(&self, i: usize) -> Option<(ErrorCode, &'static str, &'static str)> {
+        let ValidRange { speed2, rho: [least, most], domain } = self.valid_range();
+        let (r, v, rho) = (&self.fluid.particles.r[i], &self.fluid.particles.v[i], self.fluid.particles.rho[i]);
+        let finite = r.iter().chain(v.iter()).all(|x| x.is_finite()) && rho.is_finite();
+        if !finite {
+            Some((ErrorCode::NonFiniteState, "non-finite state", NON_FINITE))
+        } else if v.norm_squared() > speed2 {
+            Some((ErrorCode::SpeedLimit, "speed too near the speed of sound (guard.speed)", TOO_FAST))
+        } else if !(least..=most).contains(&rho) {
+            Some((ErrorCode::DensityLimit, "density out of bounds (guard.density)", TOO_FAST))
+        } else if !domain.contains(r) {
+            Some((ErrorCode::LeftDomain, "escape from the domain", ESCAPED))
+        } else {
+            None
+        }
     }
 
     /// Takes those water particles out of `order` that have left the domain, if that is what becomes of them.

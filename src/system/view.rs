@@ -5,13 +5,13 @@ use std::{collections::BTreeMap, time::Duration};
 use rayon::prelude::*;
 
 use super::{
-    Driving, FaceExchange, Fluid, OpenBoundary, Periodic, System, reflected,
+    Driving, FaceExchange, Fluid, OpenBoundary, Periodic, System, own_water, reflected,
     symmetry::{SymmetryPlanes, reflected_turn},
 };
 use crate::{
     math::{Bivector, Bounds, Pose, Vector},
     model::{Model, TimeScheme},
-    neighbours::CHUNK,
+    neighbours::{CHUNK, Division},
     particles::{ParticlesView, optional_bytes},
     solid::{Constraints, Load, LoadContext, Role, Solid},
     sph::{FluidProperties, boundary::WallExtrapolation},
@@ -31,6 +31,11 @@ impl<const D: usize> System<D> {
     /// The water.
     pub fn fluid(&self) -> ParticlesView<'_, D> {
         self.fluid.particles.first_n(self.particle_count())
+    }
+
+    /// How ranks share the water, if each has its own and none needs to have that of others.
+    pub(crate) fn divided_water(&self) -> Option<&Division> {
+        own_water::divided(&self.neighbours)
     }
 
     /// The boundary particles of all solids.

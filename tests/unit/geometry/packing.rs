@@ -32,3 +32,37 @@ fn spreading_damps_an_alternating_shift_of_a_cubic_lattice() {
     let off = points.iter().zip(&inner).map(|(x, at)| (x - at).norm()).fold(0.0, f64::max);
     assert!(off < 0.01, "{off} dp off the lattice");
 }
+
+/// Each rank moves its own chunks of the points, some of them none, and has all of them after each pass. Whoever moves a point, its
+/// place has the same bits.
+#[test]
+fn ranks_share_the_spreading_and_have_the_same_points() {
+    let place =
+        |k: i32| Vector::from([(k % 12) as f64 + 0.2 * f64::from(k).sin(), (k / 12 % 12) as f64, (k / 144) as f64]);
+    let start: Vec<Vector<3>> = (0..12 * 144).map(place).collect();
+    // Three chunks and a part of one.
+    let movable = 3 * CHUNK + 40;
+    let confine = |_: usize, from: &Vector<3>, x: &mut Vector<3>| {
+        if x[0] < 0.1 {
+            *x = *from;
+        }
+        0.3
+    };
+    let mut alone = start.clone();
+    spread_points(&mut alone, movable, 1.0, confine);
+    assert!(alone[..movable] != start[..movable] && alone[movable..] == start[movable..]);
+    for count in [2, 5] {
+        let shared: Vec<_> = std::thread::scope(|scope| {
+            let start = &start;
+            let work = move |ranks: Ranks| {
+                let mut points = start.clone();
+                spread_points_on(&ranks, &mut points, movable, 1.0, confine);
+                points
+            };
+            let threads: Vec<_> =
+                Ranks::in_threads(count).into_iter().map(|ranks| scope.spawn(move || work(ranks))).collect();
+            threads.into_iter().map(|thread| thread.join().unwrap()).collect()
+        });
+        assert!(shared.into_iter().all(|points| points == alone), "{count} ranks");
+    }
+}

@@ -7,7 +7,10 @@ use crate::output::FrameSequence;
 fn points_in_2d_are_written_with_a_third_coordinate_and_a_vertex_each() -> io::Result<()> {
     for points in [vec![Vector::<2>::new(1.0, 2.0), Vector::<2>::new(3.0, 4.0)], vec![]] {
         let numbers: Vec<f32> = points.iter().map(|x| x[0] as f32).collect();
-        let file = points_vtu(&points, vec![DataArray::new("density", 1, numbers.clone())])?;
+        let density = DataArray::new("density", 1, numbers.clone()).into();
+        let file =
+            vtu::write_vertices(points.len(), |use_piece| use_piece(&Values::F32(to_3d(&points))), vec![density])?;
+        let file = file.parts().concat();
         let (read, fields) = vtu::read_points(&file).map_err(io::Error::other)?;
         let expected = if points.is_empty() { vec![] } else { vec![1.0, 2.0, 0.0, 3.0, 4.0, 0.0] };
         assert_eq!((read, fields), (expected, vec![DataArray::new("density", 1, numbers)]));

@@ -112,7 +112,8 @@ fn a_block_header_with_wrong_sizes_is_refused() {
     }
     // A block with more or fewer bytes than its header declares.
     let mut data = Vec::new();
-    append_blocks(&[1_u8; 100], u8::to_le_bytes, &mut data).unwrap();
+    let array = DataArray { name: "ones".into(), components: 1, values: Values::U8(vec![1; 100]) };
+    append_blocks(array.into(), &mut data).unwrap();
     assert_eq!(decompress(&data, 8), Some(vec![1; 100]));
     for partial in [99, 101] {
         data[16] = partial;
