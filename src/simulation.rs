@@ -9,6 +9,7 @@ mod external_bodies;
 mod on_device;
 mod rollback;
 mod constraints;
+mod state_bytes;
 
 use std::{
     borrow::Cow,
@@ -32,6 +33,7 @@ pub use dimension::{Compiled, Dimension};
 #[cfg(feature = "gpu")]
 use on_device::OnDevice;
 use rollback::{RollbackControl, StoredState};
+use state_bytes::{ToTheEnd, bytes_of, read};
 
 use crate::{
     coupling::{Accounting, AccountingState, AcousticAddedMass, Bodies, BodiesState, Hook, Interval, Moorings},
@@ -43,7 +45,7 @@ use crate::{
     solid::{ContactForce, Dim, HasEngine as _, Role, SolidSpec, constraint::assembly::Assembly},
     system::{
         LimitViolation, SavedWater, System, SystemState,
-        own_water::{self, OwnNames},
+        own_water::{self, OwnNames, WaterAtSetup},
         set_buffer_time, set_gravity_at, update_buffer, update_current,
     },
     time_integration::{Stepper, step_size},
@@ -90,17 +92,6 @@ struct Clock {
     time: f64,
     dt: f64,
     steps: u64,
-}
-
-/// What comes together at set-up where each rank has its own water.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum WaterAtSetup {
-    /// All, on all ranks.
-    All,
-    /// All, on the first rank.
-    First,
-    /// Places and velocities, on the first rank, as the checks of a run before its first step read them.
-    Places,
 }
 
 /// The state of a simulation in a checkpoint; what is large is borrowed where it is written.
@@ -356,13 +347,13 @@ impl<const D: usize> Simulation<D> {
         let stored = self.rollback.state_before(&error.message, self.clock.steps, self.clock.time, shared);
         let Some(good) = stored else { return Err(error) };
         let rescue = std::mem::take(&mut self.rollback);
-        let (own, kept): (Option<OwnNames>, SimulationState<'static, D>) = read(&good)?;
+        let (own, state): (Option<OwnNames>, SimulationState<'static, D>) = read(&good)?;
         drop(good);
         let planned = match own {
-            Some(_) => self.planned_removals(&kept.removed_solids),
-            None => self.check_state(&kept)?,
+            Some(_) => self.planned_removals(&state.removed_solids),
+            None => self.check_state(&state)?,
         };
-        self.take_state(kept, &planned, own)?;
+        self.take_state(state, &planned, own)?;
         self.rollback = rescue;
         Ok(())
     }
@@ -626,24 +617,24 @@ impl<const D: usize> Simulation<D> {
         self.take_state(kept, &planned, None)
     }
 
-    /// Takes the state `kept` once the solids `planned` are removed; `own` are the names of its water, if that is this rank's alone.
+    /// Takes this `state` once the solids `planned` are removed; `own` are the names of its water, if that is this rank's alone.
     fn take_state(
         &mut self,
-        kept: SimulationState<'static, D>,
+        state: SimulationState<'static, D>,
         planned: &[usize],
         own: Option<OwnNames>,
     ) -> Result<()> {
         self.delete_solids(planned);
-        self.bodies.restore(kept.bodies, kept.clock.steps)?;
-        self.system.restore(kept.system, own);
-        if let (Some(accounting), Some(state)) = (&mut self.bodies.accounting, kept.accounting) {
-            accounting.restore(state);
+        self.bodies.restore(state.bodies, state.clock.steps)?;
+        self.system.restore(state.system, own);
+        if let (Some(accounting), Some(accounts)) = (&mut self.bodies.accounting, state.accounting) {
+            accounting.restore(accounts);
         }
-        (self.stepper, self.clock) = (kept.stepper.into_owned(), kept.clock);
-        self.removed = kept.removed.into_owned();
+        (self.stepper, self.clock) = (state.stepper.into_owned(), state.clock);
+        self.removed = state.removed.into_owned();
         set_gravity_at(&mut self.system, self.clock.time);
         self.system.set_masses_at(self.clock.time);
-        self.rollback.restart(kept.rollbacks.into_owned());
+        self.rollback.restart(state.rollbacks.into_owned());
         #[cfg(feature = "gpu")]
         on_device::load(self)?;
         Ok(())
@@ -672,41 +663,6 @@ impl<const D: usize> Simulation<D> {
         self.system.check_state(&kept.system, &planned)?;
         Ok(planned)
     }
-}
-
-/// What is written to the end of a state, also after an error of the file: other ranks know of none, and go on with the exchange.
-struct ToTheEnd<'a> {
-    out: &'a mut dyn Write,
-    failure: Option<io::Error>,
-}
-
-impl Write for ToTheEnd<'_> {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        if self.failure.is_none() {
-            self.failure = self.out.write_all(bytes).err();
-        }
-        Ok(bytes.len())
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        if self.failure.is_none() {
-            self.failure = self.out.flush().err();
-        }
-        Ok(())
-    }
-}
-
-/// The bytes of a state.
-fn bytes_of(state: &impl Serialize) -> Result<Vec<u8>> {
-    let cannot = |e: postcard::Error| Error::new(ErrorKind::Restart, format!("cannot write the state: {e}"));
-    let length = postcard::experimental::serialized_size(state).map_err(cannot)?;
-    postcard::to_extend(state, Vec::with_capacity(length)).map_err(cannot)
-}
-
-/// The state of these bytes.
-fn read<T: serde::de::DeserializeOwned>(bytes: &[u8]) -> Result<T> {
-    postcard::from_bytes(bytes)
-        .map_err(|e| Error::new(ErrorKind::Restart, format!("the checkpoint's state is damaged: {e}")))
 }
 
 const NO_STEP: &str = "The accelerations are not finite, or the end lies in the past.";

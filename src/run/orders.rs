@@ -10,8 +10,9 @@ use crate::{
     plan::{ControlChange, FramesPlan, Plan},
     ranks::{Ranks, from_words, words_of},
     scene::{BuiltScene, Scene},
-    simulation::{Dimension, Setup, Simulation, WaterAtSetup},
+    simulation::{Dimension, Setup, Simulation},
     solid::Dim,
+    system::own_water::WaterAtSetup,
 };
 
 /// What the first rank tells the others.

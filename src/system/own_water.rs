@@ -15,6 +15,17 @@ use crate::{
     solid::Role,
 };
 
+/// What comes together at set-up where each rank has its own water.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum WaterAtSetup {
+    /// All, on all ranks.
+    All,
+    /// All, on the first rank.
+    First,
+    /// Places and velocities, on the first rank, as the checks of a run before its first step read them.
+    Places,
+}
+
 /// Whether no part of a step of `system` at time `t` (s) reads water of other ranks, but through pairs.
 pub(crate) fn may_be_divided<const D: usize>(system: &System<D>, t: f64) -> bool {
     let (model, fluid) = (&system.model, &system.fluid);
