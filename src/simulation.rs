@@ -8,6 +8,7 @@ mod external_bodies;
 #[cfg(feature = "gpu")]
 mod on_device;
 mod rollback;
+mod state_bytes;
 mod constraints;
 
 use std::{
@@ -32,6 +33,7 @@ pub use dimension::{Compiled, Dimension};
 #[cfg(feature = "gpu")]
 use on_device::OnDevice;
 use rollback::{RollbackControl, StoredState};
+use state_bytes::{bytes_of, read, write_to_the_end};
 
 use crate::{
     coupling::{Accounting, AccountingState, AcousticAddedMass, Bodies, BodiesState, Hook, Interval, Moorings},
@@ -357,10 +359,8 @@ impl<const D: usize> Simulation<D> {
         let rescue = std::mem::take(&mut self.rollback);
         let (own, kept): (Option<OwnNames>, SimulationState<'static, D>) = read(&good)?;
         drop(good);
-        let planned = match own {
-            Some(_) => self.planned_removals(&kept.removed_solids),
-            None => self.check_state(&kept)?,
-        };
+        let planned =
+            if own.is_some() { self.planned_removals(&kept.removed_solids) } else { self.check_state(&kept)? };
         self.take_state(kept, &planned, own)?;
         self.rollback = rescue;
         Ok(())
@@ -586,9 +586,7 @@ impl<const D: usize> Simulation<D> {
     /// call this: the first writes all water, and has a piece of that of the others at a time.
     pub(crate) fn write_state(&self, rollbacks: usize, out: &mut dyn Write) -> io::Result<()> {
         let state = self.state(rollbacks, SavedWater::All).map_err(|e| io::Error::other(e.message))?;
-        let mut out = ToTheEnd { out, failure: None };
-        let written = postcard::to_io(&state, &mut out).map(drop).map_err(io::Error::other);
-        out.failure.map_or(written, Err)
+        write_to_the_end(&state, out)
     }
 
     /// The state with the first `rollbacks` rollbacks.
@@ -620,29 +618,29 @@ impl<const D: usize> Simulation<D> {
     }
 
     fn restore_state(&mut self, bytes: &[u8]) -> Result<()> {
-        let kept: SimulationState<'static, D> = read(bytes)?;
+        let kept = read::<SimulationState<'static, D>>(bytes)?;
         let planned = self.check_state(&kept)?;
         self.take_state(kept, &planned, None)
     }
 
-    /// Takes the state `kept` once the solids `planned` are removed; `own` are the names of its water, if that is this rank's alone.
+    /// Takes the state `state` once the solids `planned` are removed; `own` are the names of its water, if that is this rank's alone.
     fn take_state(
         &mut self,
-        kept: SimulationState<'static, D>,
+        state: SimulationState<'static, D>,
         planned: &[usize],
         own: Option<OwnNames>,
     ) -> Result<()> {
         self.delete_solids(planned);
-        self.bodies.restore(kept.bodies, kept.clock.steps)?;
-        self.system.restore(kept.system, own);
-        if let (Some(accounting), Some(state)) = (&mut self.bodies.accounting, kept.accounting) {
+        self.bodies.restore(state.bodies, state.clock.steps)?;
+        self.system.restore(state.system, own);
+        if let (Some(accounting), Some(state)) = (&mut self.bodies.accounting, state.accounting) {
             accounting.restore(state);
         }
-        (self.stepper, self.clock) = (kept.stepper.into_owned(), kept.clock);
-        self.removed = kept.removed.into_owned();
+        (self.stepper, self.clock) = (state.stepper.into_owned(), state.clock);
+        self.removed = state.removed.into_owned();
         set_gravity_at(&mut self.system, self.clock.time);
         self.system.set_masses_at(self.clock.time);
-        self.rollback.restart(kept.rollbacks.into_owned());
+        self.rollback.restart(state.rollbacks.into_owned());
         #[cfg(feature = "gpu")]
         on_device::load(self)?;
         Ok(())
@@ -671,41 +669,6 @@ impl<const D: usize> Simulation<D> {
         self.system.check_state(&kept.system, &planned)?;
         Ok(planned)
     }
-}
-
-/// What is written to the end of a state, also after an error of the file: other ranks know of none, and go on with the exchange.
-struct ToTheEnd<'a> {
-    out: &'a mut dyn Write,
-    failure: Option<io::Error>,
-}
-
-impl Write for ToTheEnd<'_> {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        if self.failure.is_none() {
-            self.failure = self.out.write_all(bytes).err();
-        }
-        Ok(bytes.len())
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        if self.failure.is_none() {
-            self.failure = self.out.flush().err();
-        }
-        Ok(())
-    }
-}
-
-/// The bytes of a state.
-fn bytes_of(state: &impl Serialize) -> Result<Vec<u8>> {
-    let cannot = |e: postcard::Error| Error::new(ErrorKind::Restart, format!("cannot write the state: {e}"));
-    let length = postcard::experimental::serialized_size(state).map_err(cannot)?;
-    postcard::to_extend(state, Vec::with_capacity(length)).map_err(cannot)
-}
-
-/// The state of these bytes.
-fn read<T: serde::de::DeserializeOwned>(bytes: &[u8]) -> Result<T> {
-    postcard::from_bytes(bytes)
-        .map_err(|e| Error::new(ErrorKind::Restart, format!("the checkpoint's state is damaged: {e}")))
 }
 
 const NO_STEP: &str = "The accelerations are not finite, or the end lies in the past.";
