@@ -8,8 +8,8 @@ mod external_bodies;
 #[cfg(feature = "gpu")]
 mod on_device;
 mod rollback;
-mod constraints;
 mod state_bytes;
+mod constraints;
 
 use std::{
     borrow::Cow,
@@ -33,7 +33,7 @@ pub use dimension::{Compiled, Dimension};
 #[cfg(feature = "gpu")]
 use on_device::OnDevice;
 use rollback::{RollbackControl, StoredState};
-use state_bytes::{ToTheEnd, bytes_of, read};
+use state_bytes::{bytes_of, read, write_to_the_end};
 
 use crate::{
     coupling::{Accounting, AccountingState, AcousticAddedMass, Bodies, BodiesState, Hook, Interval, Moorings},
@@ -205,12 +205,11 @@ impl<const D: usize> Simulation<D> {
         Ok(simulation)
     }
 
-    /// Advances by one step of the largest allowed length. If a guard raises an alarm, the simulation returns to a stored
-    /// state, some hundreds of steps old, and takes half steps for a while: see [`Simulation::rollbacks`].
+    /// Advances by one step of the largest allowed length. At the first alarm of a guard it rolls back to a good state
+    /// some hundred steps earlier, and halves the step for a while: see [`Simulation::rollbacks`].
     ///
     /// # Errors
-    /// `Fault` if a guard raises an alarm during the half steps, or for the fourth time in the run. The error names the particle or body,
-    /// its place and the usual cause.
+    /// `Fault` if a particle or body leaves the valid range again: names it, its place and the usual cause.
     pub fn step(&mut self) -> Result<()> {
         self.step_to(f64::INFINITY)
     }
@@ -347,13 +346,11 @@ impl<const D: usize> Simulation<D> {
         let stored = self.rollback.state_before(&error.message, self.clock.steps, self.clock.time, shared);
         let Some(good) = stored else { return Err(error) };
         let rescue = std::mem::take(&mut self.rollback);
-        let (own, state): (Option<OwnNames>, SimulationState<'static, D>) = read(&good)?;
+        let (own, kept): (Option<OwnNames>, SimulationState<'static, D>) = read(&good)?;
         drop(good);
-        let planned = match own {
-            Some(_) => self.planned_removals(&state.removed_solids),
-            None => self.check_state(&state)?,
-        };
-        self.take_state(state, &planned, own)?;
+        let planned =
+            if own.is_some() { self.planned_removals(&kept.removed_solids) } else { self.check_state(&kept)? };
+        self.take_state(kept, &planned, own)?;
         self.rollback = rescue;
         Ok(())
     }
@@ -578,9 +575,7 @@ impl<const D: usize> Simulation<D> {
     /// call this: the first writes all water, and has a piece of that of the others at a time.
     pub(crate) fn write_state(&self, rollbacks: usize, out: &mut dyn Write) -> io::Result<()> {
         let state = self.state(rollbacks, SavedWater::All).map_err(|e| io::Error::other(e.message))?;
-        let mut out = ToTheEnd { out, failure: None };
-        let written = postcard::to_io(&state, &mut out).map(drop).map_err(io::Error::other);
-        out.failure.map_or(written, Err)
+        write_to_the_end(&state, out)
     }
 
     /// The state with the first `rollbacks` rollbacks.
@@ -612,12 +607,12 @@ impl<const D: usize> Simulation<D> {
     }
 
     fn restore_state(&mut self, bytes: &[u8]) -> Result<()> {
-        let kept: SimulationState<'static, D> = read(bytes)?;
+        let kept = read::<SimulationState<'static, D>>(bytes)?;
         let planned = self.check_state(&kept)?;
         self.take_state(kept, &planned, None)
     }
 
-    /// Takes this `state` once the solids `planned` are removed; `own` are the names of its water, if that is this rank's alone.
+    /// Takes the state `state` once the solids `planned` are removed; `own` are the names of its water, if that is this rank's alone.
     fn take_state(
         &mut self,
         state: SimulationState<'static, D>,
@@ -627,8 +622,8 @@ impl<const D: usize> Simulation<D> {
         self.delete_solids(planned);
         self.bodies.restore(state.bodies, state.clock.steps)?;
         self.system.restore(state.system, own);
-        if let (Some(accounting), Some(accounts)) = (&mut self.bodies.accounting, state.accounting) {
-            accounting.restore(accounts);
+        if let (Some(accounting), Some(state)) = (&mut self.bodies.accounting, state.accounting) {
+            accounting.restore(state);
         }
         (self.stepper, self.clock) = (state.stepper.into_owned(), state.clock);
         self.removed = state.removed.into_owned();

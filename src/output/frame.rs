@@ -68,8 +68,8 @@ pub(crate) struct FrameWriter {
 }
 
 impl FrameWriter {
-    /// Makes the writer of frames in the run's `folder`. `words` gives the fields to write and the box whose water is
-    /// written; `times` (s) are the times of the existing frames.
+    /// Makes the writer of frames in the run's `folder`, with the fields and the box of `words`. `times` (s) are the
+    /// times of the existing frames.
     ///
     /// # Errors
     /// `Scene` for an unknown field; `File` if the folder `frames` cannot be made.
@@ -156,7 +156,7 @@ impl FrameWriter {
         let kept = has_copies.then(|| boundary.select(ranges.into_iter().flatten()));
         let boundary = kept.as_ref().map_or(boundary, |kept| kept.first_n(kept.len()));
         let path = self.folder.join("frames").join(&names[1]);
-        let file = Shown { particles: boundary, division: None, inside: None }.file(system, &self.fields, Some(owner));
+        let file = Shown { particles: boundary, division: None, shown: None }.file(system, &self.fields, Some(owner));
         let file = file.map_err(|why| cannot_write(&path, &why))?;
         write_parts_atomically(&path, &file.parts())?;
         bytes += file.len() as u64;
@@ -224,8 +224,8 @@ pub(crate) fn water_file<const D: usize>(
     fields: &[String],
     crop: Option<&[Vec<f64>; 2]>,
 ) -> io::Result<FileParts> {
-    let mut water = Shown { particles: system.fluid(), division: system.divided_water(), inside: None };
-    water.inside = crop.map(|[min, max]| {
+    let mut water = Shown { particles: system.fluid(), division: system.divided_water(), shown: None };
+    water.shown = crop.map(|[min, max]| {
         let mut kept = Vec::new();
         let is_inside = |r: &Vector<D>| (0..D).all(|k| (min[k]..=max[k]).contains(&r[k]));
         water.give(water.particles.r, |piece| kept.extend(piece.iter().map(is_inside)));
@@ -240,13 +240,13 @@ struct Shown<'a, const D: usize> {
     /// How ranks share the particles, if each has its own.
     division: Option<&'a Division>,
     /// Which particles are in the frame; all if there is none.
-    inside: Option<Vec<bool>>,
+    shown: Option<Vec<bool>>,
 }
 
 impl<'a, const D: usize> Shown<'a, D> {
     /// Number of particles in the frame; 0 on ranks that write none.
     fn count(&self) -> usize {
-        match (&self.inside, self.division.is_some_and(|division| division.ranks.rank() > 0)) {
+        match (&self.shown, self.division.is_some_and(|division| division.ranks.rank() > 0)) {
             (_, true) => 0,
             (Some(kept), _) => kept.iter().filter(|kept| **kept).count(),
             (None, _) => self.particles.len(),
@@ -255,7 +255,7 @@ impl<'a, const D: usize> Shown<'a, D> {
 
     /// Gives the values in `all` of the particles in the frame to `use_piece`, a piece at a time.
     fn give<T: Pod>(&self, all: &[T], mut use_piece: impl FnMut(&[T])) {
-        let mut rest = self.inside.as_deref();
+        let mut rest = self.shown.as_deref();
         let mut chosen = Vec::new();
         let use_kept = |piece: &[T]| match &mut rest {
             None => use_piece(piece),

@@ -1,6 +1,6 @@
 //! Adding and removing solids during a simulation.
 
-use super::{Dimension, Simulation, SimulationState, external_bodies::refuse_ballast, read};
+use super::{Dimension, Simulation, SimulationState, external_bodies::refuse_ballast, state_bytes::read};
 use crate::{
     coupling::AcousticAddedMass,
     error::{Error, ErrorCode, ErrorKind, Result},
@@ -85,7 +85,7 @@ where
     }
 
     pub(super) fn restore_state_with_added_solids(&mut self, bytes: &[u8], added: Vec<SolidSpec<D>>) -> Result<()> {
-        let kept: SimulationState<'static, D> = read(bytes)?;
+        let kept = read::<SimulationState<'static, D>>(bytes)?;
         let (own, there) = (self.system.solids().len() + added.len(), kept.system.solid_count());
         if own != there || kept.removed_solids.iter().any(|solid| *solid as usize >= there) {
             let what = format!("the state is of {there} solids, and with the added ones there are {own} here");

@@ -1,15 +1,15 @@
-//! The bytes of a state: in memory, and to a file.
+//! The bytes of the state of a simulation.
 
 use std::io::{self, Write};
 
-use serde::{Serialize, de::DeserializeOwned};
+use serde::Serialize;
 
 use crate::error::{Error, ErrorKind, Result};
 
 /// What is written to the end of a state, also after an error of the file: other ranks know of none, and go on with the exchange.
-pub(super) struct ToTheEnd<'a> {
-    pub(super) out: &'a mut dyn Write,
-    pub(super) failure: Option<io::Error>,
+struct ToTheEnd<'a> {
+    out: &'a mut dyn Write,
+    failure: Option<io::Error>,
 }
 
 impl Write for ToTheEnd<'_> {
@@ -28,6 +28,13 @@ impl Write for ToTheEnd<'_> {
     }
 }
 
+/// Writes a `state` to `out`, to the end also after an error.
+pub(super) fn write_to_the_end(state: &impl Serialize, out: &mut dyn Write) -> io::Result<()> {
+    let mut out = ToTheEnd { out, failure: None };
+    let written = postcard::to_io(state, &mut out).map(drop).map_err(io::Error::other);
+    out.failure.map_or(written, Err)
+}
+
 /// The bytes of a state.
 pub(super) fn bytes_of(state: &impl Serialize) -> Result<Vec<u8>> {
     let cannot = |e: postcard::Error| Error::new(ErrorKind::Restart, format!("cannot write the state: {e}"));
@@ -36,7 +43,7 @@ pub(super) fn bytes_of(state: &impl Serialize) -> Result<Vec<u8>> {
 }
 
 /// The state of these bytes.
-pub(super) fn read<T: DeserializeOwned>(bytes: &[u8]) -> Result<T> {
+pub(super) fn read<T: serde::de::DeserializeOwned>(bytes: &[u8]) -> Result<T> {
     postcard::from_bytes(bytes)
         .map_err(|e| Error::new(ErrorKind::Restart, format!("the checkpoint's state is damaged: {e}")))
 }
