@@ -205,11 +205,12 @@ impl<const D: usize> Simulation<D> {
         Ok(simulation)
     }
 
-    /// Advances by one step of the largest allowed length. At the first alarm of a guard it rolls back to a good state
-    /// some hundred steps earlier, and halves the step for a while: see [`Simulation::rollbacks`].
+    /// Advances by one step of the largest allowed length. If a guard raises an alarm, the simulation returns to a stored
+    /// state, some hundreds of steps old, and takes half steps for a while: see [`Simulation::rollbacks`].
     ///
     /// # Errors
-    /// `Fault` if a particle or body leaves the valid range again: names it, its place and the usual cause.
+    /// `Fault` if a guard raises an alarm during the half steps, or for the fourth time in the run. The error names the particle or body,
+    /// its place and the usual cause.
     pub fn step(&mut self) -> Result<()> {
         self.step_to(f64::INFINITY)
     }

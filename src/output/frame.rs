@@ -68,8 +68,8 @@ pub(crate) struct FrameWriter {
 }
 
 impl FrameWriter {
-    /// Makes the writer of frames in the run's `folder`, with the fields and the box of `words`. `times` (s) are the
-    /// times of the existing frames.
+    /// Makes the writer of frames in the run's `folder`. `words` gives the fields to write and the box whose water is
+    /// written; `times` (s) are the times of the existing frames.
     ///
     /// # Errors
     /// `Scene` for an unknown field; `File` if the folder `frames` cannot be made.
