@@ -131,7 +131,7 @@ fn mesh_files_without_a_closed_solid_are_refused_with_the_reason() {
     assert_refused("file = \"too_many.stl\"", &["too_many.stl cannot be read"]);
     assert_refused("file = \"nan.stl\"", &["nan.stl cannot be read"]);
     assert_refused("file = \"empty.stl\"", &["empty.stl cannot be read"]);
-    assert_refused("file = \"line.stl\"", &["a line of more than"]);
+    assert_refused("file = \"line.stl\"", &["line 2: \"0\" is no word of STL"]);
     assert_refused("file = \"few.obj\"", &["few.obj cannot be read"]);
     assert_refused("file = \"opn.stl\"", &["did you mean \"open.stl\"?"]);
     assert_refused("file = \"../open.stl\"", &["leads out of the scene's folder"]);
