@@ -34,7 +34,6 @@ pub use inspect::{
 pub(crate) use lock::Lock;
 #[doc(hidden)]
 pub use lock::lock_owner;
-#[cfg(feature = "cli")]
 #[doc(hidden)]
 pub use statistics::{RAO_FILE, RaoResult, RunStatistics, SPECTRA_FILE, Statistic, StatisticsFilter, statistics};
 

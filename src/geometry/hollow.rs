@@ -346,7 +346,7 @@ impl<const D: usize> Search<'_, D> {
                 inner = above(inner)?;
             }
         };
-        let openings = cells.iter().map(|cell| *cell as usize).filter(|cell| opens(*cell));
+        let mut openings = cells.iter().map(|cell| *cell as usize).filter(|cell| opens(*cell));
         let sides = || (0..D).filter(|side| *side != axis).flat_map(|side| [(side, false), (side, true)]);
         let mut rim: Vec<Vector<D>> = openings
             .clone()
@@ -355,7 +355,7 @@ impl<const D: usize> Search<'_, D> {
         if rim.is_empty() {
             // A way around corners, such as that of a pipe: its end at the hollow stands for the rim.
             let last = cells.last().map(|cell| *cell as usize);
-            rim = openings.last().or(last).map(|cell| lifted(self.centre(cell), level)).into_iter().collect();
+            rim = openings.next_back().or(last).map(|cell| lifted(self.centre(cell), level)).into_iter().collect();
         }
         let excess = rim.iter().map(|x| self.up.dot(x)).fold(f64::INFINITY, f64::min) - level;
         rim.iter_mut().for_each(|x| *x -= self.up * excess);
