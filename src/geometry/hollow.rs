@@ -346,16 +346,15 @@ impl<const D: usize> Search<'_, D> {
                 inner = above(inner)?;
             }
         };
-        let mut openings = cells.iter().map(|cell| *cell as usize).filter(|cell| opens(*cell));
+        let openings: Vec<usize> = cells.iter().map(|cell| *cell as usize).filter(|cell| opens(*cell)).collect();
         let sides = || (0..D).filter(|side| *side != axis).flat_map(|side| [(side, false), (side, true)]);
-        let mut rim: Vec<Vector<D>> = openings
-            .clone()
-            .flat_map(|cell| sides().filter_map(move |(side, forward)| over(cell, side, forward)))
-            .collect();
+        let rim_beside =
+            |cell: &usize| sides().filter_map(|(side, forward)| over(*cell, side, forward)).collect::<Vec<_>>();
+        let mut rim: Vec<Vector<D>> = openings.iter().flat_map(rim_beside).collect();
         if rim.is_empty() {
             // A way around corners, such as that of a pipe: its end at the hollow stands for the rim.
-            let last = cells.last().map(|cell| *cell as usize);
-            rim = openings.next_back().or(last).map(|cell| lifted(self.centre(cell), level)).into_iter().collect();
+            let end = openings.last().copied().or(cells.last().map(|cell| *cell as usize));
+            rim = end.map(|cell| lifted(self.centre(cell), level)).into_iter().collect();
         }
         let excess = rim.iter().map(|x| self.up.dot(x)).fold(f64::INFINITY, f64::min) - level;
         rim.iter_mut().for_each(|x| *x -= self.up * excess);

@@ -20,6 +20,7 @@ use super::{
     Finding, PreflightContext,
     expected_errors::heave_error,
     hollows::{hull, is_in_dry_hollow},
+    lifetimes::overload,
     surface_samples::SurfaceSample,
     thickness::thinnest_part,
 };
@@ -33,7 +34,7 @@ use crate::{
         FreeBody, Solid, SolidSpec,
         joint_groups::JointGroups,
         righting::{Floating, Turn},
-        statics::{Overload, StaticBody, StaticSystem, Support, WaterAtRest},
+        statics::{StaticBody, StaticSystem, Support, WaterAtRest},
     },
 };
 
@@ -196,18 +197,6 @@ fn turn_finding<const D: usize>(
     }
 }
 
-/// Returns the finding about a line or a joint that breaks before the bodies are at rest.
-fn overload_finding<const D: usize>(Overload { kind, name, load, strength }: Overload) -> Finding {
-    let unit = if D == 2 { "N/m" } else { "N" };
-    let [has, bears] = [load, strength].map(three_digits);
-    let what = format!(
-        "{kind} \"{name}\" breaks before the bodies are at rest: it has {has} {unit} then and bears {bears} {unit}"
-    );
-    let key = if kind == "joint" { "force" } else { "tension" };
-    let mend = format!("breaks = {{ {key} = {} }} or more, or less load on it", two_digits_up(load));
-    Finding::warning("breaks_at_rest", what, mend)
-}
-
 impl<const D: usize> PreflightContext<'_, D> {
     /// Returns the summaries of the free bodies and adds findings about them. `touching` marks the solids that touch
     /// another.
@@ -216,7 +205,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         let specs: Vec<&SolidSpec<D>> = self.solids().iter().map(|solid| &solid.spec).collect();
         let constraints = &self.system.constraints().at_start();
         let groups = JointGroups::of(&specs, constraints);
-        findings.extend(statics.iter().flat_map(StaticSystem::overloads).map(overload_finding::<D>));
+        findings.extend(statics.iter().flat_map(StaticSystem::overloads).map(overload::<D>));
         let mut bodies = Vec::new();
         for (i, solid) in self.solids().iter().enumerate() {
             let Some(body) = &solid.body else { continue };

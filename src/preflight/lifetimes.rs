@@ -1,26 +1,43 @@
-//! Times of constraints and solids that the run does not reach, and springs that break at the start.
+//! Times of constraints and solids that the run does not reach, and lines and joints that break at the start or before rest.
 
 use super::{Finding, PreflightContext};
 use crate::{
     math::format::{three_digits, two_digits_up},
-    solid::Lifetime,
+    solid::{Lifetime, statics::Overload},
 };
 
 /// Springs with more tension at the start than they bear.
 pub(super) fn check_strength<const D: usize>(context: &PreflightContext<'_, D>, findings: &mut Vec<Finding>) {
-    let force = if D == 2 { "N/m" } else { "N" };
     for spring in context.system.constraints().springs.iter().filter(|spring| spring.breaks_at_start()) {
-        let tension = spring.start_tension();
-        let what = format!(
-            "spring \"{}\" breaks at the start: it has {} {force} and bears {} {force}",
-            spring.name,
-            three_digits(tension),
-            three_digits(spring.lifetime.strength)
-        );
-        let mend =
-            format!("breaks = {{ tension = {} }} or more, or a length with less tension", two_digits_up(tension));
-        findings.push(Finding::warning("breaks_at_start", what, mend));
+        let what = format!("spring \"{}\" breaks at the start", spring.name);
+        let least = |load: &str| format!("breaks = {{ tension = {load} }} or more, or a length with less tension");
+        findings.push(strength_finding::<D>(
+            "breaks_at_start",
+            &what,
+            [spring.start_tension(), spring.lifetime.strength],
+            least,
+        ));
     }
+}
+
+/// The finding about a line or a joint that breaks before the bodies are at rest.
+pub(super) fn overload<const D: usize>(Overload { kind, name, load, strength }: Overload) -> Finding {
+    let what = format!("{kind} \"{name}\" breaks before the bodies are at rest");
+    let key = if kind == "joint" { "force" } else { "tension" };
+    let least = |load: &str| format!("breaks = {{ {key} = {load} }} or more, or less load on it");
+    strength_finding::<D>("breaks_at_rest", &what, [load, strength], least)
+}
+
+/// The finding that something has a load (N; N/m in 2-D) above that which it bears; `mend` gets the load, rounded up.
+pub(super) fn strength_finding<const D: usize>(
+    topic: &'static str,
+    what: &str,
+    [load, bears]: [f64; 2],
+    mend: impl Fn(&str) -> String,
+) -> Finding {
+    let unit = if D == 2 { "N/m" } else { "N" };
+    let what = format!("{what}: it has {} {unit} and bears {} {unit}", three_digits(load), three_digits(bears));
+    Finding::warning(topic, what, mend(&two_digits_up(load)))
 }
 
 /// Elements that begin, end or are removed after the end of the run, and bodies that are released then.

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{Finding, PreflightContext};
+use super::{Finding, PreflightContext, lifetimes::strength_finding};
 use crate::{
     math::{Vector, format::three_digits},
     simulation::Simulation,
@@ -104,14 +104,9 @@ pub(super) fn summaries<const D: usize>(
     for (spec, own) in specs.iter().filter_map(|spec| Some((spec, lines.iter().find(|line| line.name == spec.name)?))) {
         let (most, strength) = (own.fairlead_n.max(own.anchor_n), spec.lifetime.strength);
         if most > strength {
-            let what = format!(
-                "mooring \"{}\" breaks at the start: it has {} {force} at rest and bears {} {force}",
-                own.name,
-                three_digits(most),
-                three_digits(strength)
-            );
-            let mend = format!("breaks = {} or more, or a length with less tension", three_digits(most));
-            findings.push(Finding::warning("breaks_at_start", what, mend));
+            let what = format!("mooring \"{}\" breaks at the start", own.name);
+            let least = |load: &str| format!("breaks = {load} or more, or a length with less tension");
+            findings.push(strength_finding::<D>("breaks_at_start", &what, [most, strength], least));
         }
     }
     let buried = readings.iter().zip(specs).filter_map(|(now, spec)| lies_in_solid(context, spec, &now.nodes));

@@ -396,18 +396,25 @@ impl<'a, const D: usize> StaticSystem<'a, D> {
         load - self.forces.iter().filter(|own| own.body == i).map(|own| own.force[D - 1]).sum::<f64>()
     }
 
+    /// Returns the mass (kg) of the water that body `i` displaces at rest.
+    fn displaced(&self, i: usize) -> f64 {
+        self.water.rho0 * self.bodies[i].hull.volume_if_dry(&self.pose(i), self.water.level)
+    }
+
+    /// Returns whether body `i` lies on the bottom, or on a solid.
+    fn lies_on_bottom(&self, i: usize) -> bool {
+        self.bodies[i].hull.extent(&self.pose(i))[0] <= self.bodies[i].bottom + 1e-6 * self.size(i)
+    }
+
     /// Returns the effect that carries body `i` at rest.
     pub(crate) fn support(&self, i: usize) -> Support {
         let level = self.water.level;
         if self.held[self.group[i]] {
             return Support::Held;
         }
-        let reaches =
-            |j: usize| self.bodies[j].hull.extent(&self.pose(j))[0] <= self.bodies[j].bottom + 1e-6 * self.size(j);
-        let displaced = |j: usize| self.water.rho0 * self.bodies[j].hull.volume_if_dry(&self.pose(j), level);
         let (mass, carried) =
-            self.group_of(i).fold((0.0, 0.0), |sum, j| (sum.0 + self.bodies[j].body.mass, sum.1 + displaced(j)));
-        if carried < (1.0 - 1e-6) * mass && self.group_of(i).any(reaches) {
+            self.group_of(i).fold((0.0, 0.0), |sum, j| (sum.0 + self.bodies[j].body.mass, sum.1 + self.displaced(j)));
+        if carried < (1.0 - 1e-6) * mass && self.group_of(i).any(|j| self.lies_on_bottom(j)) {
             let open = self.bodies[i].hull.rim_height(&self.bodies[i].pose).is_finite();
             return if open { Support::Floods } else { Support::Bottom };
         }

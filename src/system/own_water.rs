@@ -181,6 +181,11 @@ pub(crate) fn own<const D: usize>(neighbours: &NeighbourLists<D>, count: usize) 
     }
 }
 
+/// As [`own`], of the particles whose present state this rank has: all of them while ranks do not lack the water of others.
+pub(super) fn present<const D: usize>(neighbours: &NeighbourLists<D>, count: usize) -> (Range<usize>, Option<&[bool]>) {
+    if is_apart(neighbours) { own(neighbours, count) } else { (0..count, None) }
+}
+
 /// The places, among the boundary particles near water, of those that this rank advances; `None` if all.
 pub(super) fn own_boundary<const D: usize>(neighbours: &NeighbourLists<D>) -> Option<&[u32]> {
     neighbours.division().and_then(Division::own_boundary)

@@ -177,9 +177,7 @@ impl<const D: usize> System<D> {
     /// Looks at all water now.
     pub(crate) fn check_water(&mut self) {
         let (guard, fluid) = (self.valid_range(), &self.fluid.particles);
-        let is_apart = own_water::is_apart(&self.neighbours);
-        let (these, own) =
-            if is_apart { own_water::own(&self.neighbours, fluid.len()) } else { (0..fluid.len(), None) };
+        let (these, own) = own_water::present(&self.neighbours, fluid.len());
         let all = fluid.r[these.clone()].par_iter().zip(&fluid.v[these.clone()]).zip(&fluid.rho[these.clone()]);
         self.status.step_check = all
             .zip(&self.neighbours.positions_at_build()[these.clone()])
@@ -190,7 +188,7 @@ impl<const D: usize> System<D> {
                 if is_other { StepCheck::INITIAL } else { guard.check(then, r, v, *rho) }
             })
             .reduce(|| StepCheck::INITIAL, StepCheck::combine);
-        if is_apart {
+        if own_water::is_apart(&self.neighbours) {
             own_water::combine_checks(self);
         }
     }
@@ -200,12 +198,7 @@ impl<const D: usize> System<D> {
         if self.status.step_check.valid {
             return None;
         }
-        let count = self.fluid.particles.len();
-        let (these, own) = if own_water::is_apart(&self.neighbours) {
-            own_water::own(&self.neighbours, count)
-        } else {
-            (0..count, None)
-        };
+        let (these, own) = own_water::present(&self.neighbours, self.fluid.particles.len());
         let is_bad = |i: &usize| own.is_none_or(|own| own[*i]) && self.violation(*i).is_some();
         let first = these.into_par_iter().with_min_len(PARTICLES_PER_TASK).find_first(is_bad);
         let i = own_water::share_first(self, first)?;

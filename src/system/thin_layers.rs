@@ -137,7 +137,8 @@ pub(super) fn particles<const D: usize>(system: &System<D>) -> impl Iterator<Ite
     system.boundary.thin.indices(&system.solids).map(|i| i as u32)
 }
 
-/// Reads the water around the thin parts from the `weight` (–) of that around a boundary particle, if there is any.
+/// Reads the water around the thin parts from the `weight` (–) of that around a boundary particle, if there is any, and finds the ends
+/// of parts that have turned.
 pub(super) fn update_water<const D: usize>(system: &mut System<D>, weight: impl Fn(&System<D>, u32) -> Option<f64>) {
     let thin = &system.boundary.thin;
     let both_sides = 2.0 * system.boundary.coverage.full_weight(0.5 * system.model.dp);
@@ -147,7 +148,7 @@ pub(super) fn update_water<const D: usize>(system: &mut System<D>, weight: impl 
     update_ends(system);
 }
 
-/// Finds the lower ends of the parts of each solid that has turned.
+/// Finds the lower ends of the parts of each solid that is new, or has turned.
 fn update_ends<const D: usize>(system: &mut System<D>) {
     let mut ends = std::mem::take(&mut system.boundary.thin.ends);
     ends.resize_with(system.solids.len(), || None);

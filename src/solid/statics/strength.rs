@@ -1,6 +1,6 @@
 //! Lines and joints that break before the bodies are at rest.
 
-use super::StaticSystem;
+use super::{StaticSystem, merge};
 use crate::solid::JointSpec;
 
 /// A line or a joint with more load at rest than it bears.
@@ -42,35 +42,21 @@ impl<const D: usize> StaticSystem<'_, D> {
             [Some(a), None] | [None, Some(a)] => self.held[self.group[a]],
             [None, None] => false,
         };
-        let others: Vec<[Option<usize>; 2]> =
-            self.joints.iter().filter(|other| other.name != joint.name).map(ends).collect();
-        let side = |from: usize| -> Option<Vec<usize>> {
-            let mut members = vec![from];
-            let mut next = 0;
-            while let Some(&own) = members.get(next) {
-                next += 1;
-                for pair in others.iter().filter(|pair| pair.contains(&Some(own))) {
-                    let other = if pair[0] == Some(own) { pair[1] } else { pair[0] };
-                    let other = other?;
-                    if !members.contains(&other) {
-                        members.push(other);
-                    }
-                }
-            }
-            let carried = |j: &usize| {
-                let own = &self.bodies[*j];
-                let on_bottom = own.hull.extent(&self.pose(*j))[0] <= own.bottom + 1e-6 * self.size(*j);
-                on_bottom || own.body.locked_translations[D - 1]
-            };
-            let has_both_ends = ends(joint).iter().all(|end| end.is_some_and(|j| members.contains(&j)));
-            (!has_both_ends && !members.iter().any(carried)).then_some(members)
+        // The parts into which the other joints tie the bodies; the last number is that of the ground.
+        let ground = self.bodies.len();
+        let mut part: Vec<usize> = (0..=ground).collect();
+        for other in self.joints.iter().filter(|other| other.name != joint.name) {
+            let [a, b] = ends(other).map(|end| end.unwrap_or(ground));
+            merge(&mut part, a, b);
+        }
+        let parts = ends(joint).map(|end| part[end.unwrap_or(ground)]);
+        let has_all = |own: &usize| {
+            let members = || (0..ground).filter(|j| part[*j] == *own);
+            let is_carried = |j: usize| self.lies_on_bottom(j) || self.bodies[j].body.locked_translations[D - 1];
+            *own != part[ground] && !members().any(is_carried)
         };
-        let members = ends(joint).into_iter().flatten().filter(|_| rises_along).find_map(side)?;
-        let lack = |j: &usize| {
-            let own = &self.bodies[*j];
-            let lift = self.water.rho0 * own.hull.volume_if_dry(&self.pose(*j), self.water.level);
-            self.water.g * (own.body.mass - lift) + self.tie_load(*j)
-        };
-        Some(members.iter().map(lack).sum::<f64>().abs())
+        let own = parts.into_iter().find(|own| rises_along && parts[0] != parts[1] && has_all(own))?;
+        let lack = |j: usize| self.water.g * (self.bodies[j].body.mass - self.displaced(j)) + self.tie_load(j);
+        Some((0..ground).filter(|j| part[*j] == own).map(lack).sum::<f64>().abs())
     }
 }
