@@ -349,8 +349,8 @@ impl OpenBoundaryConfig {
         let waves = waves.transpose()?;
         let period = self.absorb_period.or(waves.as_ref().map(IncidentWaves::main_period));
         let absorbed_speed = match (self.absorb, period) {
-            // The water follows its level by long waves.
-            (None, _) if changes && face.velocity.is_none() => Some((g * depth).sqrt()),
+            // The water follows its level by long waves, whatever `absorb` is: its default is false without a velocity.
+            _ if changes && face.velocity.is_none() => Some((g * depth).sqrt()),
             (None | Some(false), _) => None,
             // Long waves.
             (Some(true), None) => Some((g * depth).sqrt()),
