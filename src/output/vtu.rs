@@ -103,9 +103,10 @@ impl<'a> ArrayPieces<'a> {
 
     /// An array with one value for each cell or point of `count`: `of` gives those of a range.
     pub(crate) fn computed(name: &str, kind: Values, count: usize, of: impl Fn(Range<usize>) -> Values + 'a) -> Self {
+        let piece = BLOCK / kind.size();
         Self::new((name, 1), (kind, count), move |use_piece| {
-            for start in (0..count).step_by(BLOCK) {
-                use_piece(&of(start..count.min(start + BLOCK)));
+            for start in (0..count).step_by(piece) {
+                use_piece(&of(start..count.min(start + piece)));
             }
         })
     }

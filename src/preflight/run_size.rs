@@ -18,7 +18,7 @@ const TAKEN: [f64; 2] = [0.25, 0.5];
 /// Memory of the program without particles, B.
 const PROGRAM: f64 = 14e6;
 
-/// Memory of the compressor of a frame: its window, its tables and its output, B.
+/// Memory of the compressor of a frame: its window, its tables, and a piece of an array before and after it, B.
 const COMPRESSOR: f64 = 0.3e6;
 
 /// Length of a number in a table with its comma, B: seventeen digits as a rule.
@@ -110,12 +110,12 @@ impl<const D: usize> PreflightContext<'_, D> {
     fn memory(&self) -> f64 {
         let system = self.system;
         let (fluid, boundary) = (system.fluid().len() as f64, system.boundary().len() as f64);
-        // The compressed arrays of a frame, the file that they are copied to, and some arrays before compression.
+        // The compressed arrays of a frame, which take half as much again while their space grows.
         let frame = self
             .plan
             .frames
             .as_ref()
-            .map_or(0.0, |frames| COMPRESSOR + 2.5 * particle_bytes(&frames.fields).1 * fluid.max(boundary));
+            .map_or(0.0, |frames| COMPRESSOR + 1.5 * particle_bytes(&frames.fields).1 * fluid.max(boundary));
         let for_a_while = (system.step_memory_bytes() as f64).max(frame);
         PROGRAM + system.memory_bytes() as f64 + for_a_while
     }
