@@ -4,7 +4,7 @@
 
 use std::{
     fs::File,
-    io,
+    io::{self, Seek, Write},
     ops::Range,
     path::{Path, PathBuf},
 };
@@ -12,11 +12,11 @@ use std::{
 use bytemuck::Pod;
 
 use super::{
-    cannot_write,
+    cannot_write, commit_partial,
     frame_index::FrameIndex,
     sync_folder,
-    vtu::{self, ArrayPieces, Cells, DataArray, FileParts, Values},
-    write_atomically, write_parts_atomically,
+    vtu::{self, ArrayPieces, Cells, DataArray, Values},
+    write_atomically, write_partial,
 };
 use crate::{
     error::{Error, ErrorCode, Result, nearest_name},
@@ -145,10 +145,8 @@ impl FrameWriter {
         let number = self.times.len();
         let names = self.piece_names(number);
         let path = self.folder.join("frames").join(&names[0]);
-        let water = water_file(system, &self.fields, self.crop.as_ref()).map_err(|why| cannot_write(&path, &why))?;
-        write_parts_atomically(&path, &water.parts())?;
-        let mut bytes = water.len() as u64;
-        drop(water);
+        let mut bytes = write_partial(&path, |file| write_water(file, system, &self.fields, self.crop.as_ref()))?;
+        commit_partial(&path)?;
         let ranges: Vec<Range<usize>> = (0..system.solids().len()).map(|i| system.home_boundary(i)).collect();
         let owner = ranges.iter().enumerate().flat_map(|(i, range)| range.clone().map(move |_| i as f32)).collect();
         let boundary = system.boundary();
@@ -156,10 +154,9 @@ impl FrameWriter {
         let kept = has_copies.then(|| boundary.select(ranges.into_iter().flatten()));
         let boundary = kept.as_ref().map_or(boundary, |kept| kept.first_n(kept.len()));
         let path = self.folder.join("frames").join(&names[1]);
-        let file = Shown { particles: boundary, division: None, shown: None }.file(system, &self.fields, Some(owner));
-        let file = file.map_err(|why| cannot_write(&path, &why))?;
-        write_parts_atomically(&path, &file.parts())?;
-        bytes += file.len() as u64;
+        let solids = Shown { particles: boundary, division: None, shown: None };
+        bytes += write_partial(&path, |file| solids.write(file, system, &self.fields, Some(owner)))?;
+        commit_partial(&path)?;
         if let Some(name) = names.get(2) {
             bytes += self.write_lines(name, moorings)?;
         }
@@ -214,16 +211,18 @@ impl FrameWriter {
     }
 }
 
-/// Returns the file of the water in a frame with these `fields`, in the box with the corners `crop` (m) if there is one. Where each rank
-/// has its own water, all must call this, and the first has the file: it gets a piece of the water of the others at a time.
+/// Writes the `file` of the water in a frame with these `fields`, in the box with the corners `crop` (m) if there is one; returns its
+/// size, B. Where each rank has its own water, all must call this, and the first has the particles: it gets a piece of the water of the
+/// others at a time.
 ///
 /// # Errors
-/// Errors of the compression only, which writes to memory.
-pub(crate) fn water_file<const D: usize>(
+/// Errors of the file.
+pub(crate) fn write_water<const D: usize>(
+    file: &mut (impl Write + Seek),
     system: &System<D>,
     fields: &[String],
     crop: Option<&[Vec<f64>; 2]>,
-) -> io::Result<FileParts> {
+) -> io::Result<u64> {
     let mut water = Shown { particles: system.fluid(), division: system.divided_water(), shown: None };
     water.shown = crop.map(|[min, max]| {
         let mut kept = Vec::new();
@@ -231,7 +230,7 @@ pub(crate) fn water_file<const D: usize>(
         water.give(water.particles.r, |piece| kept.extend(piece.iter().map(is_inside)));
         kept
     });
-    water.file(system, fields, None)
+    water.write(file, system, fields, None)
 }
 
 /// Particles of a part of a frame.
@@ -273,8 +272,15 @@ impl<'a, const D: usize> Shown<'a, D> {
         }
     }
 
-    /// Returns the file of the particles with these `fields` and, if they are of solids, the number of the `owner` of each.
-    fn file(&self, system: &'a System<D>, fields: &[String], owner: Option<Vec<f32>>) -> io::Result<FileParts> {
+    /// Writes the `file` of the particles with these `fields` and, if they are of solids, the number of the `owner` of each; returns its
+    /// size, B.
+    fn write(
+        &self,
+        file: &mut (impl Write + Seek),
+        system: &'a System<D>,
+        fields: &[String],
+        owner: Option<Vec<f32>>,
+    ) -> io::Result<u64> {
         let ParticlesView { r, v, rho, id } = self.particles;
         let count = self.count();
         let vectors = move |all: &'a [Vector<D>]| {
@@ -295,7 +301,7 @@ impl<'a, const D: usize> Shown<'a, D> {
         };
         let mut fields: Vec<ArrayPieces<'_>> = fields.iter().map(field).collect();
         fields.extend(owner.map(|numbers| DataArray::new("solid", 1, numbers).into()));
-        vtu::write_vertices(count, vectors(r), fields)
+        vtu::write_vertices(file, count, vectors(r), fields)
     }
 }
 

@@ -42,15 +42,7 @@ use crate::error::{Error, ErrorCode, Result};
 /// # Errors
 /// `File`, with the name of the file, if the disk is full or the folder is not writable; the old file remains.
 pub(crate) fn write_atomically(path: &Path, bytes: &[u8]) -> Result<()> {
-    write_parts_atomically(path, &[bytes])
-}
-
-/// Writes a file whose bytes are these `parts` as [`write_atomically`].
-///
-/// # Errors
-/// As [`write_atomically`].
-fn write_parts_atomically(path: &Path, parts: &[&[u8]]) -> Result<()> {
-    write_partial(path, |file| parts.iter().try_for_each(|part| file.write_all(part)))?;
+    write_partial(path, |file| file.write_all(bytes))?;
     commit_partial(path)
 }
 
@@ -68,8 +60,8 @@ pub fn require_parent_folder(path: &Path) -> Result<()> {
     }
 }
 
-/// Fills the temporary file that replaces the file at `path` later.
-fn write_partial(path: &Path, fill: impl FnOnce(&mut File) -> io::Result<()>) -> Result<()> {
+/// Fills the temporary file that replaces the file at `path` later; returns what `fill` returns.
+fn write_partial<T>(path: &Path, fill: impl FnOnce(&mut File) -> io::Result<T>) -> Result<T> {
     let part = partial_path(path);
     File::create(&part).and_then(|mut file| fill(&mut file)).map_err(|why| {
         // The partial file has no use. An error from its removal would hide the original error.

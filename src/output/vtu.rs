@@ -4,7 +4,7 @@
 //! program versions, in which each element contains its compressed array in base 64.
 
 use std::{
-    io::{self, Read, Write},
+    io::{self, Cursor, Read, Seek, SeekFrom, Write},
     ops::Range,
 };
 
@@ -67,12 +67,6 @@ pub(crate) struct ArrayPieces<'a> {
     give: Box<dyn FnOnce(PieceUser<'_>) + 'a>,
 }
 
-/// The two parts of a file, in order; together they would be in memory twice for a while.
-pub(crate) struct FileParts {
-    text: Vec<u8>,
-    data: Vec<u8>,
-}
-
 /// Cells of one type.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Cells {
@@ -101,6 +95,17 @@ impl<'a> ArrayPieces<'a> {
         Self { name: name.into(), components, kind, count, give: Box::new(give) }
     }
 
+    /// The beginning of the XML element, to which the offset of the values is appended.
+    fn element(&self) -> String {
+        // The format's default is a single component; meshio makes a column of an array that states it.
+        let components = match self.components {
+            1 => String::new(),
+            components => format!(" NumberOfComponents=\"{components}\""),
+        };
+        let (name, kind) = (&self.name, self.kind.type_name());
+        format!("<DataArray type=\"{kind}\" Name=\"{name}\"{components} format=\"appended\" offset=\"")
+    }
+
     /// An array with one value for each cell or point of `count`: `of` gives those of a range.
     pub(crate) fn computed(name: &str, kind: Values, count: usize, of: impl Fn(Range<usize>) -> Values + 'a) -> Self {
         let piece = BLOCK / kind.size();
@@ -115,18 +120,6 @@ impl<'a> ArrayPieces<'a> {
 impl From<DataArray> for ArrayPieces<'_> {
     fn from(DataArray { name, components, values }: DataArray) -> Self {
         Self::new((&name, components), (values.none(), values.len()), move |use_piece| use_piece(&values))
-    }
-}
-
-impl FileParts {
-    /// The parts in order.
-    pub(crate) fn parts(&self) -> [&[u8]; 2] {
-        [&self.text, &self.data]
-    }
-
-    /// Size of the file, B.
-    pub(crate) fn len(&self) -> usize {
-        self.text.len() + self.data.len()
     }
 }
 
@@ -169,7 +162,7 @@ impl Values {
     }
 
     /// Adds the values to an array in compressed form.
-    fn add_to(&self, blocks: &mut Blocks<'_>) {
+    fn add_to(&self, blocks: &mut Blocks<impl Write>) {
         match self {
             Self::F32(x) => x.iter().for_each(|x| blocks.add(x.to_le_bytes())),
             Self::U32(x) => x.iter().for_each(|x| blocks.add(x.to_le_bytes())),
@@ -197,17 +190,19 @@ fn numbers<T, const N: usize>(bytes: &[u8], of: fn([u8; N]) -> T) -> Option<Vec<
     rest.is_empty().then(|| whole.iter().map(|bytes| of(*bytes)).collect())
 }
 
-/// The compressed blocks of an array at the end of `data`.
-struct Blocks<'a> {
-    data: &'a mut Vec<u8>,
+/// The compressed blocks of an array.
+struct Blocks<W> {
+    file: W,
     /// Bytes of a block that is not full yet.
     raw: Vec<u8>,
+    /// The last block in compressed form.
+    compressed: Vec<u8>,
     /// Compressed size of each block, B.
     sizes: Vec<usize>,
     outcome: io::Result<()>,
 }
 
-impl Blocks<'_> {
+impl<W: Write> Blocks<W> {
     /// Adds the bytes of a value; blocks have a whole number of values.
     fn add<const N: usize>(&mut self, bytes: [u8; N]) {
         self.raw.extend(bytes);
@@ -216,33 +211,41 @@ impl Blocks<'_> {
         }
     }
 
-    /// Compresses the bytes gathered.
+    /// Compresses the bytes gathered and writes them, unless an error came before.
     fn close(&mut self) {
-        let before = self.data.len();
-        let mut encoder = ZlibEncoder::new(&mut *self.data, Compression::fast());
-        let packed = encoder.write_all(&self.raw).and_then(|()| encoder.finish().map(drop));
-        self.outcome = std::mem::replace(&mut self.outcome, Ok(())).and(packed);
-        self.sizes.push(self.data.len() - before);
+        self.compressed.clear();
+        let mut encoder = ZlibEncoder::new(&mut self.compressed, Compression::fast());
+        let compressed = encoder.write_all(&self.raw).and_then(|()| encoder.finish().map(drop));
+        if self.outcome.is_ok() {
+            self.outcome = compressed.and_then(|()| self.file.write_all(&self.compressed));
+        }
+        self.sizes.push(self.compressed.len());
         self.raw.clear();
     }
 }
 
-/// Appends a header and the compressed blocks of `array` to `data`. The header has 64-bit entries: number of blocks,
-/// bytes per block, bytes of an incomplete last block or 0, and compressed bytes of each block.
-fn append_blocks(array: ArrayPieces<'_>, data: &mut Vec<u8>) -> io::Result<()> {
-    let (bytes, start) = (array.count * array.kind.size(), data.len());
+/// Writes a header and the compressed blocks of `array`; returns their size, B. The header has 64-bit entries: number of
+/// blocks, bytes per block, bytes of an incomplete last block or 0, and compressed bytes of each block.
+fn append_blocks(array: ArrayPieces<'_>, file: &mut (impl Write + Seek)) -> io::Result<u64> {
+    let bytes = array.count * array.kind.size();
     let header = [bytes.div_ceil(BLOCK), BLOCK, bytes % BLOCK];
-    data.resize(start + (header.len() + header[0]) * 8, 0);
-    let mut blocks = Blocks { data, raw: Vec::with_capacity(BLOCK), sizes: Vec::new(), outcome: Ok(()) };
+    let header_size = (header.len() + header[0]) * 8;
+    // The sizes of the blocks are known after them.
+    file.seek_relative(header_size as i64)?;
+    let (raw, compressed) = (Vec::with_capacity(BLOCK), Vec::with_capacity(BLOCK));
+    let mut blocks = Blocks { file: &mut *file, raw, compressed, sizes: Vec::new(), outcome: Ok(()) };
     (array.give)(&mut |piece| piece.add_to(&mut blocks));
     if !blocks.raw.is_empty() {
         blocks.close();
     }
-    let Blocks { data, sizes, outcome, .. } = blocks;
-    for (word, place) in header.iter().chain(&sizes).zip(data[start..].chunks_exact_mut(8)) {
-        place.copy_from_slice(&(*word as u64).to_le_bytes());
-    }
-    outcome
+    let Blocks { sizes, outcome, .. } = blocks;
+    outcome?;
+    let blocks_size = sizes.iter().sum::<usize>();
+    file.seek_relative(-((header_size + blocks_size) as i64))?;
+    let words: Vec<u8> = header.iter().chain(&sizes).flat_map(|word| (*word as u64).to_le_bytes()).collect();
+    file.write_all(&words)?;
+    file.seek_relative(blocks_size as i64)?;
+    Ok((header_size + blocks_size) as u64)
 }
 
 /// Returns the file of a grid: `points` with three coordinates each (m), `cells`, and fields of the points.
@@ -254,37 +257,43 @@ pub(crate) fn write(points: Vec<f32>, cells: Cells, fields: Vec<DataArray>) -> i
     let connectivity = DataArray { name: CONNECTIVITY.into(), components: 1, values: Values::I64(connectivity) };
     let points = DataArray::new(POINTS, 3, points).into();
     let fields = fields.into_iter().map(ArrayPieces::from).collect();
-    write_grid(points, (connectivity.into(), points_per_cell, cell_type), fields).map(|file| file.parts().concat())
+    let mut file = Cursor::new(Vec::new());
+    write_grid(&mut file, points, (connectivity.into(), points_per_cell, cell_type), fields)?;
+    Ok(file.into_inner())
 }
 
-/// Returns the file of a grid with a vertex at each of the `points`, three coordinates each (m), and fields of the points.
+/// Writes the `file` of a grid with a vertex at each of the `points`, three coordinates each (m), and fields of the points, a block of
+/// an array at a time; returns its size, B.
 ///
 /// # Errors
-/// Errors of the compression only, which writes to memory.
+/// Errors of the file.
 pub(crate) fn write_vertices<'a>(
+    file: &mut (impl Write + Seek),
     count: usize,
     points: impl FnOnce(PieceUser<'_>) + 'a,
     fields: Vec<ArrayPieces<'a>>,
-) -> io::Result<FileParts> {
+) -> io::Result<u64> {
     let points = ArrayPieces::new((POINTS, 3), (Values::F32(Vec::new()), 3 * count), points);
     let numbers = |range: Range<usize>| Values::I64(range.map(|i| i as i64).collect());
     let connectivity = ArrayPieces::computed(CONNECTIVITY, Values::I64(Vec::new()), count, numbers);
-    write_grid(points, (connectivity, 1, VERTEX), fields)
+    write_grid(file, points, (connectivity, 1, VERTEX), fields)
 }
 
-/// Returns the file of a grid: `points`, the points of each cell and their number, the type of the cells, and fields of the points.
+/// Writes the `file` of a grid: `points`, the points of each cell and their number, the type of the cells, and fields of the points;
+/// returns its size, B.
 fn write_grid(
+    file: &mut (impl Write + Seek),
     points: ArrayPieces<'_>,
     (connectivity, points_per_cell, cell_type): (ArrayPieces<'_>, usize, u8),
     fields: Vec<ArrayPieces<'_>>,
-) -> io::Result<FileParts> {
+) -> io::Result<u64> {
     let (point_count, cell_count) = (points.count / 3, connectivity.count / points_per_cell);
     let name_of =
         |components: usize| fields.iter().find(|field| field.components == components).map(|field| &field.name);
     // ParaView and similar readers display these fields by default.
     let shown = [("Scalars", name_of(1)), ("Vectors", name_of(3))];
     let shown = shown.into_iter().filter_map(|(kind, name)| Some(format!(" {kind}=\"{}\"", name?)));
-    let mut text = format!(
+    let beginning = format!(
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" \
          header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\">\n<UnstructuredGrid>\n\
          <Piece NumberOfPoints=\"{point_count}\" NumberOfCells=\"{cell_count}\">\n<PointData{}>\n",
@@ -292,44 +301,38 @@ fn write_grid(
     );
     let offset = |range: Range<usize>| Values::I64(range.map(|i| ((i + 1) * points_per_cell) as i64).collect());
     let kind = |range: Range<usize>| Values::U8(vec![cell_type; range.len()]);
-    let cells = vec![
-        connectivity,
-        ArrayPieces::computed("offsets", Values::I64(Vec::new()), cell_count, offset),
-        ArrayPieces::computed("types", Values::U8(Vec::new()), cell_count, kind),
-    ];
+    let offsets_of_cells = ArrayPieces::computed("offsets", Values::I64(Vec::new()), cell_count, offset);
+    let types = ArrayPieces::computed("types", Values::U8(Vec::new()), cell_count, kind);
+    let field_count = fields.len();
+    let arrays: Vec<_> = fields.into_iter().chain([points, connectivity, offsets_of_cells, types]).collect();
+    let elements: Vec<String> = arrays.iter().map(ArrayPieces::element).collect();
+    let text = |offsets: &[u64]| {
+        let elements: Vec<String> =
+            elements.iter().zip(offsets).map(|(element, offset)| format!("{element}{offset}\"/>\n")).collect();
+        let (fields, rest) = elements.split_at(field_count);
+        let (points, cells) = rest.split_at(1);
+        let [fields, points, cells] = [fields, points, cells].map(<[String]>::concat);
+        format!(
+            "{beginning}{fields}</PointData>\n<Points>\n{points}</Points>\n<Cells>\n{cells}</Cells>\n</Piece>\n</UnstructuredGrid>\n"
+        )
+    };
+    const START: &str = "<AppendedData encoding=\"raw\">\n_";
+    const END: &[u8] = b"\n</AppendedData>\n</VTKFile>\n";
+    // The offsets are known after the arrays. Spaces take the place of what the text before them is shorter than with the largest ones.
+    let space = text(&vec![u64::MAX; arrays.len()]).len();
+    let start = (space + START.len()) as u64;
+    file.seek(SeekFrom::Start(start))?;
     // The data of the last element come first: meshio 5.3 reads wrong offsets if the arrays are in the order of their
     // elements.
-    let mut data = Vec::new();
-    let cells = append_arrays(cells, &mut data)?;
-    let points = append_arrays(vec![points], &mut data)?;
-    text += &append_arrays(fields, &mut data)?;
-    text += &format!(
-        "</PointData>\n<Points>\n{points}</Points>\n<Cells>\n{cells}</Cells>\n</Piece>\n</UnstructuredGrid>\n"
-    );
-    text += "<AppendedData encoding=\"raw\">\n_";
-    data.extend(b"\n</AppendedData>\n</VTKFile>\n");
-    Ok(FileParts { text: text.into_bytes(), data })
-}
-
-/// Appends `arrays` to `data`, the last array first; returns their XML elements.
-fn append_arrays(arrays: Vec<ArrayPieces<'_>>, data: &mut Vec<u8>) -> io::Result<String> {
-    let mut text = String::new();
-    for array in arrays.into_iter().rev() {
-        // The format's default is a single component; meshio makes a column of an array that states it.
-        let components = match array.components {
-            1 => String::new(),
-            components => format!(" NumberOfComponents=\"{components}\""),
-        };
-        let (name, kind, offset) = (&array.name, array.kind.type_name(), data.len());
-        text.insert_str(
-            0,
-            &format!(
-                "<DataArray type=\"{kind}\" Name=\"{name}\"{components} format=\"appended\" offset=\"{offset}\"/>\n"
-            ),
-        );
-        append_blocks(array, data)?;
+    let (mut size, mut offsets) = (0, vec![0; arrays.len()]);
+    for (offset, array) in offsets.iter_mut().zip(arrays).rev() {
+        *offset = size;
+        size += append_blocks(array, file)?;
     }
-    Ok(text)
+    file.write_all(END)?;
+    file.seek(SeekFrom::Start(0))?;
+    write!(file, "{:space$}{START}", text(&offsets))?;
+    Ok(start + size + END.len() as u64)
 }
 
 /// Returns the coordinates of the points in a `file`, three for each point, and the fields of the points. The function

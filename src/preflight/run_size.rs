@@ -18,8 +18,9 @@ const TAKEN: [f64; 2] = [0.25, 0.5];
 /// Memory of the program without particles, B.
 const PROGRAM: f64 = 14e6;
 
-/// Memory of the compressor of a frame: its window, its tables, and a piece of an array before and after it, B.
-const COMPRESSOR: f64 = 0.3e6;
+/// Memory that a frame takes while it is written, B: the compressor with its window and tables, a piece of an array, and a block before
+/// and after compression.
+const FRAME: f64 = 0.6e6;
 
 /// Length of a number in a table with its comma, B: seventeen digits as a rule.
 const NUMBER: f64 = 19.0;
@@ -109,13 +110,9 @@ impl<const D: usize> PreflightContext<'_, D> {
     /// rollback are in files.
     fn memory(&self) -> f64 {
         let system = self.system;
-        let (fluid, boundary) = (system.fluid().len() as f64, system.boundary().len() as f64);
-        // The compressed arrays of a frame, which take half as much again while their space grows.
-        let frame = self
-            .plan
-            .frames
-            .as_ref()
-            .map_or(0.0, |frames| COMPRESSOR + 1.5 * particle_bytes(&frames.fields).1 * fluid.max(boundary));
+        let boundary = system.boundary().len() as f64;
+        // A frame is written a block of an array at a time, with the number of the solid of each boundary particle.
+        let frame = self.plan.frames.as_ref().map_or(0.0, |_| FRAME + size_of::<f32>() as f64 * boundary);
         let for_a_while = (system.step_memory_bytes() as f64).max(frame);
         PROGRAM + system.memory_bytes() as f64 + for_a_while
     }

@@ -224,8 +224,8 @@ where
             Order::Gather => self.sim.gather_water(false),
             Order::Frame => {
                 if let Some(FramesPlan { fields, crop, .. }) = &self.plan.frames {
-                    let nothing = frame::water_file(self.sim.system(), fields, crop.as_ref());
-                    nothing.map_err(|e| Error::new(ErrorKind::File, e.to_string()))?;
+                    let written = frame::write_water(&mut io::empty(), self.sim.system(), fields, crop.as_ref());
+                    written.map_err(|e| Error::new(ErrorKind::File, e.to_string()))?;
                 }
             }
             Order::Save { rollbacks } => {

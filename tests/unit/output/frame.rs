@@ -8,9 +8,11 @@ fn points_in_2d_are_written_with_a_third_coordinate_and_a_vertex_each() -> io::R
     for points in [vec![Vector::<2>::new(1.0, 2.0), Vector::<2>::new(3.0, 4.0)], vec![]] {
         let numbers: Vec<f32> = points.iter().map(|x| x[0] as f32).collect();
         let density = DataArray::new("density", 1, numbers.clone()).into();
-        let file =
-            vtu::write_vertices(points.len(), |use_piece| use_piece(&Values::F32(to_3d(&points))), vec![density])?;
-        let file = file.parts().concat();
+        let mut file = io::Cursor::new(Vec::new());
+        let give = |use_piece: &mut dyn FnMut(&Values)| use_piece(&Values::F32(to_3d(&points)));
+        let size = vtu::write_vertices(&mut file, points.len(), give, vec![density])?;
+        let file = file.into_inner();
+        assert_eq!(size, file.len() as u64);
         let (read, fields) = vtu::read_points(&file).map_err(io::Error::other)?;
         let expected = if points.is_empty() { vec![] } else { vec![1.0, 2.0, 0.0, 3.0, 4.0, 0.0] };
         assert_eq!((read, fields), (expected, vec![DataArray::new("density", 1, numbers)]));

@@ -111,9 +111,11 @@ fn a_block_header_with_wrong_sizes_is_refused() {
         assert_eq!(decompress(&words(header), 8), None, "{header:?}");
     }
     // A block with more or fewer bytes than its header declares.
-    let mut data = Vec::new();
+    let mut data = Cursor::new(Vec::new());
     let array = DataArray { name: "ones".into(), components: 1, values: Values::U8(vec![1; 100]) };
-    append_blocks(array.into(), &mut data).unwrap();
+    let size = append_blocks(array.into(), &mut data).unwrap();
+    let mut data = data.into_inner();
+    assert_eq!(size, data.len() as u64);
     assert_eq!(decompress(&data, 8), Some(vec![1; 100]));
     for partial in [99, 101] {
         data[16] = partial;
