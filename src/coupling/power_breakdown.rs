@@ -84,8 +84,8 @@ impl<const D: usize> PowerMeter<D> {
     }
 }
 
-/// Returns viscous + diffusion + gradient + walls, W: the power on the water at the last force pass without the work of
-/// the solids.
+/// Returns the power on the water at the last force pass, without the work of the solids: viscous + diffusion + gradient +
+/// walls, W.
 pub(super) fn total_power<const D: usize>(system: &System<D>) -> f64 {
     let power = |(i, solid): (usize, &Solid<D>)| solid.load.power(&solid.kinematics) * system.solid_multiplicity(i);
     let on_solids: f64 = system.solids.iter().enumerate().map(power).sum();

@@ -43,7 +43,7 @@ fn unknown_series(series: &str, known: &[String], key: &str) -> Error {
 /// Builds the checks of `plan` and reads their references.
 ///
 /// # Errors
-/// `Scene` if one, or a statistic, names no series of `probes`; else as [`ReferenceCheck::new`].
+/// `Scene` if a check or a statistic names a series that none of the `probes` has; else as [`ReferenceCheck::new`].
 pub(crate) fn checks_from_plan<const D: usize>(
     plan: &Plan,
     probes: &[Box<dyn Probe<D>>],

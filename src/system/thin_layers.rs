@@ -1,14 +1,14 @@
 //! Buoyancy of parts of solids thinner than dp.
 //!
-//! A single layer of boundary particles in the middle of a part of thickness t keeps the water off as a part dp thick does. The
-//! volume (dp − t) dpᴰ⁻¹ of each particle is too much, and its buoyancy −ρ₀ g times this volume is taken from the load of the solid,
-//! as far as water is around: by the weight of the water over that on both sides of a layer under water. So a plate has half of it
-//! with water on one side, and nothing in air. Only the buoyancy in water at rest is corrected; the added mass of a plate hardly
-//! depends on its thickness.
+//! A single layer of boundary particles in the middle of a part of thickness t keeps the water off as a part dp thick does. Each
+//! particle displaces (dp − t) dpᴰ⁻¹ too much. The buoyancy of this excess, −ρ₀ g (dp − t) dpᴰ⁻¹ s, is subtracted from the load
+//! on the solid. The share s of water around the particle, by kernel weights, is 1 under water, ½ with water on one side, and 0
+//! in air. Only the buoyancy in water at rest is corrected; the added mass of a plate hardly depends on its thickness.
 //!
-//! Across the faces of a layer this is the pressure at the places of the faces; along them it is what the pressure on the lower end of
-//! the layer has in excess over that on the upper end. Where a fixed or driven part stands on another such solid there is no water
-//! below its end: the part along the faces is then a load of what it stands on, whose face the layer covers.
+//! The component across the faces of a layer moves the pressures to the true faces. The component along the faces is the excess
+//! of the pressure on the lower end over that on the upper end. Where a fixed or driven part stands on another such solid, no
+//! water is below its lower end. The component along the faces is then subtracted from the load on that other solid, whose face
+//! the layer covers.
 
 use super::System;
 use crate::{

@@ -111,8 +111,8 @@ impl IncidentWaves {
     /// (m) with a `current` (m/s) along the axis under the acceleration `g` (m/s²). The waves rise in the time `ramp` (s).
     ///
     /// # Errors
-    /// `Scene` if a number is no positive one, the current stops waves of this period, the waves would break, or water would move against
-    /// the current.
+    /// `Scene` if `height`, `period`, `depth` or `g` is not positive, the current stops waves of this period, the waves would
+    /// break, or they would move water against the current.
     pub fn regular(height: f64, period: f64, phase: f64, depth: f64, current: f64, g: f64, ramp: f64) -> Result<Self> {
         Self::unchecked(height, period, phase, (depth, current, g), ramp)?.along_current()
     }

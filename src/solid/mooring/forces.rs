@@ -162,17 +162,18 @@ impl NodeBody {
     }
 }
 
-/// What a bed bears of a node at the height `z` (m) above it, N, and its stiffness, N/m.
+/// The force (N) with which a bed supports a node at the height `z` (m) above it, and the stiffness of this support, N/m.
 ///
-/// The point at which a line leaves a bed lies between two nodes. Where it lies the distance b before a node, on the segment of
-/// length l₀ below it, the bed bears a part of that segment. The line of the weight w a metre and the tension H along the bed
-/// rises from there by z = √(b² + (H/w)²) − H/w. Nodes on this curve are at rest if the bed bears of the first node above it
+/// The point at which a line leaves a bed lies between two nodes. At the distance b along the line from the node above it, the
+/// bed supports part of the segment of length l₀ between the nodes. The line of weight w (N/m), with the tension H (N) along the
+/// bed, rises from that point by z = √(b² + (H/w)²) − H/w. Nodes on this curve are at rest if the bed supports the node
+/// above with the force
 ///
 ///   R = ½ w l₀ (1 − b/l₀)²,  b = √(z² + 2 z H/w) < l₀
 ///
-/// (own derivation, for a small slope). A soft bed bends the line over the length λ = √(H/(k c)); where λ exceeds l₀ the nodes resolve it by themselves.
-/// So R is divided by 1 + (λ/l₀)², and √(b² + b₀²) − b₀ with b₀ = λ²/l₀ takes the place of b: the stiffness at z = 0 is then no
-/// larger than that of the bed.
+/// (own derivation, for a small slope). A bed of the stiffness k (Pa/m) bends the line, of contact width c (m), over the length
+/// λ = √(H/(k c)). Where λ exceeds l₀, the nodes resolve this bend. Therefore R is divided by 1 + (λ/l₀)², and b is replaced by
+/// √(b² + b₀²) − b₀ with b₀ = λ²/l₀: the stiffness at z = 0 is then no larger than that of the bed.
 pub(super) fn touchdown(material: &LineMaterial, segment: f64, weight: f64, pull: f64, z: f64) -> [f64; 2] {
     let stiff = material.bed_stiffness * material.contact_width * segment;
     if weight <= 0.0 || stiff <= 0.0 {
