@@ -145,7 +145,17 @@ impl FrameWriter {
         let number = self.times.len();
         let names = self.piece_names(number);
         let path = self.folder.join("frames").join(&names[0]);
-        let mut bytes = write_partial(&path, |file| write_water(file, system, &self.fields, self.crop.as_ref()))?;
+        let (fields, crop) = (&self.fields, self.crop.as_ref());
+        let mut is_given = false;
+        let written = write_partial(&path, |file| {
+            is_given = true;
+            write_water(file, system, fields, crop)
+        });
+        if !is_given {
+            // The other ranks give what the file cannot take.
+            let _ = write_water(&mut io::empty(), system, fields, crop);
+        }
+        let mut bytes = written?;
         commit_partial(&path)?;
         let ranges: Vec<Range<usize>> = (0..system.solids().len()).map(|i| system.home_boundary(i)).collect();
         let owner = ranges.iter().enumerate().flat_map(|(i, range)| range.clone().map(move |_| i as f32)).collect();
@@ -216,7 +226,7 @@ impl FrameWriter {
 /// others at a time.
 ///
 /// # Errors
-/// Errors of the file.
+/// Errors of the file, after the others have given theirs.
 pub(crate) fn write_water<const D: usize>(
     file: &mut (impl Write + Seek),
     system: &System<D>,

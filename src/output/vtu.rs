@@ -224,16 +224,16 @@ impl<W: Write> Blocks<W> {
     }
 }
 
-/// Writes a header and the compressed blocks of `array`; returns their size, B. The header has 64-bit entries: number of
+/// Writes a header and the compressed blocks of `array`; returns their size, B. All values are taken, also after an error. The header has 64-bit entries: number of
 /// blocks, bytes per block, bytes of an incomplete last block or 0, and compressed bytes of each block.
 fn append_blocks(array: ArrayPieces<'_>, file: &mut (impl Write + Seek)) -> io::Result<u64> {
     let bytes = array.count * array.kind.size();
     let header = [bytes.div_ceil(BLOCK), BLOCK, bytes % BLOCK];
     let header_size = (header.len() + header[0]) * 8;
     // The sizes of the blocks are known after them.
-    file.seek_relative(header_size as i64)?;
+    let outcome = file.seek_relative(header_size as i64);
     let (raw, compressed) = (Vec::with_capacity(BLOCK), Vec::with_capacity(BLOCK));
-    let mut blocks = Blocks { file: &mut *file, raw, compressed, sizes: Vec::new(), outcome: Ok(()) };
+    let mut blocks = Blocks { file: &mut *file, raw, compressed, sizes: Vec::new(), outcome };
     (array.give)(&mut |piece| piece.add_to(&mut blocks));
     if !blocks.raw.is_empty() {
         blocks.close();
@@ -266,7 +266,7 @@ pub(crate) fn write(points: Vec<f32>, cells: Cells, fields: Vec<DataArray>) -> i
 /// an array at a time; returns its size, B.
 ///
 /// # Errors
-/// Errors of the file.
+/// Errors of the file, after all values have been taken: other ranks give theirs in any case.
 pub(crate) fn write_vertices<'a>(
     file: &mut (impl Write + Seek),
     count: usize,
@@ -321,14 +321,15 @@ fn write_grid(
     // The offsets are known after the arrays. Spaces take the place of what the text before them is shorter than with the largest ones.
     let space = text(&vec![u64::MAX; arrays.len()]).len();
     let start = (space + START.len()) as u64;
-    file.seek(SeekFrom::Start(start))?;
+    let mut outcome = file.seek(SeekFrom::Start(start)).map(drop);
     // The data of the last element come first: meshio 5.3 reads wrong offsets if the arrays are in the order of their
     // elements.
     let (mut size, mut offsets) = (0, vec![0; arrays.len()]);
     for (offset, array) in offsets.iter_mut().zip(arrays).rev() {
         *offset = size;
-        size += append_blocks(array, file)?;
+        outcome = outcome.and(append_blocks(array, file).map(|bytes| size += bytes));
     }
+    outcome?;
     file.write_all(END)?;
     file.seek(SeekFrom::Start(0))?;
     write!(file, "{:space$}{START}", text(&offsets))?;

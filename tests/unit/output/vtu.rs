@@ -122,3 +122,54 @@ fn a_block_header_with_wrong_sizes_is_refused() {
         assert_eq!(decompress(&data, 8), None);
     }
 }
+
+/// A file on a disk with so many bytes.
+struct SmallDisk(Cursor<Vec<u8>>, u64);
+
+impl Write for SmallDisk {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        if self.0.position() + bytes.len() as u64 > self.1 {
+            return Err(io::ErrorKind::StorageFull.into());
+        }
+        self.0.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+impl Seek for SmallDisk {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        self.0.seek(to)
+    }
+}
+
+/// Ranks give their values one after the other and would wait for ever for a first rank that stops to take them.
+#[test]
+fn a_full_disk_is_an_error_and_all_values_are_taken() {
+    let whole = {
+        let mut file = SmallDisk(Cursor::new(Vec::new()), u64::MAX);
+        write_vertices(&mut file, 3, |use_piece| use_piece(&Values::F32(vec![0.5; 9])), vec![]).unwrap()
+    };
+    for size in [0, 700, 900, whole - 1, whole] {
+        let taken = std::cell::RefCell::new(Vec::new());
+        let field = |name: &'static str| {
+            ArrayPieces::new((name, 1), (Values::U32(vec![]), 3), {
+                let taken = &taken;
+                move |use_piece| {
+                    taken.borrow_mut().push(name);
+                    use_piece(&Values::U32(vec![1, 2, 3]));
+                }
+            })
+        };
+        let points = |use_piece: PieceUser<'_>| {
+            taken.borrow_mut().push("points");
+            use_piece(&Values::F32(vec![0.5; 9]));
+        };
+        let mut file = SmallDisk(Cursor::new(Vec::new()), size);
+        let written = write_vertices(&mut file, 3, points, vec![field("first"), field("second")]);
+        assert_eq!(written.map_err(|e| e.kind()), Err(io::ErrorKind::StorageFull), "{size} B");
+        assert_eq!(*taken.borrow(), ["points", "second", "first"], "{size} B");
+    }
+}
