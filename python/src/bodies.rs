@@ -1,4 +1,4 @@
-//! What a callback sees between water and bodies.
+//! The data and the commands of a callback, which is called between the motions of the water and of the bodies.
 
 use std::sync::Arc;
 
@@ -31,7 +31,7 @@ pub fn axial(py: Python<'_>, x: &[f64; 3], dimension: usize) -> PyResult<Py<PyAn
     })
 }
 
-/// Returns `dimension` numbers and zeros behind them, of an array of doubles without a Python object for each.
+/// Returns `dimension` numbers of an array of doubles, followed by zeros, without a Python object for each number.
 fn components(x: &Bound<'_, PyAny>, dimension: usize) -> Option<[f64; 3]> {
     let from = |numbers: &[f64]| {
         let mut three = [0.0; 3];

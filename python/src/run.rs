@@ -1,4 +1,4 @@
-//! Runs with their files: started, gone on with, read.
+//! Starts, resumes and reads runs with their files.
 
 use std::{
     path::{Path, PathBuf},
@@ -27,7 +27,7 @@ use crate::{
     threads::with_threads,
 };
 
-/// Wall time between two looks at signals and two calls of the progress function.
+/// Wall time between two checks for signals, and between two calls of the progress function.
 pub const LOOK: Duration = Duration::from_millis(50);
 
 /// The end of a run: its folder, its status, and whether a check exceeds its bound.
@@ -54,8 +54,8 @@ impl RunObserver for Watch<'_> {
     }
 }
 
-/// Runs `job` on a thread of its own. The calling thread looks at signals and calls `progress` meanwhile; a signal or
-/// `False` stops the run with a checkpoint.
+/// Runs `job` on a thread of its own. Meanwhile the calling thread checks for signals and calls `progress`; a signal or `False`
+/// stops the run with a checkpoint.
 ///
 /// # Errors
 /// The error of the run, or the exception of the signal or of `progress`, with the folder of the run in its attribute
@@ -86,8 +86,8 @@ pub fn watched(
     Ok((outcome.folder, status, failed))
 }
 
-/// Runs `job` on a thread of its own, and looks at signals and calls `progress` meanwhile. Returns the outcome, which is
-/// absent after an internal error, and the first exception.
+/// Runs `job` on a thread of its own; meanwhile checks for signals and calls `progress`. Returns the outcome, which is absent
+/// after an internal error, and the first exception.
 fn run_and_watch(
     job: impl FnOnce(&mut dyn RunObserver) -> Result<RunOutcome> + Send,
     shared: &Shared,

@@ -1,4 +1,4 @@
-//! A scene: where it comes from, its changed keys, and what can be told of it.
+//! A scene: its origin, its changed keys and its properties.
 
 use std::{
     path::{Path, PathBuf},
@@ -68,7 +68,7 @@ impl NativeScene {
         self.origin.named(self.scene.plan())
     }
 
-    /// Returns a hash of the values in force, but for those of outputs, end and guard, which leave states as they are.
+    /// Returns a hash of the values in force without those of outputs, end and guard, which do not change states.
     ///
     /// # Errors
     /// As [`Scene::resolve`].

@@ -43,7 +43,7 @@ pub struct NativeSimulation {
     threads: OwnThreads,
     /// Number of views of its memory.
     leases: Arc<AtomicUsize>,
-    /// What its states carry: [`NativeScene::mark`].
+    /// The mark that its saved states carry: [`NativeScene::mark`].
     mark: u64,
 }
 
@@ -142,7 +142,7 @@ impl NativeSimulation {
         Ok(py.detach(|| pool.install(|| change(&mut **world))))
     }
 
-    /// Returns what the state `saved` holds beside its mark and its checksum.
+    /// Returns the content of the state `saved`, without its mark and its checksum.
     ///
     /// # Errors
     /// `Restart` if it is damaged or belongs to another scene.

@@ -1,4 +1,4 @@
-//! Threads of rayon, also in a process that was forked from another: none of the threads of that process are in it.
+//! Threads of rayon, also in a forked process, in which the threads of the original process do not exist.
 
 use std::{
     mem, process,
@@ -21,7 +21,7 @@ pub fn is_forked() -> bool {
     LOADED_BY.get() != Some(&process::id())
 }
 
-/// Does `work` with the common threads of rayon, in a forked process with others.
+/// Does `work` with the common threads of rayon, or in a forked process with new ones.
 ///
 /// # Errors
 /// That of `work`, or `Usage` if the threads cannot be started.

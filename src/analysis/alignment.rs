@@ -98,7 +98,7 @@ pub fn best_delay(sim: &TimeSeries, reference: &TimeSeries) -> Option<f64> {
     Some(if n(fine).is_some_and(|n| n < least) { fine } else { middle })
 }
 
-/// Returns where in the range from `a` to `b` the function `f`, with one minimum there, is least, to `tolerance`.
+/// Returns the position of the only minimum of `f` in the range from `a` to `b`, to `tolerance`.
 pub(super) fn least_by_golden_section([mut a, mut b]: [f64; 2], tolerance: f64, f: impl Fn(f64) -> f64) -> f64 {
     let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
     while b - a > tolerance {

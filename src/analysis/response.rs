@@ -1,4 +1,5 @@
-//! Response to a regular wave: a fundamental with its own period, beside a mean and a drift, relative to another one.
+//! Response to a regular wave: the fundamental of a motion relative to that of the wave. Each fundamental has its own period, and
+//! a mean and a drift beside it.
 
 use std::f64::consts::TAU;
 
@@ -144,8 +145,8 @@ impl Response {
         Some(AlignedMetrics { delay, relative_l2: (m - 1.0).abs(), amplitude_ratio: m })
     }
 
-    /// Returns the motion that the reference gives at `times`, with the mean, the drift and the period of the run, and
-    /// without a lag of the reference also with its phase.
+    /// Returns the motion that the reference gives at `times`, with the mean, the drift and the period of the run. If the
+    /// reference has no lag, the phase is also that of the run.
     pub(super) fn expected(&self, times: &[f64]) -> Vec<f64> {
         let late = -self.late.unwrap_or(0.0);
         times.iter().map(|t| self.motion.value(*t, self.expected_amplitude, late)).collect()

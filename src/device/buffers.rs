@@ -1,4 +1,4 @@
-//! The arrays on a device, their sizes, and the words by which a device and the host talk.
+//! The arrays on a device, their sizes, and the control words that a device and the host exchange.
 
 use super::{
     gpu::{Adapter, Gpu},
@@ -92,7 +92,8 @@ impl Control {
         self.0[Self::LONGEST]
     }
 
-    /// Factor of the loads on bodies: an Euler step gives the whole force, a Verlet step that over half of two steps.
+    /// Factor on the loads on bodies, –: 1 in an Euler step; in a Verlet step, half of the time over which it integrates, divided
+    /// by the length of the step.
     pub(super) fn weight(&self, verlet: bool) -> f64 {
         if !verlet || self.0[Self::EULER] != 0 {
             return 1.0;
@@ -323,12 +324,12 @@ impl Buffers {
         [&self.control, &self.places, &self.motion, &self.before].into_iter().chain(rows).collect()
     }
 
-    /// What to copy to keep the state.
+    /// The buffers to copy in order to save the state.
     pub(super) fn backups(&self) -> Vec<(&wgpu::Buffer, &wgpu::Buffer)> {
         self.state().into_iter().zip(&self.backup).collect()
     }
 
-    /// What to copy to go back to the state kept.
+    /// The buffers to copy in order to restore the saved state.
     pub(super) fn restores(&self) -> Vec<(&wgpu::Buffer, &wgpu::Buffer)> {
         self.backup.iter().zip(self.state()).collect()
     }

@@ -110,8 +110,8 @@ fn declared_bindings(text: &str) -> Vec<(u32, wgpu::BufferBindingType)> {
 }
 
 impl Gpu {
-    /// Opens the adapter that `name` says: a number, `gpu` for the first graphics card, or part of a name. A software driver is
-    /// opened only by its number or name.
+    /// Opens the adapter that `name` selects: a number, `gpu` for the first graphics card, or part of a name. A software driver
+    /// is opened only by its number or name.
     pub(super) fn open(name: &str) -> Result<Self> {
         let unavailable = |what: String, help: String| {
             Err(Error::new(ErrorKind::Usage, what).with_code(ErrorCode::NoDevice).help(help))
@@ -244,7 +244,8 @@ impl Gpu {
         Ok(Shader { group, bindings: declared.into_iter().map(|(binding, _)| binding).collect(), pipelines })
     }
 
-    /// A pass by the function `entry` of a shader over `threads`; `buffers` are all of the shader, by their bindings.
+    /// A pass that runs the function `entry` of a shader on `threads` threads; `buffers` are all buffers of the shader, in the
+    /// order of their bindings.
     pub(super) fn pass(&self, shader: &Shader, entry: &str, threads: usize, buffers: &[&wgpu::Buffer]) -> Result<Pass> {
         let compiled = shader.pipelines.iter().find(|(name, _)| *name == entry);
         let Some((_, pipeline)) = compiled else { return Err(self.failed(&format!("no shader has {entry}"))) };

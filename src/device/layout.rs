@@ -4,16 +4,16 @@
 use super::shaders::EXCESS;
 use crate::{math::Vector, model::Model};
 
-/// Units of a place in the kernel's support: 2⁴⁰.
+/// Number of units of a place in the kernel's support: 2⁴⁰.
 const FINE: f64 = (1u64 << 40) as f64;
 
-/// Supports from the origin up to which there are places: an eighth of what fits.
+/// Largest distance of a place from the origin, in supports: an eighth of the distance that fits.
 const FARTHEST: f64 = (1 << 20) as f64;
 
 /// How particles are written for a device.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Layout {
-    /// Units of a place in a metre.
+    /// Number of units of a place in a metre, 1/m.
     inv_fine: f64,
     support: f64,
     speed: f64,

@@ -1,10 +1,10 @@
-//! Whole steps on a graphics card (feature `gpu`): the state stays there, and the host gets it back where something is due.
+//! Whole steps on a graphics card (feature `gpu`): the state stays on the card, and the host fetches it when an output is due.
 //!
 //! The pair loop's terms are traced ([`crate::sph::trace`]) and written as WGSL between hand-written shaders: sorting into cells,
-//! neighbour lists, time step, schemes, boundary particles and loads. Places are whole numbers of 64 bits, excess densities of 32;
-//! velocities are in single precision. Sums over particles of one body are added in a fixed tree, everything else that particles
-//! share is a largest or smallest whole number, and the order in a cell is that of the host: the same device and driver give the
-//! same bits.
+//! neighbour lists, time step, schemes, boundary particles and loads. Places are whole numbers of 64 bits, excess densities of
+//! 32; velocities are in single precision. Sums over the particles of a body are added in a fixed tree. All other values that
+//! particles share are the largest or smallest of whole numbers. The order in a cell is that of the host. Therefore the same
+//! device and driver give the same bits.
 //!
 //! Solids stay with the host, in double precision. In a scene whose solids are fixed the device makes many steps on its own.
 
@@ -44,7 +44,7 @@ use crate::{
 /// How far the lists reach beyond the kernel's support, over the support.
 const MARGIN: f64 = 0.1;
 
-/// Steps of a submission, at first and at most.
+/// Number of steps of a submission: of the first one, and the largest.
 const FIRST_STEPS: usize = 4;
 const MOST_STEPS: usize = 64;
 
@@ -62,7 +62,7 @@ pub(crate) struct Device<const D: usize> {
     chunks: SolidChunks,
     buffers: Buffers,
     passes: Passes,
-    /// By what the host reads water between two outputs, if it does.
+    /// The arrays and passes with which the host reads water between two outputs, if it does.
     near: Option<Near>,
     /// Time (s) at tick 0, and the ticks since.
     start: f64,
@@ -85,7 +85,7 @@ struct RowCounts {
 pub(crate) struct StepRequest {
     /// Longest step, s.
     pub(crate) longest: f64,
-    /// Part of the step of the water that is taken, –.
+    /// Factor on the step that the water allows, –.
     pub(crate) factor: f64,
     /// Time at which the device pauses, s.
     pub(crate) pause: f64,
@@ -135,7 +135,7 @@ pub(crate) enum StepsEnd {
 pub(crate) struct WaterReads {
     /// Whether it reads the water near some places.
     pub(crate) near: bool,
-    /// The boundary particles of which it reads the weight of the water around, in ascending order.
+    /// The boundary particles for which it reads the weight of the surrounding water, in ascending order.
     pub(crate) watched: Vec<u32>,
 }
 
@@ -143,7 +143,7 @@ pub(crate) struct WaterReads {
 pub(crate) struct FirstHalf<const D: usize> {
     /// Length of the step, s.
     pub(crate) dt: f64,
-    /// The water at its start near the places that were asked for.
+    /// The water near the requested places at the start of the step.
     pub(crate) near: Vec<NearParticle<D>>,
 }
 
@@ -151,7 +151,7 @@ pub(crate) struct FirstHalf<const D: usize> {
 pub(crate) struct SecondHalf<const D: usize> {
     pub(crate) done: DeviceSteps,
     pub(crate) loads: WaterLoads<D>,
-    /// The water at its end near the places that were asked for.
+    /// The water near the requested places at the end of the step.
     pub(crate) near: Vec<NearParticle<D>>,
 }
 
@@ -186,7 +186,8 @@ fn sponge_statements<const D: usize>(system: &System<D>, layout: &Layout, units:
     Ok(text)
 }
 
-/// The texts of the shaders for `system`, without a device; with those by which the host reads water if it `reads` any.
+/// The texts of the shaders for `system`, without a device. If `reads` is true, they include those with which the host reads
+/// water.
 ///
 /// # Errors
 /// `Usage` if no device computes the system yet.
@@ -274,7 +275,7 @@ impl<const D: usize> Device<D> {
         Ok(device)
     }
 
-    /// What computes, for a message.
+    /// The adapter that computes, for a message.
     pub(crate) fn adapter(&self) -> &Adapter {
         &self.gpu.adapter
     }
@@ -347,12 +348,12 @@ impl<const D: usize> Device<D> {
         if ticks < 9e18 { ticks.round().max(0.0) as u64 } else { u64::MAX / 2 }
     }
 
-    /// The ticks of a longest step `dt` (s), rounded up: a step that ends where a constraint begins does not end before.
+    /// The longest step `dt` (s) in ticks, rounded up, so that a step to the beginning of a constraint does not end before it.
     fn limit(&self, dt: f64) -> u32 {
         (dt / self.units.time * TICKS).ceil().min(1e9) as u32
     }
 
-    /// Makes up to `most` steps until the water has reached the time of the pause; of a system whose solids are fixed.
+    /// Makes up to `most` steps of a system whose solids are fixed, until the water has reached the time of the pause.
     pub(crate) fn run(&mut self, most: u64, request: &StepRequest) -> Result<DeviceSteps> {
         let started = std::time::Instant::now();
         let count = most.min(self.steps as u64) as usize;
@@ -389,7 +390,7 @@ impl<const D: usize> Device<D> {
         Ok(Control::from_words(&words))
     }
 
-    /// Makes longer lists, and goes back to the state before the submission, if one was too short.
+    /// If a list was too short, makes longer lists and returns to the state before the submission.
     fn grow_lists(&mut self, control: &Control) -> Result<bool> {
         let longest = control.longest() as usize;
         if longest <= self.counts.most {
@@ -439,8 +440,8 @@ impl<const D: usize> Device<D> {
         DeviceSteps { steps: u64::from(control.steps()), passes: u64::from(control.passes()), time, dt, weight, end }
     }
 
-    /// Makes the first half of a step: the rates, the step's length and, of the symplectic scheme, the way of half a step. Returns
-    /// the length with the water at the start in `ranges` (m), or why there is none.
+    /// Makes the first half of a step: the rates, the step's length and, in the symplectic scheme, the displacement over half a
+    /// step. Returns the length with the water in `ranges` (m) at the start, or the reason why there is no step.
     pub(crate) fn first_half(
         &mut self,
         request: &StepRequest,
@@ -466,10 +467,10 @@ impl<const D: usize> Device<D> {
         }
     }
 
-    /// Completes the step with the solids of `system` where they are halfway, and returns the loads on them with the water at the end
-    /// in `ranges` (m).
+    /// Completes the step with the solids of `system` at their places halfway through the step. Returns the loads on them, with
+    /// the water in `ranges` (m) at the end.
     ///
-    /// `None` if a list was too short: then the state is that before the step, and the step is to be made again.
+    /// `None` if a list was too short: then the state is that before the step, and the caller repeats the step.
     pub(crate) fn second_half(
         &mut self,
         system: &System<D>,

@@ -1,5 +1,5 @@
-//! What the host reads of a device between two outputs: the water near some places, and the weights of the water around some boundary
-//! particles; and the velocities that it changes.
+//! The exchange of the host with a device between two outputs. The host reads the water near some places and the weights of the
+//! water around some boundary particles, and it changes velocities.
 
 use super::{
     Device,
@@ -33,7 +33,7 @@ pub(super) struct Near {
     watched_on_device: wgpu::Buffer,
     weights: wgpu::Buffer,
     changes: wgpu::Buffer,
-    /// Particles for which there is room, and how many are read at once: somewhat more than the last time.
+    /// Number of particles for which there is room; then the number that is read at once, somewhat more than the last time.
     room: usize,
     expected: usize,
     passes: NearPasses,
@@ -127,7 +127,7 @@ impl Near {
     }
 }
 
-/// What a device says beside its control words.
+/// The answer of a device: control words, loads, weights and particles.
 pub(super) struct Answer<const D: usize> {
     pub(super) control: Control,
     pub(super) loads: Vec<u32>,
@@ -164,12 +164,12 @@ impl<const D: usize> Device<D> {
         self.near.as_ref().and_then(Near::weigh)
     }
 
-    /// Where the weights are, and how many.
+    /// The buffer of the weights, and their number.
     pub(super) fn weights(&self) -> (&wgpu::Buffer, usize) {
         self.near.as_ref().map_or((&self.buffers.loads, 0), |near| (&near.weights, near.watched.len()))
     }
 
-    /// What the device says after all passes: with the water in `ranges` that it found, and the loads if `loaded`.
+    /// The answer of the device after all passes, with the water found in `ranges` (m) and, if `loaded`, the loads.
     pub(super) fn answer(&mut self, ranges: &[Bounds<D>], loaded: bool) -> Result<Answer<D>> {
         let Self { gpu, layout, buffers, near, counts, .. } = self;
         let loads = if loaded { 8 * self.chunks.owners.len() } else { 0 };
@@ -231,7 +231,7 @@ impl<const D: usize> Device<D> {
         Ok(())
     }
 
-    /// Takes other numbers of particles, those of `system`, if they have changed.
+    /// Adopts the numbers of particles of `system`, if they have changed.
     pub(super) fn fit(&mut self, system: &System<D>) -> Result<()> {
         let (water, boundary) = (system.fluid().len(), system.boundary().len());
         if (water, water + boundary) == (self.counts.water, self.counts.n) {

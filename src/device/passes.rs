@@ -12,7 +12,7 @@ use crate::error::Result;
 
 /// The passes.
 pub(super) struct Passes {
-    /// Makes what the pair loop reads of the state.
+    /// Derives the input of the pair loop from the state.
     pub(super) derive: Arc<Pass>,
     /// A force pass.
     pub(super) rates: Vec<Arc<Pass>>,
@@ -163,8 +163,8 @@ impl Passes {
     }
 }
 
-/// A force pass: new lists where they are needed, and the sums over pairs; and the pass that makes the stress of them, once a step,
-/// if there is one.
+/// The shader passes of a force pass: new lists where they are needed, and the sums over pairs. Then the pass that computes the
+/// stress from these sums once in each step, if the stress is kept.
 fn rates(
     gpu: &Gpu,
     shaders: &Shaders,

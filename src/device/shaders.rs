@@ -30,7 +30,7 @@ pub(super) const EXCESS: f64 = 1.0 / (1u64 << 31) as f64;
 
 const COMMON: &str = include_str!("shaders/common.wgsl");
 
-/// What the shaders are made for.
+/// The data from which the texts of the shaders are written.
 pub(super) struct ShaderInput<'a, const D: usize> {
     pub(super) model: &'a Model,
     pub(super) traces: &'a PairTraces,
@@ -73,7 +73,7 @@ pub struct ShaderTexts {
     pub moments: Option<String>,
     /// Water near places of the host, if it reads any.
     pub near: Option<String>,
-    /// Rows of sums, of additional inputs, and of those that are kept from pass to pass.
+    /// Numbers of rows: of sums, of additional inputs, and of the inputs that are kept from pass to pass.
     pub rows: [usize; 3],
     /// The first row of the stress of the water, if it is kept.
     pub stress: Option<usize>,

@@ -37,8 +37,8 @@ pub(crate) struct Enclosure<const D: usize> {
 /// A hollow of a solid, in the solid's frame.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Hollow<const D: usize> {
-    /// Places over which water can come in, m: of each side of the opening the highest on the way. The lowest is at the spill level
-    /// in the orientation of the search. Empty if the hollow is closed.
+    /// Places over which water can come in, m: on each side of the opening, the highest place on the way. The lowest of them is
+    /// at the spill level in the orientation of the search. Empty if the hollow is closed.
     rim: Vec<Vector<D>>,
     /// Unit vector along the columns, upward.
     along: Vector<D>,
@@ -143,7 +143,7 @@ impl<const D: usize> Hollow<D> {
     }
 }
 
-/// Returns whether `shape` can enclose space in any orientation, without a search; `open`: in open hollows too.
+/// Returns whether `shape` can enclose space in any orientation, without a search; open hollows count if `open` is true.
 pub(crate) fn may_enclose<const D: usize>(shape: &Shape<D>, open: bool) -> bool {
     match shape {
         Shape::Box { .. } | Shape::Ball { .. } | Shape::Capsule { .. } | Shape::Cylinder { .. } => false,
@@ -324,8 +324,8 @@ impl<const D: usize> Search<'_, D> {
 
     /// Returns the rim (m) of the hollow with this number and `cells`, whose spill level (m) is `level`.
     ///
-    /// At each side of the opening a way leads up the column until no wall is beside it: over the top of the wall there. A side
-    /// under a deck has none.
+    /// On each side of the opening, the way leads up the column until no wall is beside it, and over the top of the wall. A side
+    /// under a deck has no such way.
     fn rim(&self, cells: &[u32], mark: &[u32], number: u32, level: f64) -> Vec<Vector<D>> {
         let axis = self.up.iamax();
         let upward = self.up[axis] > 0.0;

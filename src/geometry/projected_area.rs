@@ -1,7 +1,7 @@
 //! Area of the part of a shape above a level, projected along a direction, from the facets that face it.
 //!
 //! For a flow along the unit vector u it is ∫ max(−n·u, 0) dA over the surface above the level: exact for parts that do not hide
-//! one another. Parts behind one another count each.
+//! one another. If several parts lie behind one another, each of them counts.
 
 use super::{Shape, submerged_volume::Facet};
 use crate::math::{Pose, Vector};

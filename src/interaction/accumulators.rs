@@ -114,8 +114,8 @@ impl<N: Num, const D: usize> Accumulators<N, D> {
     }
 }
 
-/// Calls `visit` with each auxiliary sum that the terms with needs `own` compute and its row; terms with needs `all` share the
-/// rows.
+/// Calls `visit` with each auxiliary sum that terms with the needs `own` compute, and with its row among the rows for the needs
+/// `all`.
 #[inline(always)]
 pub(super) fn for_each_auxiliary<N, const D: usize>(
     sums: &mut AuxiliarySums<N, D>,

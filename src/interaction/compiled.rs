@@ -1,5 +1,5 @@
-//! A kernel and laws compiled together: all that differs from one choice of laws to another, and no more, as every
-//! choice is compiled for itself.
+//! A kernel and laws compiled together. Every choice of laws is compiled separately, so this file contains only the code that
+//! differs between choices.
 
 use super::{
     PairSums, RequestedSums, accumulators::RequiredSums, reference, reference::ReferenceParticle, simd,
@@ -22,7 +22,7 @@ pub(super) trait PairTerms<const D: usize>: Send + Sync {
     /// Takes the acceleration of gravity of the next pass, in the units of the terms.
     fn set_gravity(&mut self, gravity: &[f64; D]);
 
-    /// By the oracle, the sums of the water particles of a chunk, the first of them `first`; gives the largest
+    /// By the reference: the sums of the water particles of a chunk, of which `first` is the first; returns the largest
     /// |v_ab·r_ab|/(r² + η²).
     fn sum_fluid(
         &self,

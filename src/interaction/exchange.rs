@@ -28,8 +28,8 @@ pub(super) fn receive_next_water<const D: usize>(packed: &mut PackedParticles<D>
     packed.set_words(next, &into);
 }
 
-/// Completes `sums`, of which slab s has `lengths[s]` rows, with those of the slabs of other ranks: all, or what the slab before adds
-/// to the first of this rank.
+/// Completes `sums`, of which slab s has `lengths[s]` rows, with those of other ranks. A rank that advances its own water only
+/// receives what the slab before adds to its first slab; otherwise a rank receives the sums of all slabs.
 pub(super) fn complete_sums(sums: &mut [LaneRow], clusters: &Clusters, lengths: &[usize]) {
     let division = &clusters.division;
     if !division.by_owner {
@@ -54,7 +54,7 @@ pub(super) fn complete_sums(sums: &mut [LaneRow], clusters: &Clusters, lengths: 
     }
 }
 
-/// The sums of all water particles, of which this rank's are `own(i)`. Empty if no sums are lacking.
+/// The sums of all water particles; `own(i)` are those of a particle of this rank. Empty if this rank has all sums already.
 pub(super) fn gather_sums<const D: usize>(clusters: &Clusters, own: impl Fn(usize) -> PairSums<D>) -> Vec<PairSums<D>> {
     let division = &clusters.division;
     let Some((these, _)) = division.own_water() else { return Vec::new() };

@@ -39,13 +39,13 @@ pub struct PairLoopInput<'a, const D: usize> {
     pub fluid: &'a Particles<D>,
     /// The boundary particles.
     pub boundary: &'a Particles<D>,
-    /// Velocities with which they act on the water, m/s.
+    /// Velocities with which the boundary particles act on the water, m/s.
     pub boundary_velocity: &'a [Vector<D>],
     /// Stress of the water, m²/s²; empty unless a law reads it.
     pub stress: &'a [Matrix<D>],
     /// B − 1 of the water's corrected gradients, –; empty unless a law reads it.
     pub gradient_correction: &'a [Matrix<D>],
-    /// Beside which boundary particles water is not shifted; empty unless a law reads it.
+    /// Whether each boundary particle suppresses the shifting of water near it; empty unless a law reads it.
     pub shifting_suppressed: &'a [bool],
     /// Constants of the water.
     pub properties: &'a FluidProperties<D>,
@@ -93,9 +93,10 @@ pub trait PairLoop<const D: usize>: Send + Sync {
     /// Time spent on pairs so far.
     fn time_spent(&self) -> Duration;
 
-    /// Fluid-to-wall extrapolation sums, with the velocity if `flow`. Writes those of the boundary particles near water to `fits`; if
-    /// `own` are the places among them of those that this rank advances, of these alone. Call before [`PairLoop::rates`], which reuses
-    /// the packed fluid data; the neighbour lists must hold.
+    /// Computes the fluid-to-wall extrapolation sums, with the velocity if `flow`, and writes those of the boundary particles
+    /// near water to `fits`. If `own` is given, it contains the places among these of the particles that this rank advances, and
+    /// only their sums are written. Call before [`PairLoop::rates`], which reuses the packed fluid data; the neighbour lists must
+    /// hold.
     fn extrapolate_to_boundary(
         &mut self,
         input: &PairLoopInput<'_, D>,
@@ -122,7 +123,7 @@ pub trait PairLoop<const D: usize>: Send + Sync {
         boundary: &mut [PairSums<D>],
     ) -> StepLimits;
 
-    /// Its terms as traces; `None` of the SIMD lanes.
+    /// Its terms as traces; `None` for the SIMD pair loop.
     #[cfg(feature = "gpu")]
     fn traces(&self) -> Option<PairTraces> {
         None
@@ -147,8 +148,8 @@ pub trait PairLoop<const D: usize>: Send + Sync {
     fn auxiliary_sums(&self, neighbours: &NeighbourLists<D>, i: usize) -> AuxiliarySums<f64, D>;
 }
 
-/// The pair loop of the terms `inner` between water particles and `wall` between water and solids, with the properties
-/// `medium` in `units`: in SIMD lanes with the instructions of `level`, or the reference in SI if there is none.
+/// The pair loop of the terms `inner` between water particles and `wall` between water and solids, with the properties `medium`
+/// in `units`: in SIMD lanes with the instruction set `level`, or, without one, as the reference in SI units.
 pub fn compile<K, T, W, const D: usize>(
     kernel: K,
     inner: T,

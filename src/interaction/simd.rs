@@ -44,15 +44,15 @@ pub(super) struct SimdPairLoop<const D: usize> {
     packed: PackedParticles<D>,
     /// Whether the water is packed for this pass already.
     has_water: bool,
-    /// The sums of each slab and of the one after it, slab by slab; at the end rows of zeros.
+    /// The sums that each slab computes for itself and the next slab, slab by slab; rows of zeros at the end.
     sums: Vec<LaneRow>,
     /// The first cluster with rows in `sums`.
     first: usize,
-    /// Where the rows of a cluster begin in `sums`, from the first on: in its own slab and in the slab before.
+    /// Where the rows of each cluster from `first` on begin in `sums`: those of its own slab and those of the slab before.
     at: Vec<[u32; 2]>,
     /// Whether `sums` are those of [`PairLoop::rates`].
     has_rates: bool,
-    /// Acceleration, gravity included, and density rate of all water particles, where they were gathered from all ranks after the
+    /// Acceleration, gravity included, and density rate of all water particles, if they were gathered from all ranks after the
     /// last pass.
     gathered: Vec<PairSums<D>>,
     spent: Duration,
@@ -97,8 +97,8 @@ impl<const D: usize> SimdPairLoop<D> {
         }
     }
 
-    /// Allocates the sums, `rows` a cluster, of the slabs that this rank computes and of the one before, or of all slabs if it needs
-    /// the sums of all. Returns the number of rows that each slab writes.
+    /// Allocates the sums, with `rows` rows for each cluster: for the slabs that this rank computes and the slab before them, or
+    /// for all slabs if this rank needs all sums. Returns the number of rows that each slab writes.
     fn lay_out(&mut self, clusters: &Clusters, rows: usize) -> Vec<usize> {
         self.has_rates = false;
         let own = clusters.own_slabs();
@@ -121,7 +121,7 @@ impl<const D: usize> SimdPairLoop<D> {
             }
             let last = clusters.slabs.get(s + 1).map_or(slab.end, |next| next.end);
             before = Some((offset, slab.first));
-            // And rows for discarded sums.
+            // One more set of rows is for discarded sums.
             lengths[s] = (last - slab.first + 1) * rows;
             offset += lengths[s];
         }
@@ -374,7 +374,7 @@ struct BroadcastParticle<S: Simd, const D: usize> {
     cluster: usize,
     x: [i32x8<S>; D],
     v: [f32x8<S>; D],
-    /// What single precision cuts off the compression, so that its differences keep their digits in deep water.
+    /// Remainder of the compression beyond single precision, with which differences keep their digits in deep water.
     compression_lo: f32x8<S>,
     side: PairSide<f32x8<S>, D>,
 }
@@ -487,7 +487,8 @@ impl<S: Simd, K: Kernel, const D: usize> SlabInput<'_, S, K, D> {
         one
     }
 
-    /// A side of a pair from densities, pressure and volume `s`, and from the additional rows of cluster `c` as `read` reads them.
+    /// A side of a pair from its compression, pressure and specific volume `s`, and from the additional rows of cluster `c`,
+    /// which `read` reads.
     #[inline(always)]
     fn pair_side<const CORRECTED: bool>(
         &self,
@@ -530,9 +531,10 @@ impl<S: Simd, K: Kernel, const D: usize> SlabInput<'_, S, K, D> {
         side
     }
 
-    /// Pairs `one` with the clusters `others`, counted from `base` in the slab, by the terms `law`: adds their contribution to `sum`
-    /// and its contribution to their `sums`. Its own cluster is paired lane by lane, so there its contribution is discarded into the last
-    /// rows. Unless `CORRECTED`, no particle of the pairs has a gradient correction.
+    /// Pairs the particle `one` with the clusters `others`, counted from `base` in the slab, by the terms `law`. Adds their
+    /// contributions to `sum`, and those of `one` to their `sums`. In its own cluster every particle is `one` in turn, so the
+    /// contributions of `one` to this cluster are discarded into the last rows. Unless `CORRECTED`, no particle of the pairs has
+    /// a gradient correction.
     #[inline(always)]
     fn add_pairs<L: Term<D>, const CORRECTED: bool>(
         &self,

@@ -4,8 +4,9 @@ use std::any::Any;
 
 /// Calls `in_2d` or `in_3d`, the one that takes an `A` and returns a `T`; `None` if neither does.
 ///
-/// A program compiles the generic functions that it calls anew, with all that they call. So a function with a number of dimensions `D`
-/// that does much calls one that is not generic, and that only this library compiles.
+/// The generic functions that a program calls are compiled again with the program, and so are all functions that they call.
+/// Therefore a large function with a number of dimensions `D` calls a function that is not generic: that one is compiled with the
+/// library only.
 pub(crate) fn in_dimension<A: 'static, T: 'static, A2: 'static, T2: 'static, A3: 'static, T3: 'static>(
     argument: A,
     in_2d: impl FnOnce(A2) -> T2,

@@ -1,8 +1,8 @@
-//! A formula in the time t, or in the place x, y, z, as a scene says it: its value and, by the chain rule, its exact rate
-//! by the first of them.
+//! A formula of a scene in the time t, or in the place x, y, z: its value and, by the chain rule, its exact derivative with
+//! respect to the first variable.
 //!
-//! Usual precedence: −t^2 is −(t²), 2^3^2 is 2^(3²), 2e-3 is a number. Every node is evaluated as the pair
-//! (x, dx/dt), so there is nothing to differentiate symbolically and nothing to approximate.
+//! Usual precedence: −t^2 is −(t²), 2^3^2 is 2^(3²), 2e-3 is a number. Every node is evaluated as the pair (x, dx/dt), which
+//! needs neither symbolic differentiation nor an approximation.
 
 mod parser;
 
@@ -30,7 +30,7 @@ type Function = fn(f64) -> (f64, f64);
 #[derive(Clone, Debug)]
 enum Node {
     Number(f64),
-    /// The i-th of the numbers that the formula is of.
+    /// The i-th variable of the formula.
     Variable(usize),
     Negate(Box<Node>),
     Binary(Binary, Box<Node>, Box<Node>),
@@ -144,12 +144,12 @@ impl<const D: usize> UnsteadyField<D> {
         read(text, names).map(|root| Self { root })
     }
 
-    /// Whether it is the same everywhere, at all times.
+    /// Whether the field is the same everywhere and at all times.
     pub(crate) fn is_constant(&self) -> bool {
         self.root.is_constant()
     }
 
-    /// Whether the time stands in it.
+    /// Whether the formula contains the time.
     pub(crate) fn changes_in_time(&self) -> bool {
         self.root.reads(D)
     }
@@ -168,7 +168,7 @@ impl<const D: usize> UnsteadyField<D> {
 }
 
 impl Node {
-    /// Whether variable number `i` stands in it.
+    /// Whether the formula contains variable number `i`.
     fn reads(&self, i: usize) -> bool {
         match self {
             Self::Number(_) => false,

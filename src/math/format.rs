@@ -82,7 +82,7 @@ pub fn two_digits_up(x: f64) -> String {
 fn two_digits(x: f64, round: fn(f64) -> f64) -> String {
     let places = 1 - x.log10().floor() as i32;
     let unit = 10f64.powi(-places);
-    // A number of two digits may differ from itself by round-off.
+    // For a number of two digits, `x / unit` may differ from a whole number by round-off.
     let near = (x / unit).round();
     let whole = if (x / unit - near).abs() < 1e-9 * near { near } else { round(x / unit) };
     without_trailing_zeros(format!("{:.*}", places.max(0) as usize, whole * unit))

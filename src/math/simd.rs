@@ -16,8 +16,8 @@ pub(crate) const LANES: usize = 8;
 #[repr(C, align(32))]
 pub(crate) struct LaneRow(pub [f32; LANES]);
 
-/// The instructions for lanes that this processor has, the fastest first: AVX-512 and AVX2 on x86-64, whatever there
-/// is elsewhere. A processor of 2012 has none.
+/// The SIMD instruction sets of this processor, the fastest first: AVX-512 and AVX2 on x86-64, elsewhere all that the processor
+/// has. A processor of 2012 has none.
 pub fn instruction_sets() -> Vec<Level> {
     #[cfg(target_arch = "x86_64")]
     {
@@ -71,13 +71,13 @@ pub(crate) fn dispatch<W: SimdTask>(level: Level, work: W) -> W::Output {
     }
 }
 
-/// The numbers of a row.
+/// Loads the numbers of a row.
 #[inline(always)]
 pub(crate) fn load<S: Simd>(simd: S, from: &[f32; LANES]) -> f32x8<S> {
     f32x8::simd_from(simd, *from)
 }
 
-/// The whole numbers of a row.
+/// Loads the whole numbers of a row.
 #[inline(always)]
 pub(crate) fn load_integers<S: Simd>(simd: S, from: &[i32; LANES]) -> i32x8<S> {
     i32x8::simd_from(simd, *from)

@@ -1,7 +1,7 @@
 //! Tables of numbers in text files: rows of cells, usually below a row of names.
 //!
-//! Separators are commas, semicolons, tabs or blanks; decimal signs are points or commas. The reader finds them, and the
-//! rows of names and units, where only one reading is possible, and describes the layout in its remarks.
+//! Separators are commas, semicolons, tabs or blanks; decimal signs are points or commas. The reader finds these, and the rows of
+//! names and units, if only one interpretation of the file is possible. It describes the layout in its remarks.
 
 mod cell;
 mod column_name;
@@ -39,7 +39,7 @@ impl TableReader {
     /// The table at `path`.
     ///
     /// # Errors
-    /// `File` if it cannot be read. `Scene` if it is no text, or has more than one reading: says which.
+    /// `File` if it cannot be read. `Scene` if it is not a text, or has more than one interpretation: the error names them.
     pub fn open(path: &Path) -> Result<Self> {
         let bytes = std::fs::read(path).map_err(|why| Error::read(path, &why))?;
         let (text, encoding) = encoding::decode(path, &bytes)?;
@@ -104,8 +104,8 @@ impl TableReader {
     /// The columns `names`. Rows without a value in one of them are skipped.
     ///
     /// # Errors
-    /// `Scene` if a column is missing or its name stands twice, a row is longer or shorter than the others, or a cell is
-    /// not a finite number; the location of the last two is their line.
+    /// `Scene` if a column is missing or its name stands twice, a row is longer or shorter than the others, or a cell is not a
+    /// finite number; in the last two cases the location is the line.
     pub fn columns<C: Into<ColumnName>, const N: usize>(&mut self, names: [C; N]) -> Result<[Vec<f64>; N]> {
         Ok(self.columns_and_lines(names.map(Into::into))?.0)
     }
@@ -125,7 +125,7 @@ impl TableReader {
             }
             let cells = indices.map(|i| cells[i]);
             if cells.iter().any(|cell| cell::is_missing(cell)) {
-                // A blank cell is a common way to leave a value out; the others are told.
+                // A blank cell is a common way to leave a value out; a remark names the other missing values.
                 missing.extend(cells.iter().any(|cell| !cell.is_empty() && cell::is_missing(cell)).then_some(line));
                 continue;
             }
@@ -190,8 +190,8 @@ impl TableReader {
         (columns, unread.into_iter().map(|(line, _)| line).collect())
     }
 
-    /// The series of `column` over the column `time`. If the table has no column `"t_s"`, this name means the column
-    /// that is called a time, or the first column of a table without names or beside a column by number.
+    /// The series of `column` over the column `time`. If the table has no column `"t_s"`, this name means the column with another
+    /// name of a time. In a table without names, or beside a `column` given by its number, it means the first column.
     ///
     /// # Errors
     /// As [`TableReader::columns`]; `Scene` if the times do not increase: says in which line.

@@ -147,11 +147,11 @@ impl TimeSeries {
         Self::of_valid(self.t.clone(), self.x.iter().map(|x| x - offset).collect())
     }
 
-    /// What an instrument shows that takes the mean over `seconds`:
+    /// The reading of an instrument that takes the mean over `seconds`:
     ///
     ///   x̄(t) = 1/s ∫ x dt over t − s/2 … t + s/2
     ///
-    /// by the trapezoid over the samples, at the same times; near an end over what there is.
+    /// by the trapezoidal rule over the samples, at the same times; near an end, over the part of the interval within the span.
     pub fn running_mean(&self, seconds: f64) -> Self {
         let mut total = vec![0.0];
         for i in 1..self.t.len() {

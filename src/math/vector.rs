@@ -1,8 +1,7 @@
 //! Space: vectors, turns, poses and boxes in two or three dimensions from one source.
 //!
-//! What turns is a [`Bivector`], an antisymmetric D×D matrix, so that no formula needs a cross product:
-//! a spin Ω gives the velocity u = V + Ω r, and a force f at r about the centre gives the torque
-//! T = f rᵀ − r fᵀ. The power of the two is ½ T:Ω.
+//! Spins and torques are [`Bivector`]s, antisymmetric D×D matrices, so that no formula needs a cross product: a spin Ω gives the
+//! velocity u = V + Ω r, and a force f at r about the centre gives the torque T = f rᵀ − r fᵀ. The power of the two is ½ T:Ω.
 
 use nalgebra::SMatrix;
 use serde::{Deserialize, Serialize};
@@ -13,7 +12,7 @@ pub type Vector<const D: usize> = nalgebra::SVector<f64, D>;
 /// A D×D matrix.
 pub type Matrix<const D: usize> = SMatrix<f64, D, D>;
 
-/// What turns: an antisymmetric matrix holding a spin (rad/s) or a torque (N m; N m/m in 2-D).
+/// A spin (rad/s) or a torque (N m; N m/m in 2-D), as an antisymmetric matrix.
 ///
 /// In 2-D the one number is `m[(1, 0)]`, positive counter-clockwise; in 3-D the axial vector is
 /// (m₂₁, m₀₂, m₁₀).
@@ -63,7 +62,7 @@ impl<const D: usize> Bivector<D> {
         0.5 * self.0.component_mul(&spin.0).sum()
     }
 
-    /// The same turning, carried along by `rotation`: R Ω Rᵀ.
+    /// The same spin or torque, turned by `rotation`: R Ω Rᵀ.
     pub(crate) fn rotated(&self, rotation: &Matrix<D>) -> Self {
         match D {
             2 => *self,
@@ -110,7 +109,7 @@ impl<const D: usize> std::ops::Mul<f64> for Bivector<D> {
     }
 }
 
-/// Where a body's frame is: a local point x lies at `position + rotation · x` in the world.
+/// Position and rotation of a body's frame: a local point x lies at `position + rotation · x` in the world.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Pose<const D: usize> {
     /// World position of the frame's origin, m.

@@ -247,7 +247,7 @@ impl Checkpoint {
     }
 }
 
-/// Writes on to `inner`, and takes length and FNV-1a hash of what it writes.
+/// Writes to `inner`, and computes the length and the FNV-1a hash of the written bytes.
 struct Hashed<W> {
     inner: W,
     length: u64,

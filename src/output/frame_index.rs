@@ -1,5 +1,5 @@
-//! The list of the frames of a run for ParaView, a .pvd file. It grows and is read without being in memory as a whole: a run may have
-//! very many frames.
+//! The list of the frames of a run for ParaView, a .pvd file. It is never in memory as a whole, because a run may have very many
+//! frames.
 
 use std::{
     fs::File,

@@ -28,7 +28,7 @@ pub struct Manifest {
     pub engine: String,
     /// Threads used, of each rank.
     pub threads: usize,
-    /// Figures of the exchange between ranks, of a run on several.
+    /// Figures of the exchange between the ranks, if the run has several.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub ranks: Option<ExchangeFigures>,
     /// Numbers of particles of each kind.

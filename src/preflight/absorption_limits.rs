@@ -1,27 +1,29 @@
-//! Paddles that absorb: what they are tuned to, what they may, and what they leave of other waves.
+//! Paddles that absorb waves: the period to which they are tuned, the limits of their motion, and the share of other waves that
+//! they send back.
 
 use serde::Serialize;
 
 use super::PreflightContext;
 use crate::solid::Role;
 
-/// A shorter and a longer wave than that to which a paddle is tuned, over its period.
+/// Periods of a shorter and a longer wave, over the period to which a paddle is tuned, –.
 const BESIDE: [f64; 2] = [2.0 / 3.0, 1.5];
 
-/// A paddle that takes the waves which come to it.
+/// A paddle that absorbs the waves which come to it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AbsorberSummary {
     /// Name of the solid.
     pub solid: String,
-    /// The period whose waves it takes whole, s.
+    /// Period of the waves that it absorbs completely, s.
     pub period_s: f64,
-    /// From its face to its gauge, m.
+    /// Distance from its face to its gauge, m.
     pub gauge_m: f64,
-    /// How far it may go from end to end, m.
+    /// Largest stroke from end to end, m.
     pub stroke_m: f64,
-    /// How fast it may go, m/s.
+    /// Largest speed, m/s.
     pub speed_mps: f64,
-    /// Periods of a shorter and a longer wave (s), and the share of their amplitude that goes out again by linear theory, –.
+    /// For a shorter and a longer wave: the period (s), and the share (–) of the amplitude that the paddle sends back by linear
+    /// theory.
     pub sends_back: [(f64, f64); 2],
 }
 

@@ -1,4 +1,4 @@
-//! How the face of a driven solid goes to and fro at the still level.
+//! The horizontal motion of the face of a driven solid at the still level.
 
 use super::PreflightContext;
 use crate::{
@@ -6,17 +6,17 @@ use crate::{
     solid::{PrescribedMotion, Solid},
 };
 
-/// Times at which a driven solid is looked at.
+/// Number of intervals of the run at whose ends the motion is sampled.
 const TIMES_SEEN: usize = 2000;
 
-/// Share of a motion's whole range that a turn back must have to be one.
+/// Least way back after a turning point, over the whole range of the motion, –.
 const TURN: f64 = 0.05;
 
-/// How a solid's face goes at the still level.
+/// The horizontal motion of a solid's face at the still level.
 pub(super) struct DrivenStroke<const D: usize> {
-    /// Sideways, where it goes furthest, or where the waves of its law go; a unit vector.
+    /// Horizontal direction of its largest displacement, or of the waves of its law; a unit vector.
     pub(super) direction: Vector<D>,
-    /// The largest swing, m, and half its period, s; no period if it does not turn.
+    /// The largest stroke, m, and half of its period, s; there is no period if the motion has no turning point.
     pub(super) stroke: f64,
     pub(super) half_period: Option<f64>,
     /// The largest speed, m/s.
@@ -24,7 +24,7 @@ pub(super) struct DrivenStroke<const D: usize> {
 }
 
 impl<const D: usize> PreflightContext<'_, D> {
-    /// How the material point in the still level goes sideways.
+    /// The horizontal motion of the material point in the still level.
     pub(super) fn driven_stroke(
         &self,
         solid: &Solid<D>,
@@ -59,21 +59,21 @@ impl<const D: usize> PreflightContext<'_, D> {
     }
 }
 
-/// Where the waves of a paddle by name go, whose point at `mark` (m) is in the still level; level, a unit vector.
+/// Direction of the named waves of a paddle whose point at `mark` (m) is in the still level: a horizontal unit vector.
 pub(super) fn wave_direction<const D: usize>(motion: &PrescribedMotion<D>, mark: &Vector<D>) -> Option<Vector<D>> {
     let mut way = *motion.directions_at(mark).first()?;
     way[D - 1] = 0.0;
     way.try_normalize(0.0)
 }
 
-/// How far `way` is from end to end.
+/// The largest value of `way` minus the least.
 fn range(way: &[f64]) -> f64 {
     let (least, most) =
         way.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(*x), high.max(*x)));
     most - least
 }
 
-/// The largest swing of `way` from one turn to the next, and how many samples it takes; `None` if it never turns.
+/// The largest stroke of `way` from one turning point to the next, and its number of samples; `None` without a turning point.
 fn largest_stroke(way: &[f64]) -> Option<(f64, usize)> {
     let range = range(way);
     let mut turns = vec![0];

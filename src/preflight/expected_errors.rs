@@ -1,11 +1,13 @@
 //! The errors that measurements lead one to expect at the dp of a scene.
 //!
-//! A half-immersed disc (2-D) that is released off its equilibrium swings, half a period later, 7.8 % less far than in the exact
-//! linear solution with ten particles a diameter, and 4.2 % less with twenty: about 0.8/N of the swing. N is the lesser of the breadth
-//! of the waterplane, in 3-D the diameter of a disc of its area, and twice the draft, over dp: both are D of the disc.
+//! A half-immersed disc (2-D) is released off its equilibrium. Half a period later its displacement is less than that of the
+//! exact linear solution: by 7.8 % with ten particles in a diameter, by 4.2 % with twenty. So a body loses about 0.8/N of its
+//! first swing. N is the lesser of twice the draft and the breadth of the waterplane, over dp; both are the diameter of the disc.
+//! In 3-D the breadth is the diameter of a disc with the area of the waterplane.
 //!
-//! Regular waves of a paddle in 2-D, with gradients corrected near the surface, h = 2 dp and five dp high, have a share s of their height half a length from the
-//! paddle, and lose a share e in every length from there on. Both depend on the length over dp; the loss is known within 0.007
+//! Regular waves of a paddle in 2-D were measured with gradients corrected near the surface, h = 2 dp and a height of 5 dp. Half
+//! a wavelength from the paddle they have the share s of the specified height. In every wavelength from there on they lose the
+//! share e. Both depend on the wavelength over dp; e is known within 0.007
 //! (`docs/explanation/decisions/0106-wave-resolution.md`).
 
 use serde::Serialize;
@@ -23,7 +25,8 @@ const HEAVE: f64 = 0.8;
 /// Smoothing length over dp with which the waves were measured, less rounding.
 const WAVE_SMOOTHING: f64 = 2.0 - 1e-9;
 
-/// Length of waves over dp, their height half a length from the paddle over the asked one, and the loss in a length, –.
+/// Wavelength over dp, height at half a wavelength from the paddle over the specified height (s), and loss in a wavelength
+/// (e), –.
 const WAVES: [[f64; 3]; 5] =
     [[63.0, 0.893, 0.009], [79.0, 0.939, 0.003], [112.0, 0.975, 0.0], [157.0, 0.988, 0.007], [224.0, 0.984, 0.004]];
 
@@ -69,7 +72,7 @@ pub(super) fn heights_at_gauges<const D: usize>(
     context.plan.probes.iter().filter_map(gauge).collect()
 }
 
-/// Height of waves `length_dp` long (dp) at a `distance` of so many lengths from the paddle over that asked for, –.
+/// Height over the specified height (–) of waves of the length `length_dp` (dp), at the `distance` (wavelengths) from the paddle.
 fn height_share(length_dp: f64, distance: f64) -> f64 {
     let [low, high] = [WAVES[0], WAVES[WAVES.len() - 1]];
     let x = length_dp.clamp(low[0], high[0]);

@@ -136,7 +136,8 @@ pub struct Tilt {
     pub period_s: Option<f64>,
 }
 
-/// Returns the heel (rad) of an assembly from rest by its levers and metacentric heights as it starts.
+/// Returns the estimated heel (rad) of an assembly between its start and rest, from its levers and metacentric heights at the
+/// start.
 fn linear_heel<const D: usize>(statics: &StaticSystem<D>, number: usize, tilts: &[Tilt]) -> f64 {
     let along = |axis: &[f64]| statics.lever(number, axis, 0.0).iter().zip(axis).map(|(l, a)| l * a).sum::<f64>();
     // A body of revolution on its side has GM = 0 and no heel.
@@ -489,7 +490,8 @@ impl<const D: usize> PreflightContext<'_, D> {
         }
     }
 
-    /// What the correction of parts thinner than dp leaves of an error in the buoyancy of a body: 0.15 dp over its area (record 147).
+    /// Describes the error in the buoyancy of a body that remains after the correction of parts thinner than dp: 0.15 dp times
+    /// their area (record 147).
     fn thin_buoyancy_error(&self, body: &BodySummary) -> String {
         let model = self.system.model();
         if body.thinnest_dp >= 1.0 - 1e-6 {

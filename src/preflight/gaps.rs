@@ -1,4 +1,4 @@
-//! Gaps between solids, narrower than the kernel reaches.
+//! Gaps between solids that are narrower than the kernel's support radius.
 
 use super::{Finding, PreflightContext, surface_samples::SurfaceSample};
 use crate::{
@@ -10,16 +10,16 @@ use crate::{
     solid::{Role, joint_groups::JointGroups},
 };
 
-/// Solids nearer than this (dp) are in touch: contact is the engine's.
+/// Distance (dp) below which solids are in contact: the engine computes the contact.
 const TOUCH: f64 = 0.1;
 
-/// Faces that look at one another, as the cosine between their normals: of solids apart, and of solids in touch, whose
-/// faces part at every round place.
+/// Largest cosine between the normals of the two faces of a gap: for solids apart, then for solids in contact, whose faces
+/// diverge slowly beside a round place.
 const FACING: [f64; 2] = [-0.8, -0.99];
 
-/// What was found between solids.
+/// The results of the search between solids.
 pub(crate) struct Gaps {
-    /// Which solids touch another to which no joints tie them, by their skins too.
+    /// For each solid, whether it touches another solid, or its contact skin, without a joint between them.
     pub touching: Vec<bool>,
 }
 
@@ -31,7 +31,7 @@ struct Gap<const D: usize> {
 }
 
 impl<const D: usize> PreflightContext<'_, D> {
-    /// Gaps between every solid and every other, seen from the faces of that which moves, or of both.
+    /// Finds the gaps between each two solids, from the faces of the one that moves, or of both if both or neither move.
     pub(super) fn gaps(&self, findings: &mut Vec<Finding>) -> Gaps {
         let n = self.solids().len();
         let mut touching = vec![false; n];
@@ -65,10 +65,10 @@ impl<const D: usize> PreflightContext<'_, D> {
         self.solids()[a].spec.contact_skin + self.solids()[b].spec.contact_skin
     }
 
-    /// The least distance (m) of the faces of solid `a` from solid `b`, and the narrowest gap between faces that look at
-    /// one another, if it is narrower than the kernel reaches.
+    /// The least distance (m) of the faces of solid `a` from solid `b`, and the narrowest gap between opposite faces, if it is
+    /// narrower than the kernel's support radius.
     fn narrowest_gap(&self, a: usize, b: usize) -> (f64, Option<Gap<D>>) {
-        // What is as far as the kernel reaches, but for round-off, is far enough.
+        // A gap as wide as the kernel's support radius, up to round-off, is wide enough.
         let (dp, reach) = (self.dp(), self.system.model().support_radius() * (1.0 - 1e-6));
         let [one, other] = [a, b].map(|i| &self.solids()[i]);
         let around = world_bounds(&other.spec.shape, &other.kinematics.pose).grown(reach);
@@ -82,7 +82,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         };
         let near: Vec<_> = self.surface_samples[a].iter().filter_map(near).collect();
         let nearest = near.iter().map(|(d, ..)| *d).fold(f64::INFINITY, f64::min);
-        // Faces of solids in touch part slowly beside the contact; what is narrow and even there is a gap all the same.
+        // Beside a contact, the faces diverge slowly; there, only a narrow gap of even width counts.
         let (least, facing) = if nearest < TOUCH * dp { (0.5 * dp, FACING[1]) } else { (0.0, FACING[0]) };
         let gaps = near.into_iter().filter(|(d, cosine, _)| *d >= least && *cosine <= facing).map(|x| x.2);
         (nearest, gaps.min_by(|a, b| a.width.total_cmp(&b.width)))

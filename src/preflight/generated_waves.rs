@@ -74,8 +74,9 @@ pub struct GeneratedWave {
     pub back_s: f64,
 }
 
-/// Adds findings about waves that dp does not resolve: what `does` with them, their height and their length, each in m and over dp. The period
-/// of waves of a length (m) is part of the remedy, if the current along them lets them pass.
+/// Adds findings about waves that dp does not resolve, from their height and their length, each in m and over dp. `name` is their
+/// source, and the verb `does` its action. `period` returns the period (s) of waves of a length (m) for the remedy, or `None` if
+/// the current stops them.
 pub(super) fn check_resolution(
     (name, does): (&str, &str),
     height: (f64, f64),

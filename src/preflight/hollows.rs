@@ -1,4 +1,4 @@
-//! Hollows of solids: which are dry at the start, and hulls that water enters without being asked for.
+//! Hollows of solids: those that are dry at the start, and hulls that water enters although the scene does not ask for it.
 
 use super::{Finding, PreflightContext};
 use crate::{

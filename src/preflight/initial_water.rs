@@ -1,4 +1,5 @@
-//! Bodies of water that start as they can hardly be meant: off the lattice, in the air, on one another, or not as long as a period.
+//! Bodies of water whose initial state is probably a mistake: off the lattice, in the air, on one another, or not as long as a
+//! period.
 
 use super::{Finding, PreflightContext};
 use crate::math::{
@@ -6,7 +7,8 @@ use crate::math::{
     format::{coordinates, three_digits},
 };
 
-/// Largest difference between the level and the highest row of particles, dp: half a dp is that of a level between two rows.
+/// Largest accepted difference between the level and the top of the highest row of particles, dp. It is half a dp for a level
+/// midway between two rows.
 const OFF_LATTICE: f64 = 0.2;
 
 /// Depth below a particle of the lowest row within which something carries it, dp.
@@ -27,7 +29,7 @@ pub(super) fn check<const D: usize>(context: &PreflightContext<D>, boxes: &[Boun
     }
 }
 
-/// A level between two rows of particles.
+/// Adds a finding about a level between two rows of particles.
 fn check_surface<const D: usize>(context: &PreflightContext<D>, findings: &mut Vec<Finding>) {
     let (dp, level) = (context.dp(), context.still_water.level);
     let heights = || context.system.fluid().r.iter().map(|x| x[D - 1]);
@@ -52,7 +54,7 @@ fn check_surface<const D: usize>(context: &PreflightContext<D>, findings: &mut V
     findings.push(Finding::note("surface_off_lattice", what, mend));
 }
 
-/// Water whose lowest row nothing carries.
+/// Adds a finding about water if nothing carries its lowest row.
 fn check_support<const D: usize>(
     context: &PreflightContext<D>,
     number: usize,
@@ -74,7 +76,7 @@ fn check_support<const D: usize>(
         context.system.visit_fluid_near(x, &mut |_, y, _| by_water |= y[D - 1] < x[D - 1] - 0.5 * dp);
         by_solid || by_water
     };
-    // Walls beside the water carry nothing, but reach as far.
+    // Particles beside a wall count as carried by it, so half of the row decides.
     if row.is_empty() || 2 * row.iter().filter(|x| is_carried(x)).count() >= row.len() {
         return;
     }
@@ -86,7 +88,7 @@ fn check_support<const D: usize>(
     findings.push(Finding::note("water_in_air", what, mend));
 }
 
-/// Water above the level of other water that it touches.
+/// Adds a finding about water above the level of other water that it touches.
 fn check_stack<const D: usize>(
     context: &PreflightContext<D>,
     (i, own): (usize, &Bounds<D>),
@@ -110,7 +112,7 @@ fn check_stack<const D: usize>(
     findings.push(Finding::warning("stacked_water", what, mend));
 }
 
-/// Water that is not as long as a period.
+/// Adds a finding about water that is not as long as a period.
 fn check_periods<const D: usize>(context: &PreflightContext<D>, boxes: &[Bounds<D>], findings: &mut Vec<Finding>) {
     let Some(all) = boxes.iter().copied().reduce(|a, b| a.union(&b)) else { return };
     for (axis, [from, to]) in

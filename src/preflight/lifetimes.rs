@@ -6,7 +6,7 @@ use crate::{
     solid::{Lifetime, statics::Overload},
 };
 
-/// Springs with more tension at the start than they bear.
+/// Adds findings about springs whose tension at the start exceeds their strength.
 pub(super) fn check_strength<const D: usize>(context: &PreflightContext<'_, D>, findings: &mut Vec<Finding>) {
     for spring in context.system.constraints().springs.iter().filter(|spring| spring.breaks_at_start()) {
         let what = format!("spring \"{}\" breaks at the start", spring.name);
@@ -28,7 +28,7 @@ pub(super) fn overload<const D: usize>(Overload { kind, name, load, strength }: 
     strength_finding::<D>("breaks_at_rest", &what, [load, strength], least)
 }
 
-/// The finding that something has a load (N; N/m in 2-D) above that which it bears; `mend` gets the load, rounded up.
+/// The finding that a load (N; N/m in 2-D) exceeds the strength of the element that carries it; `mend` gets the load, rounded up.
 pub(super) fn strength_finding<const D: usize>(
     topic: &'static str,
     what: &str,

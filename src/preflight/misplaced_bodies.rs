@@ -1,5 +1,5 @@
-//! What can hardly be meant of bodies and their ties: beside the water or longer than it, harder to turn than its size explains, made
-//! fast far away.
+//! Bodies and constraints that are probably mistakes: a body beside the water or longer than it, an inertia larger than the size
+//! explains, an attachment far from its body.
 
 use super::{Finding, PreflightContext};
 use crate::{
@@ -12,7 +12,7 @@ use crate::{
 };
 
 impl<const D: usize> PreflightContext<'_, D> {
-    /// Free bodies and ties where one would not look for them; `touching`: which solids touch another.
+    /// Adds findings about implausible free bodies and constraints; `touching` tells which solids touch another.
     pub(super) fn misplaced_bodies(&self, touching: &[bool], findings: &mut Vec<Finding>) {
         let water = Bounds::around(self.system.fluid().r).grown(0.5 * self.dp());
         for (i, solid) in self.solids().iter().enumerate() {
@@ -37,7 +37,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         self.distant_attachments(findings);
     }
 
-    /// A body that no water is under, or that is longer than all of it.
+    /// A finding about a body that starts beside the water, or is longer than the water.
     fn outside_water(&self, solid: &Solid<D>, water: &Bounds<D>) -> Option<Finding> {
         let (name, own) = (&solid.spec.name, world_bounds(&solid.spec.shape, &solid.kinematics.pose));
         let (long, there) = (own.size(), water.size());
@@ -62,7 +62,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         None
     }
 
-    /// Ends of joints, lines and forces that are further off their free body than that is large.
+    /// Adds findings about ends of joints, lines and forces whose distance from their free body exceeds the body's size.
     fn distant_attachments(&self, findings: &mut Vec<Finding>) {
         let links = self.system.constraints();
         let joints = links.joints.iter().flat_map(|j| j.between.map(|end| ("joint", &j.name, end, j.at)));

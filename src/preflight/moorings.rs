@@ -115,7 +115,7 @@ pub(super) fn summaries<const D: usize>(
         let body = solid.body.as_ref()?;
         let moored = specs.iter().any(|spec| spec.ends.iter().any(|end| end.solid == Some(i)));
         moored.then(|| {
-            // That of a line that hangs straight down, and of round-off, is nothing beside its weight.
+            // The stiffness of a line that hangs straight down, or of round-off, is negligible beside the weight of the line.
             let least = lines.iter().map(|line| 1e-6 * line.fairlead_n / line.length_m).fold(0.0, f64::max);
             let stiffness = Some(sim.mooring_surge_stiffness(i)).filter(|k| k.abs() > least).unwrap_or(0.0);
             let period = (stiffness > 0.0).then(|| std::f64::consts::TAU * (body.mass / stiffness).sqrt());

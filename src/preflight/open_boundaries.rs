@@ -1,4 +1,4 @@
-//! Faces that let in more water than they let out, or less; currents too slow to take the surface under a body.
+//! Faces whose inflow and outflow differ, and currents too slow to take the surface under a body.
 
 use super::{Finding, PreflightContext};
 use crate::{
@@ -11,7 +11,7 @@ use crate::{
     system::{OpenBoundary, driven_speeds, prescribed_discharge},
 };
 
-/// Difference between what enters and what leaves, over the larger, from which on a warning names it.
+/// Difference between inflow and outflow, over the larger of the two, above which a warning is given, –.
 const UNEQUAL: f64 = 0.02;
 
 /// Times after the start at which the flow through a face is compared, over the length of the run, –.
@@ -23,9 +23,10 @@ pub(super) fn check<const D: usize>(context: &PreflightContext<D>, findings: &mu
     check_surface(context, findings);
 }
 
-/// Adds a note if in 2-D a current comes to a body in the surface with U² < g dp. The stagnation head U²/(2 g) then does not take the uppermost
-/// row of particles under the body: the row comes to rest before it and slows the rows below. A metre before a block the row
-/// had 0.15, 0.41, 0.70 of its speed after 6 s with U²/(g dp) = 0.16, 0.5, 1.0.
+/// Adds a note if, in 2-D, a current with U² < g dp meets a body in the surface. The stagnation head U²/(2 g) then does not take
+/// the uppermost row of particles under the body: the row comes to rest before the body and slows the rows below. In a test, the
+/// row a metre before a block had a share of its speed left after 6 s: 0.15 with U²/(g dp) = 0.16, 0.41 with 0.5, and 0.70 with
+/// 1.0.
 fn check_surface<const D: usize>(context: &PreflightContext<D>, findings: &mut Vec<Finding>) {
     // In 3-D the surface goes round a body.
     if D != 2 {

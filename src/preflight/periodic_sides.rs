@@ -1,4 +1,4 @@
-//! Solids that differ at the two periodic sides of an axis, where water that crosses enters one of them or falls off it.
+//! Solids that differ between the two periodic sides of an axis: water that crosses a side there enters a solid or falls off it.
 
 use super::{Finding, PreflightContext};
 use crate::{

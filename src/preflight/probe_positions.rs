@@ -11,11 +11,11 @@ use crate::{
     solid::Solid,
 };
 
-/// How much higher than its level water may come, in depths: what a dam break throws up a wall.
+/// Height above its level that water can reach, over its depth, –: that of a dam break at a wall.
 const SPLASH: f64 = 2.0;
 
 impl<const D: usize> PreflightContext<'_, D> {
-    /// Probes inside solids, outside of everything, above where water can come.
+    /// Adds findings about probes inside solids, outside all water and solids, or above the height that water can reach.
     pub(super) fn check_probes(&self, sound: &SoundSpeed, findings: &mut Vec<Finding>) {
         let solids = self.solids().iter().map(|s| world_bounds(&s.spec.shape, &s.kinematics.pose));
         let all = solids.fold(Bounds::around(self.system.fluid().r), |a, b| a.union(&b));
@@ -40,7 +40,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         }
     }
 
-    /// A section needs a place on its way, in 3-D on its diagonal, at which there is no solid.
+    /// A section needs a place on its line, in 3-D on its diagonal, that no solid covers.
     fn section(&self, name: &str, [from, to]: [Vector<D>; 2], all: &Bounds<D>) -> Option<Finding> {
         let steps = ((to - from).norm() / self.dp()).ceil().clamp(1.0, 10_000.0) as usize;
         let places = || (0..steps).map(|k| from + (to - from) * ((k as f64 + 0.5) / steps as f64));
@@ -58,7 +58,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         Some(Finding::warning(topic, what, self.nearest_water(&((from + to) * 0.5))))
     }
 
-    /// The height (m) above which no water is to be expected; none without gravity.
+    /// The height (m) above which no water is expected; infinite without gravity.
     fn highest(&self, sound: &SoundSpeed) -> f64 {
         if self.g == 0.0 {
             return f64::INFINITY;
@@ -111,7 +111,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         Some(Finding::warning(topic, what, self.nearest_water(&column(self.still_water.level))))
     }
 
-    /// Where the nearest water is.
+    /// Describes the place of the nearest water.
     fn nearest_water(&self, x: &Vector<D>) -> String {
         let distance = |r: &&Vector<D>| (**r - x).norm_squared();
         let nearest = self.system.fluid().r.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));

@@ -1,9 +1,10 @@
 //! The effective viscosity of the water and the Reynolds number U L/ν of each moving body.
 //!
 //! ν is ν₀ of a laminar viscosity; of an artificial one ν = α c₀ h/(4 (D + 2)), half of the value of Monaghan (2005) because the
-//! term acts between approaching particles only @monaghan2005. The viscosity of the Riemann dissipation is that at a shear of U/L. L is
-//! the D-th root of the body's volume. U is, for a driven body, its largest speed across its faces; for a free body the largest of
-//! √(|1 − s| g L), with s its density over the water's, its speed at the start, and the orbital speed π H/T of the waves.
+//! term acts between approaching particles only @monaghan2005. The viscosity of the Riemann dissipation is that at a shear of
+//! U/L. L is the D-th root of the body's volume. For a driven body, U is its largest speed across its faces. For a free body, U
+//! is the largest of three speeds: √(|1 − s| g L), where s is its density over that of the water; its speed at the start; and the
+//! orbital speed π H/T of the waves.
 
 use serde::Serialize;
 

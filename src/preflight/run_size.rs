@@ -64,7 +64,7 @@ pub struct DiskUse {
 }
 
 impl<const D: usize> PreflightContext<'_, D> {
-    /// How large the run is; `columns`: how many each probe writes beside the time.
+    /// Returns the size of the run; `columns` contains the number of columns that each probe writes, without the time.
     pub(super) fn size(
         &self,
         step: &StepSizeLimits,
@@ -106,8 +106,8 @@ impl<const D: usize> PreflightContext<'_, D> {
         }
     }
 
-    /// Memory (B) of a run: the program, the arrays of the particles, and what a step or a frame takes for a while. The states for a
-    /// rollback are in files.
+    /// Memory (B) of a run: the program, the arrays of the particles, and the temporary memory of a step or a frame. The states
+    /// for a rollback are in files.
     fn memory(&self) -> f64 {
         let system = self.system;
         let boundary = system.boundary().len() as f64;

@@ -71,7 +71,8 @@ pub struct StepSizeLimits {
 }
 
 impl<const D: usize> PreflightContext<'_, D> {
-    /// Speeds that are known: of long waves, driven faces, falling bodies, water and bodies at the start.
+    /// Returns the speeds that are known in advance: of long waves, driven faces, falling bodies, and water and bodies at the
+    /// start.
     pub(super) fn sound_speed(&self, findings: &mut Vec<Finding>) -> SoundSpeed {
         let long = (self.g * self.still_water.depth).sqrt();
         let water = self.system.fluid().v.iter().map(|v| v.norm()).fold(0.0, f64::max);
@@ -106,8 +107,8 @@ impl<const D: usize> PreflightContext<'_, D> {
         SoundSpeed { c0_mps: c0, over_depth, expected }
     }
 
-    /// The largest speed (m/s) with which a face of driven solid `i` pushes water below the still level. Along the
-    /// face it counts only where water sticks to it; a face that recedes does not, gravity fills the space.
+    /// The largest speed (m/s) with which a face of driven solid `i` pushes water below the still level. With free slip, only its
+    /// component along the outward normal counts: a receding face pushes no water.
     pub(super) fn driven_speed(&self, i: usize) -> f64 {
         let Role::Driven(motion) = &self.solids()[i].spec.role else { return 0.0 };
         let slips = self.system.model().slip == Slip::Free;
@@ -136,7 +137,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         (format!("\"{name}\" at the start"), start)
     }
 
-    /// How long a step may be; `springs`: as far as they go, s.
+    /// Returns the limits of the time step; `springs` (s) is the limit by springs and motors.
     pub(super) fn step_size_limits(&self, springs: f64, findings: &mut Vec<Finding>) -> StepSizeLimits {
         let model = self.system.model();
         let finite = |x: f64| (x > 0.0 && x.is_finite()).then_some(x);
@@ -155,7 +156,7 @@ impl<const D: usize> PreflightContext<'_, D> {
                 "springs or motors are so stiff that the run takes {} times as many steps",
                 three_digits(slower)
             );
-            // What swings so fast in the water is beyond the sound that particles carry: docs/explanation/stability.md.
+            // Particles cannot carry sound of so high a frequency: docs/explanation/stability.md.
             let damped =
                 "in water a spring whose body swings as fast has a hundredth of the critical damping, 2 √(k m)";
             let soft = two_digits_down(slower.powi(-2));

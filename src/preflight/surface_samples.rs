@@ -1,4 +1,4 @@
-//! The faces of a solid, seen at the places of its outermost boundary particles.
+//! Samples of the faces of a solid, at the places of its outermost boundary particles.
 
 use crate::{
     geometry::{Shape, thin::thin_place},
@@ -15,8 +15,8 @@ pub(crate) struct SurfaceSample<const D: usize> {
     pub n: Vector<D>,
 }
 
-/// The faces of `solid`, dp (m) apart; none of a fixed tank or polyline at least `reach` (m) thick, which is often large
-/// and needs no check.
+/// Samples of the faces of `solid`, dp (m) apart; none of a fixed tank or polyline at least `reach` (m) thick, which is often
+/// large and needs no check.
 pub(crate) fn of_solid<const D: usize>(solid: &Solid<D>, dp: f64, reach: f64) -> Vec<SurfaceSample<D>> {
     match (&solid.spec.role, &solid.spec.shape) {
         (Role::Fixed, Shape::Tank { thickness, .. } | Shape::Polyline { thickness, .. })
@@ -28,7 +28,7 @@ pub(crate) fn of_solid<const D: usize>(solid: &Solid<D>, dp: f64, reach: f64) ->
     }
 }
 
-/// The faces of `shape`, dp (m) apart, but for those at which the parts of a compound join.
+/// Samples of the faces of `shape`, dp (m) apart, without the faces at which parts of a compound join.
 pub(crate) fn of_shape<const D: usize>(shape: &Shape<D>, dp: f64) -> Vec<SurfaceSample<D>> {
     let free =
         |face: &SurfaceSample<D>| face.n.norm() > 0.5 && shape.signed_distance(&(face.x + face.n * (0.5 * dp))) > 0.0;
@@ -40,7 +40,7 @@ pub(crate) fn of_shape<const D: usize>(shape: &Shape<D>, dp: f64) -> Vec<Surface
         .collect()
 }
 
-/// The face before `r` (m); both, where that is midway between two, as in a plate of a single row.
+/// A sample of the face nearest to `r` (m); one of each face if `r` is midway between two, as in a plate with a single row.
 fn nearest_samples<const D: usize>(shape: &Shape<D>, r: &Vector<D>, dp: f64) -> Vec<SurfaceSample<D>> {
     let face = |r: Vector<D>| {
         let n = shape.outward_normal(&r, 0.05 * dp);
@@ -56,7 +56,7 @@ fn nearest_samples<const D: usize>(shape: &Shape<D>, r: &Vector<D>, dp: f64) -> 
     if own.n.norm() > 0.5 {
         return vec![own];
     }
-    // Midway neither face is nearer; a little to each side one is.
+    // Midway, neither face is nearer; a small shift to either side makes one face nearer.
     let aside = |axis: usize| {
         let mut off = Vector::zeros();
         off[axis] = 0.2 * dp;
@@ -66,7 +66,7 @@ fn nearest_samples<const D: usize>(shape: &Shape<D>, r: &Vector<D>, dp: f64) -> 
     both.into_iter().flatten().collect()
 }
 
-/// Every so many-th of `samples`, `most` of them or fewer.
+/// At most `most` of the `samples`, at equal steps.
 pub(crate) fn thinned<const D: usize>(
     samples: &[SurfaceSample<D>],
     most: usize,

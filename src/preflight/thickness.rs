@@ -1,4 +1,4 @@
-//! How thick solids are: the way inward from a face to the next one, against the kernel's support.
+//! Thickness of solids: the distance inward from a face to the next one, compared with the kernel's support radius.
 
 use super::{
     Finding, PreflightContext,
@@ -13,16 +13,16 @@ use crate::{
     solid::Role,
 };
 
-/// Places of a solid that are looked at.
+/// Largest number of places of a solid that are sampled.
 const PLACES_SEEN: usize = 1000;
 
-/// Share of the face that may be thinner than what counts as the thinnest part: tips and edges.
+/// Share of the face that does not count as the thinnest part although it is thinner, such as tips and edges.
 const TIPS: f64 = 0.1;
 
-/// The way (m) from `face` straight into the solid until `distance`, its signed distance, says out again. Where
-/// the way is longer than `most` (m), `most`.
+/// The distance (m) from `face` straight through the solid to the opposite face, at most `most` (m). `distance` is the signed
+/// distance of the solid.
 fn chord<const D: usize>(face: &SurfaceSample<D>, dp: f64, most: f64, distance: impl Fn(&Vector<D>) -> f64) -> f64 {
-    // No face lies within the distance; the least step leads across joints, where it is zero.
+    // No face is nearer than the signed distance; the smallest step leads across joints, where that is zero.
     let mut way = 0.25 * dp;
     while way < most {
         let d = distance(&(face.x - face.n * way));
@@ -45,14 +45,14 @@ pub(crate) fn thinnest_part<const D: usize>(shape: &Shape<D>, faces: &[SurfaceSa
     .map(|x| x.0)
 }
 
-/// The least of these ways, but for the shortest tenth, with its place.
+/// The least of these distances after the shortest tenth, with its place.
 fn shortest_chord<const D: usize>(mut ways: Vec<(f64, Vector<D>)>) -> Option<(f64, Vector<D>)> {
     ways.sort_by(|a, b| a.0.total_cmp(&b.0));
     ways.get((TIPS * ways.len() as f64) as usize).copied()
 }
 
 impl<const D: usize> PreflightContext<'_, D> {
-    /// Fixed and driven solids against the kernel's support. Fixed ones that lie against one another are one wall.
+    /// Compares the thickness of fixed and driven solids with the kernel's support radius. Fixed solids in contact are one wall.
     pub(super) fn check_thickness(&self, findings: &mut Vec<Finding>) {
         let (dp, reach) = (self.dp(), self.system.model().support_radius());
         for (solid, faces) in self.solids().iter().zip(&self.surface_samples) {

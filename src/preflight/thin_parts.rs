@@ -16,8 +16,8 @@ use crate::{
     solid::Solid,
 };
 
-/// A place of the face is seen if a boundary particle lies before or behind it no farther than this, dp. In a wedge of
-/// 20 degrees, the sharpest without a layer in its middle, the first particle lies 2.9 dp from the tip.
+/// The water sees a place of the face if a boundary particle lies within this distance of it, dp. In a wedge of 20 degrees, the
+/// sharpest without a layer in its middle, the first particle lies 2.9 dp from the tip.
 const WITHIN: f64 = 3.0;
 
 /// Adds findings about thin parts, parts without particles, and nearly closed walls of every solid.

@@ -1,4 +1,5 @@
-//! Paddles that make waves by name: what their waves may not become, and where a paddle is no paddle of theory.
+//! Checks of paddles that make named waves: waves outside the validity of the theory, and paddles that differ from the paddle of
+//! the theory.
 
 use super::{
     Finding, GeneratedWave, PreflightContext,
@@ -17,7 +18,7 @@ use crate::{
     wavemaker::{self, LINEAR_SPEED_RATIO_MAX, LinearWave, Paddle, TheoryRegion, WaveProperties},
 };
 
-/// Angle (rad) of a flap beyond which small angles are no good theory: 30°.
+/// Largest angle (rad) of a flap for which the theory of small angles is accurate: 30°.
 const STEEP: f64 = std::f64::consts::FRAC_PI_6;
 
 /// The highest of a thousand waves over the significant height (Rayleigh).
@@ -26,17 +27,19 @@ const HIGHEST: f64 = 1.86;
 /// Share of the run that a ramp may take.
 const RAMP: f64 = 0.5;
 
-/// Distance of a hinge from the box around its flap, over its depth, beyond which the flap's heave is no more small.
+/// Largest horizontal distance of a hinge from the box around its flap, over the depth of the hinge, for which the flap's heave
+/// is small, –.
 const ASIDE: f64 = 0.1;
 
-/// How far the depth that a wave is made for may be above that of the water, and a period beside that of the paddle.
+/// Largest accepted excess of the depth for which a wave is made over the depth of the water, relative to the latter, –.
 const DEEPER: f64 = 0.01;
-/// How far it may be below that of the water, besides a dp: the bed before a paddle may be uneven.
+/// Largest accepted shortfall of this depth, besides one dp: the bed before a paddle may be uneven. Then the largest accepted
+/// difference between the period of a statistic and that of the paddle, relative to the latter, –.
 const SHALLOWER: f64 = 0.05;
 const BESIDE: f64 = 0.05;
 
 impl<const D: usize> PreflightContext<'_, D> {
-    /// A paddle by name that stands in the water as no paddle of theory does.
+    /// Adds findings about a paddle with named waves whose position differs from that of the paddle in the theory.
     pub(super) fn check_site(
         &self,
         solid: &Solid<D>,
@@ -73,7 +76,7 @@ impl<const D: usize> PreflightContext<'_, D> {
                  for one that reaches the bed",
                 three_digits(under)
             );
-            // A bed at zero is there to round-off.
+            // The height of a bed at zero has round-off.
             let bed = 1e-6 * (1e6 * (level - depth)).round();
             findings.push(Finding::warning("lifted_paddle", what, format!("bottom = {}", three_digits(bed))));
         }
@@ -91,7 +94,8 @@ impl<const D: usize> PreflightContext<'_, D> {
         }
     }
 
-    /// A flap whose lower edge is `under` (m) above the bed, with more than a dp of open height there: no solid stands below it.
+    /// A finding about a flap whose lower edge is `under` (m) above the bed, if more than a dp of this height is open: no solid
+    /// is there.
     fn open_below(&self, flap: &Solid<D>, site: &WavemakerSite<D>, under: f64) -> Option<Finding> {
         if under <= self.dp() {
             return None;
@@ -121,7 +125,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         })
     }
 
-    /// A paddle before whose face the water begins further off than half a dp, and a dp for a face between two rows.
+    /// A finding about a paddle whose face is farther from the water than half a dp, and one dp more for a face between two rows.
     fn dry_gap(&self, paddle: &Solid<D>, site: &WavemakerSite<D>) -> Option<Finding> {
         let (dp, r) = (self.dp(), self.system.fluid().r);
         let ahead = |x: &Vector<D>| site.distance_ahead(x).filter(|ahead| *ahead > 0.0);
@@ -142,12 +146,12 @@ impl<const D: usize> PreflightContext<'_, D> {
         })
     }
 
-    /// About how high (m) the crests of a wave reach at the paddle.
+    /// Approximate height (m) of the crests of a wave at the paddle.
     fn crest(&self, facts: &WaveProperties) -> f64 {
         self.still_water.level + if facts.solitary.is_some() { 1.0 } else { 0.75 } * facts.height
     }
 
-    /// A paddle that goes too fast for theory, or is too slow to come to its motion.
+    /// Adds findings about a paddle that moves too fast for the theory, or whose ramp is too long.
     pub(super) fn check_speed(&self, wave: &GeneratedWave, law: &wavemaker::PaddleMotion, findings: &mut Vec<Finding>) {
         let (name, most) = (&wave.solid, LINEAR_SPEED_RATIO_MAX * wave.celerity_mps);
         if wave.paddle_mps > most * (1.0 + 1e-9) {
@@ -173,7 +177,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         }
     }
 
-    /// A group whose crest is to stand where it cannot.
+    /// Adds a finding about a focused group whose crest is specified beyond the water, or before its energy can arrive.
     pub(super) fn check_focus(
         &self,
         wave: &GeneratedWave,
@@ -201,7 +205,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         }
     }
 
-    /// Statistics about another period than that of the one regular wave.
+    /// Adds findings about statistics at another period than that of the only regular wave.
     pub(super) fn check_statistic_periods(&self, waves: &[GeneratedWave], findings: &mut Vec<Finding>) {
         let [GeneratedWave { kind: Some("regular"), period_s: Some(own), solid, .. }] = waves else { return };
         for words in &self.plan.statistics {
@@ -219,7 +223,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         }
     }
 
-    /// How two terms of Stokes are enough for a regular wave.
+    /// Describes the changes with which the second order of Stokes is valid for a regular wave.
     fn stokes_validity(&self, train: &LinearWave, height: f64) -> String {
         let lower = train.stokes_height_max();
         let shorter = train.stokes_period_max(height).filter(|_| lower < LEAST * self.dp());
@@ -232,7 +236,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         format!("{}height = {}", shorter.unwrap_or_default(), two_digits_down(lower))
     }
 
-    /// What a wave that was asked for may not become.
+    /// Adds findings about a wave that breaks, is outside the validity of the theory, or overtops the paddle.
     pub(super) fn check_wave(
         &self,
         wave: &GeneratedWave,
@@ -294,7 +298,8 @@ impl<const D: usize> PreflightContext<'_, D> {
     }
 }
 
-/// A flap with a hinge before or behind it, `arm` (m) below the still level: it also goes up and down.
+/// A finding about a flap with its hinge before or behind it, `arm` (m) below the still level: such a flap also moves up and
+/// down.
 fn hinge_aside<const D: usize>(
     name: &str,
     motion: &PrescribedMotion<D>,

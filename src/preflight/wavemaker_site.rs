@@ -1,4 +1,4 @@
-//! Where a paddle stands: what lies in the way of its waves, and which zones take them.
+//! The site of a paddle: the solids in the way of its waves, and the damping zones that absorb them.
 
 use super::{Finding, GeneratedWave, PreflightContext};
 use crate::{
@@ -12,15 +12,15 @@ use crate::{
     system::SpongeLayer,
 };
 
-/// The least part of a face's normal that looks at the waves: gentler slopes than 1:20 are beaches, on which the water
+/// Least component of a reflecting face's unit normal against the waves: gentler slopes than 1:20 are beaches, on which the water
 /// ends.
 const FACING: f64 = 0.05;
 
-/// A paddle at rest, and where its waves go.
+/// A paddle at rest, and the direction of its waves.
 pub(super) struct WavemakerSite<const D: usize> {
     /// The box around it, m.
     bounds: Bounds<D>,
-    /// Where its waves go; level, a unit vector.
+    /// Direction of its waves: a horizontal unit vector.
     pub(super) direction: Vector<D>,
     /// The middle of its face in the still level, m.
     pub(super) face: Vector<D>,
@@ -36,7 +36,7 @@ pub(super) fn is_wall<const D: usize>(shape: &Shape<D>) -> bool {
 }
 
 impl<const D: usize> WavemakerSite<D> {
-    /// Of a paddle in the box `bounds`, whose waves go along `way`, in water that stands at `level` (m).
+    /// The site of a paddle in the box `bounds`, whose waves go along `way`, in water with the still level `level` (m).
     pub(super) fn new(bounds: &Bounds<D>, way: Vector<D>, level: f64) -> Self {
         let middle = 0.5 * (bounds.min + bounds.max);
         let mut face = middle + way * (support(bounds, &way) - middle.dot(&way));
@@ -44,12 +44,12 @@ impl<const D: usize> WavemakerSite<D> {
         Self { bounds: *bounds, direction: way, face }
     }
 
-    /// From its back to its face, m.
+    /// Thickness from its back to its face, m.
     pub(super) fn thickness(&self) -> f64 {
         support(&self.bounds, &self.direction) + support(&self.bounds, &-self.direction)
     }
 
-    /// How far (m) `x` (m) lies before the face; none if the waves pass beside it.
+    /// Distance (m) of `x` (m) before the face; `None` if the waves pass beside it.
     pub(super) fn distance_ahead(&self, x: &Vector<D>) -> Option<f64> {
         let off = x - self.face;
         let ahead = off.dot(&self.direction);
@@ -61,7 +61,7 @@ impl<const D: usize> WavemakerSite<D> {
         breast.then_some(ahead)
     }
 
-    /// Where (m before the face) a zone begins into which the waves run.
+    /// Distance (m) from the face to the beginning of a zone; `None` unless the waves run into it.
     fn zone_start(&self, zone: &SpongeLayer<D>) -> Option<f64> {
         let way = zone.to - zone.from;
         let along = way.dot(&self.direction);
@@ -75,14 +75,14 @@ pub(super) fn support<const D: usize>(bounds: &Bounds<D>, way: &Vector<D>) -> f6
 }
 
 impl<const D: usize> PreflightContext<'_, D> {
-    /// From the face to the end of the water, m.
+    /// Distance from the face to the end of the water, m.
     pub(super) fn water_end(&self, stand: &WavemakerSite<D>) -> f64 {
         let water = Bounds::around(self.system.fluid().r);
         (support(&water, &stand.direction) - stand.face.dot(&stand.direction)).max(0.0)
     }
 
-    /// How far (m) the waves of `paddle` go before something answers, and which solid it is; none: the end of the
-    /// water, which is also what holds it.
+    /// Distance (m) from `paddle` to the first reflector of its waves, and the name of this solid. Without a name, the reflector
+    /// is the end of the water, or the solid that contains the water.
     pub(super) fn first_reflector(&self, paddle: &Solid<D>, stand: &WavemakerSite<D>) -> (f64, Option<String>) {
         let end = self.water_end(stand);
         let others = self.solids().iter().enumerate().filter(|(_, other)| {
@@ -95,7 +95,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         nearest.map_or((end, None), |(ahead, name)| (ahead, Some(name)))
     }
 
-    /// How far (m) before a paddle's face the solid `i` looks at its waves, in the still level.
+    /// Distance (m) in the still level from a paddle's face to the face of solid `i` that reflects its waves.
     fn reflector_distance(&self, i: usize, stand: &WavemakerSite<D>) -> Option<f64> {
         let pose = &self.solids()[i].kinematics.pose;
         let ahead = self.surface_samples[i].iter().filter_map(|face| {
@@ -109,12 +109,12 @@ impl<const D: usize> PreflightContext<'_, D> {
         ahead.min_by(f64::total_cmp)
     }
 
-    /// Where (m before the face) the first damping zone begins that lies in the way.
+    /// Distance (m) from the face to the beginning of the first damping zone in the way of the waves.
     pub(super) fn damping_start(&self, stand: &WavemakerSite<D>) -> Option<f64> {
         self.system.sponge_layers().iter().filter_map(|zone| stand.zone_start(zone)).min_by(f64::total_cmp)
     }
 
-    /// Depth (m) of the water before a paddle; none if it is dry there. A step of the bed below one dp is none.
+    /// Depth (m) of the water before a paddle; `None` if it is dry there. Steps of the bed below one dp do not count.
     pub(super) fn depth_at(&self, stand: &WavemakerSite<D>) -> Option<f64> {
         let (dp, reach) = (self.dp(), self.system.model().support_radius());
         let water = self.system.fluid().r;
@@ -124,7 +124,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         rise.is_finite().then_some(self.still_water.depth - if rise > dp { rise } else { 0.0 })
     }
 
-    /// Damping zones in which there is no water.
+    /// Adds findings about damping zones without water.
     pub(super) fn dry_zones(&self, findings: &mut Vec<Finding>) {
         let water = self.system.fluid().r;
         let idle = |zone: &&SpongeLayer<D>| water.iter().all(|r| zone.rate(r) == 0.0);
@@ -136,7 +136,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         }
     }
 
-    /// Damping zones that are over before a wave is, or that begin beyond the paddle.
+    /// Adds findings about damping zones that are shorter than half a wavelength, or at full strength at the paddle.
     pub(super) fn misplaced_zones(&self, wave: &GeneratedWave, stand: &WavemakerSite<D>, findings: &mut Vec<Finding>) {
         let (zones, least) = (self.system.sponge_layers(), 0.5 * wave.length_m);
         if let Some(zone) = zones.iter().find(|zone| zone.length() < least * (1.0 - 1e-9)) {

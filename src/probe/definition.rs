@@ -37,7 +37,7 @@ pub(crate) trait ProbeDefinition: Sized {
     /// Whether the probe can go with a solid.
     const MOUNTABLE: bool = false;
 
-    /// Lets the probe go with the solid called `on`, in whose frame its places are.
+    /// Attaches the probe to the solid called `on`; its places are then in the frame of this solid.
     fn mount(&mut self, on: &str) {
         let _ = on;
     }

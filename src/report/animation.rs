@@ -62,7 +62,8 @@ pub(crate) struct Animation {
 /// The particles that are in one of two successive frames only.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub(crate) struct ParticleChange {
-    /// The position of the numbers of particles that have gone, in the earlier frame; those of the new ones, in the later frame, follow.
+    /// The position of the numbers, in the earlier frame, of the particles that have gone. The numbers, in the later frame, of
+    /// the new particles follow.
     pub at: usize,
     /// The number of particles that have gone.
     pub gone: usize,
@@ -367,8 +368,8 @@ impl ParticleExchange {
     }
 }
 
-/// Returns how the particles of a frame, of which `now` has the identifiers, differ from those of an earlier one. Returns `None` if
-/// most are others, or if they are not in the order of their identifiers, as those without identifiers.
+/// Returns the difference between the particles of two frames from their identifiers `before` and `now`. Returns `None` if most
+/// particles differ, or if they are not in the order of their identifiers, as are particles without identifiers.
 fn exchange(before: &[u32], now: &[u32]) -> Option<ParticleExchange> {
     let is_sorted = |id: &[u32]| id.is_sorted_by(|a, b| a < b);
     if before != now && !(is_sorted(before) && is_sorted(now)) || before.len() > 1 && before[0] == before[1] {

@@ -1,5 +1,5 @@
-//! The page of a run in progress, and what the run has added since. Everything is read from the run's folder, so that a
-//! reader needs no memory of the run.
+//! The page of a run in progress, and the data that the run has added since. All data are read from the run's folder, so that a
+//! reader shares no memory with the run.
 
 use std::{
     collections::BTreeMap,
@@ -30,10 +30,10 @@ use crate::{
 const MOST_BYTES: u64 = 128 << 10;
 const MOST_SAMPLES: usize = 400_000;
 
-/// Most frames in an increment, of which the newest are taken.
+/// Most frames in an increment; if there are more, it contains the newest.
 const MOST_FRAMES: usize = 16;
 
-/// How far a reader is in the files of a run: frames, and bytes of each table.
+/// Position of a reader in the files of a run: number of frames, and bytes of each table.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct FeedPosition {
     frames: usize,
@@ -57,18 +57,18 @@ impl FromStr for FeedPosition {
     }
 }
 
-/// What a run has added.
+/// The data that a run has added.
 #[derive(Debug, Default, Serialize)]
 pub(crate) struct Increment {
     /// The new rows of each table, as columns of which the first is the time (s).
     rows: BTreeMap<String, Vec<Vec<f64>>>,
-    /// The new frames, after the one before them.
+    /// The new frames, preceded by the last frame before them.
     #[serde(skip_serializing_if = "Option::is_none")]
     reel: Option<Animation>,
     /// The numbers of the frames.
     #[serde(skip_serializing_if = "Option::is_none")]
     blob: Option<String>,
-    /// Whether there is more.
+    /// Whether the run has added more than this.
     #[serde(skip)]
     pub more: bool,
 }
@@ -91,7 +91,7 @@ struct Basis {
 pub(crate) struct LiveRun {
     folder: PathBuf,
     basis: Mutex<Option<Arc<Basis>>>,
-    /// The length of the list of frames (bytes) when it was last read, and the frames. Of a frame it keeps the time alone.
+    /// The length of the list of frames (bytes) when it was last read, and the frames. Of each frame, only the time is kept.
     listed: Mutex<(u64, Option<Arc<FrameSequence>>)>,
 }
 
@@ -106,7 +106,8 @@ impl LiveRun {
         &self.folder
     }
 
-    /// Returns the page of the run so far. Its scripts find `data` with the `position` for the increments after it.
+    /// Returns the page of the run so far. It contains `data` for its scripts, with the `position` from which the later
+    /// increments start.
     ///
     /// # Errors
     /// As [`super::write`].
@@ -115,7 +116,7 @@ impl LiveRun {
         let mut basis = self.basis.lock().unwrap_or_else(PoisonError::into_inner);
         let names = || table_names(&series_folder(&self.folder));
         let tables = basis.as_ref().map_or_else(names, |basis| basis.tables.clone());
-        // The ends of the tables first: rows that are written meanwhile are then sent twice rather than never.
+        // The ends of the tables are read first, so that rows written meanwhile are sent twice rather than never.
         let ends = tables.iter().map(|name| self.table_end(name)).collect::<Result<_>>()?;
         let run = RunData::read(&self.folder)?;
         let frames = run.frames.as_ref().map_or(0, |film| film.times().len());
@@ -129,8 +130,8 @@ impl LiveRun {
         Ok(page)
     }
 
-    /// Returns what was added since `position` and moves it there, or `None` if the page has to be loaded afresh: the
-    /// position is none of this run, or has been taken back.
+    /// Returns what was added since `position` and moves it there, or `None` if the page has to be loaded afresh: the position
+    /// does not belong to this run, or the run has rolled back behind it.
     ///
     /// # Errors
     /// `File` if a table or the list of frames cannot be read.
@@ -156,7 +157,7 @@ impl LiveRun {
         Ok(Some(added))
     }
 
-    /// Returns the frames. Their list is read only if it has another length than before, and then only what is new.
+    /// Returns the frames. The function reads their list only if its length has changed, and then only the new part.
     fn frames(&self) -> Result<Option<Arc<FrameSequence>>> {
         let length = std::fs::metadata(self.folder.join("frames.pvd")).map_or(0, |file| file.len());
         let mut listed = self.listed.lock().unwrap_or_else(PoisonError::into_inner);

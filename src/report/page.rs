@@ -28,18 +28,18 @@ const SCRIPT: [&str; 6] = [
     include_str!("assets/plots.js"),
 ];
 
-/// What a live page has in addition.
+/// The additional style and script of a live page.
 const LIVE_STYLE: &str = include_str!("assets/live.css");
 const LIVE_SCRIPT: &str = include_str!("assets/live.js");
 
-/// A sentence of the footer, and what a live page says there.
+/// A sentence of the footer, and its replacement in a live page.
 const ALONE: &str = "This file stands alone: it loads nothing and sends nothing.";
 const LIVE: &str = "This page follows a run in progress on this machine; the run writes its own page at its end.";
 
 /// The number of samples of a live page: few enough for any page, and for the memory of a browser.
 pub(crate) const LIVE_SAMPLES: usize = 2_000_000;
 
-/// The number of frames for which a live page chooses its particles at least.
+/// The least number of frames for which a live page chooses its particles.
 pub(crate) const LIVE_FRAMES: usize = 60;
 
 /// The number of samples (a particle in a frame) that fit into a page. Each sample needs at most five bytes; the

@@ -154,7 +154,7 @@ impl RunData {
     /// Reads the runs in `folders` and gives each run a distinct name.
     ///
     /// # Errors
-    /// As [`Kept::read`], for the first that is none.
+    /// The errors of [`RunData::read`], for the first folder without a run.
     pub(crate) fn read_all(folders: &[PathBuf]) -> Result<Vec<Self>> {
         let mut runs = folders.iter().map(|folder| Self::read(folder)).collect::<Result<Vec<_>>>()?;
         let names: Vec<String> = runs.iter().map(|run| run.name.clone()).collect();

@@ -248,7 +248,7 @@ pub(crate) fn animation_note(reel: &Animation) -> String {
     } else {
         format!(" with all {} water particles", thousands(particles as u64))
     };
-    // Of thinned water that particles enter, each frame has others.
+    // If particles enter thinned water, each frame shows other particles.
     said += match reel.alone.iter().skip(1).any(|alone| *alone) {
         true => ". The player shows one frame after the other, as they have different particles",
         false => ". Between two frames the player moves particles in straight lines",

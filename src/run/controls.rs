@@ -23,7 +23,7 @@ pub(crate) struct Controls {
 }
 
 impl Controls {
-    /// Finds what the `plans` change in `sim`.
+    /// Finds the joints and forces of `sim` that the `plans` change.
     ///
     /// # Errors
     /// `Scene` if there is no such joint or force.

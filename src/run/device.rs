@@ -32,7 +32,7 @@ pub(super) fn check_ranks(scene: &Scene, ranks: &Ranks) -> Result<()> {
     }
 }
 
-/// What a device leaves out of the physics of `sim`, if `scene` names one.
+/// The part of the physics of `sim` that a device leaves out, if `scene` names a device.
 pub(super) fn omission<const D: usize>(scene: &Scene, sim: &Simulation<D>) -> Option<String> {
     scene.device_name()?;
     let text = "a device leaves out the pressure of the film of water between a body and what it touches, so that a body on the bed \
@@ -67,8 +67,8 @@ pub(super) fn place_on_device<const D: usize>(
         .help("build it with the feature gpu:  cargo build --release --features gpu;  or leave --device (model.device) out"))
 }
 
-/// Advances by a step, or on a device until an output is due, and fetches what the outputs then read; not past `until` (s). The ranks
-/// that `leader` leads take the step too.
+/// Advances by a step, or on a device until an output is due, but not past `until` (s). Then fetches the data that the outputs
+/// read. The ranks that `leader` leads take the step too.
 pub(super) fn step<const D: usize>(
     sim: &mut Simulation<D>,
     outputs: &Outputs<D>,
@@ -90,7 +90,7 @@ pub(super) fn step<const D: usize>(
     fetch(sim, leader, outputs.read_water(Some(sim.time())))
 }
 
-/// Fetches the state from a device, if one has it, and if `from_ranks` the water of other ranks, if they have it.
+/// Fetches the state from a device, if it is on one. If `from_ranks`, also fetches the water of other ranks, if it is on them.
 pub(super) fn fetch<const D: usize>(sim: &mut Simulation<D>, leader: &Leader, from_ranks: bool) -> Result<()> {
     #[cfg(feature = "gpu")]
     sim.fetch_from_device()?;

@@ -1,5 +1,5 @@
-//! One program at a time in a run's folder: `run.lock` is locked by the system for as long as the run goes
-//! on, so that a run that was killed leaves no lock behind, only the file.
+//! One program at a time in a run's folder: the system locks `run.lock` while the run is in progress, so that a killed run leaves
+//! the file but no lock.
 
 use std::{
     fs::{self, File, OpenOptions, TryLockError},
@@ -12,12 +12,12 @@ use crate::error::{Error, ErrorKind, Result};
 /// The file.
 const LOCK: &str = "run.lock";
 
-/// The process that writes in the run's `folder`, or was killed there, if one has left its number.
+/// Number of the process that writes in the run's `folder`, or that was killed there; `None` if no process has left its number.
 pub fn lock_owner(folder: &Path) -> Option<u32> {
     fs::read_to_string(folder.join(LOCK)).ok()?.trim().parse().ok()
 }
 
-/// The right to write in a run's folder; the file goes when this is dropped.
+/// The right to write in a run's folder; dropping it removes the file.
 pub(crate) struct Lock {
     path: PathBuf,
     _file: File,
@@ -38,7 +38,7 @@ impl Lock {
             let help = "wait for its end, or stop it with Ctrl-C and resume it then";
             return Err(Error::new(ErrorKind::Restart, what).help(help));
         }
-        // A file system that knows no locks is no reason to refuse a run there.
+        // A run is not refused because the file system has no locks.
         file.set_len(0).and_then(|()| writeln!(file, "{}", std::process::id())).map_err(refused)?;
         Ok(Self { path, _file: file })
     }
@@ -46,7 +46,7 @@ impl Lock {
 
 impl Drop for Lock {
     fn drop(&mut self) {
-        // Left over, it does no harm: the system has let go of it.
+        // A file that remains does no harm: the system has released its lock.
         let _ = fs::remove_file(&self.path);
     }
 }

@@ -15,16 +15,16 @@ use crate::{
     system::own_water::WaterAtSetup,
 };
 
-/// What the first rank tells the others.
+/// An order of the first rank to the others.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Order {
     /// Take a step.
     Step,
     /// Complete the water on the first rank.
     Gather,
-    /// Give the first rank what a frame has of the water, also after a fault that all ranks have met.
+    /// Send the first rank the data of the water for a frame, also after a fault that occurred on all ranks.
     Frame,
-    /// Give the first rank what a checkpoint with the first `rollbacks` rollbacks has of the water.
+    /// Send the first rank the data of the water for a checkpoint with the first `rollbacks` rollbacks.
     Save { rollbacks: usize },
     /// Set a control to a value.
     Set { control: usize, value: f64 },
@@ -32,10 +32,10 @@ pub(super) enum Order {
     End,
 }
 
-/// What a rank gives in the exchange of an order.
+/// The message of a rank in the exchange of an order.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Message {
-    /// Of the first rank.
+    /// The order, in the message of the first rank.
     order: Option<Order>,
     /// Whether this rank could not follow the last order.
     failed: bool,
@@ -97,7 +97,7 @@ fn exchange(ranks: &Ranks, own: &Message) -> Result<Order> {
     Ok(order)
 }
 
-/// The first rank's hold on the others, whom it tells at the end that the run is over.
+/// The first rank's control of the others. When it is dropped, it tells them that the run is over.
 pub(crate) struct Leader(Ranks);
 
 impl Leader {
@@ -128,7 +128,7 @@ impl Drop for Leader {
     }
 }
 
-/// A text that tells programs and scenes apart, with the files in `folder` that the scene names.
+/// A text that differs if the program, the scene, or a file in `folder` that the scene names differs.
 pub(super) fn scene_digest(scene: &Scene, folder: &Path) -> String {
     let words = scene.to_toml().unwrap_or_default();
     let of_file = |hash: u64, name: String| match fs::read(folder.join(name)) {
@@ -140,28 +140,29 @@ pub(super) fn scene_digest(scene: &Scene, folder: &Path) -> String {
     format!("{version} {commit} {:x} {files:x}", checkpoint::fnv1a(words.as_bytes()))
 }
 
-/// A text that tells the water of setups apart.
+/// A text that differs if the water of two setups differs.
 pub(super) fn water_digest<const D: usize>(setup: &Setup<D>) -> String {
     let numbers = setup.water.iter().chain(&setup.velocity).flat_map(|x| x.iter());
     let hash = numbers.fold(0, |hash, x| checkpoint::fnv1a_continue(hash, &x.to_bits().to_le_bytes()));
     format!("{} solids, {hash:x}", setup.solids.len())
 }
 
-/// The water that comes together for the set-up of a run of this plan: probes may read all from the start.
+/// The water that is gathered for the set-up of a run of this plan: probes may read all water from the start.
 pub(super) fn water_at_setup(plan: &Plan) -> WaterAtSetup {
     if plan.probes.is_empty() { WaterAtSetup::Places } else { WaterAtSetup::First }
 }
 
-/// Takes the steps of a run that the first of the `ranks` leads, from the start of `scene` or from `checkpoint`, until that ends it.
+/// Takes the steps of a run that the first of the `ranks` leads, from the start of `scene` or from `checkpoint`, until the first
+/// rank ends it.
 ///
 /// # Errors
-/// That of a step which failed on this rank alone.
+/// The error of a step that failed on this rank only.
 pub(super) fn follow<const D: usize>(scene: &Scene, checkpoint: Option<Checkpoint>, ranks: &Ranks) -> Result<()>
 where
     Dim<D>: Dimension<D>,
 {
     let built = ranks.agree(scene.build_on::<D>(ranks), |built| water_digest(&built.setup));
-    // The first rank reports what all know.
+    // The first rank reports an error that all ranks have.
     let Ok(BuiltScene { setup, plan, .. }) = built else { return Ok(()) };
     let mut failure = None;
     let prepared = Follower::new(setup, ranks, plan, checkpoint);
@@ -197,7 +198,7 @@ where
 {
     fn new(setup: Setup<D>, ranks: &Ranks, plan: Plan, checkpoint: Option<Checkpoint>) -> Result<Self> {
         let mut sim = Simulation::set_up(setup, ranks, water_at_setup(&plan))?;
-        // They are not read here; but what they read is recorded in the steps.
+        // This rank does not read the probes, but it has to record the data that they read.
         probe_factory::probes_from_plan(&plan, &mut sim)?;
         let mut changes = Vec::new();
         if let Some(checkpoint) = checkpoint {

@@ -123,9 +123,9 @@ pub(crate) struct Outputs<const D: usize> {
 }
 
 impl<const D: usize> Outputs<D> {
-    /// Opens the outputs that `plan` asks for, in the run's `folder`. If `from` is present, the outputs continue from
-    /// its positions, which are those of the checkpoint. `probes` are those of
-    /// `probe_factory::probes`, in the plan's order.
+    /// Opens the outputs that `plan` asks for, in the run's `folder`. If `from` is present, the outputs continue from its
+    /// positions, which are those of the checkpoint. `probes` are those of `probe_factory::probes_from_plan`, in the plan's
+    /// order.
     ///
     /// # Errors
     /// `File` if a file cannot be written; `Restart` if the existing files do not match the checkpoint.
@@ -193,14 +193,14 @@ impl<const D: usize> Outputs<D> {
         probes.chain(lists).chain(rest).fold(f64::INFINITY, f64::min)
     }
 
-    /// Returns the parts of the simulation that the outputs read which are due at time `t` (s).
+    /// Returns the parts of the simulation that are read by the outputs due at time `t` (s).
     #[cfg(feature = "gpu")]
     pub(crate) fn reads_at(&self, t: f64) -> Vec<ProbeReads> {
         let rest = self.frames.iter().map(|(_, due)| due).chain(&self.checkpoint).filter(|due| due.is_due(t));
         self.due_probes(t).map(|own| own.probe.reads()).chain(rest.map(|_| ProbeReads::Water)).collect()
     }
 
-    /// Returns whether a probe reads the water that is due at time `t` (s), or one of all if there is no time.
+    /// Returns whether a probe that is due at time `t` (s) reads the water; without a time, whether any probe does.
     pub(crate) fn read_water(&self, t: Option<f64>) -> bool {
         self.due_probes(t.unwrap_or(f64::INFINITY)).any(|own| own.probe.reads() == ProbeReads::Water)
     }

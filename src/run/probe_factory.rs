@@ -13,7 +13,7 @@ use crate::{
 /// Builds the probes of `plan` at the start of the simulation and enables the records that they read.
 ///
 /// # Errors
-/// `Scene` or `Usage` if one names no solid or a place with the wrong number of coordinates.
+/// `Scene` or `Usage` if a probe names an unknown solid, or a place with the wrong number of coordinates.
 pub(crate) fn probes_from_plan<const D: usize>(plan: &Plan, sim: &mut Simulation<D>) -> Result<Vec<Box<dyn Probe<D>>>>
 where
     Dim<D>: Dimension<D>,

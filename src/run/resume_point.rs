@@ -1,5 +1,5 @@
-//! Which of the checkpoints in a run's folder the run goes on from: the last one, or the one before where the last
-//! is of no use, and what of its scene may change then. Writes nothing.
+//! Selects the checkpoint in a run's folder from which the run continues: the last one, or the one before if the last is
+//! unusable. Defines which keys of its scene may change then. Writes nothing.
 
 use std::{fs, path::Path};
 
@@ -13,21 +13,21 @@ use crate::{
     scene::Scene,
 };
 
-/// What a run goes on from.
+/// The point from which a run continues.
 pub(crate) struct ResumePoint {
     /// The checkpoint.
     pub checkpoint: Checkpoint,
     /// The scene, as it was at the start; its guards may have been set since.
     pub scene: Scene,
-    /// Why it is not the last checkpoint, if it is the one before.
+    /// The reason why the last checkpoint is unusable, if this is the one before.
     pub warning: Option<String>,
 }
 
 impl ResumePoint {
-    /// The run in `folder` goes on with other guards: they tell when it stops, and no law that moves it hangs on them.
+    /// Continues the run in `folder` with other guards, which stop a run but do not change its equations, or on another device.
     ///
     /// # Errors
-    /// `Usage` for a key of anything else; `Scene` for guards that no scene may have.
+    /// `Usage` for any other key; `Scene` for an invalid value.
     pub(crate) fn with_guard_overrides(mut self, folder: &Path, sets: &[(String, String)]) -> Result<Self> {
         if sets.is_empty() {
             return Ok(self);
@@ -52,10 +52,10 @@ fn may_change(key: &str) -> bool {
     key.split('.').next() == Some("guard") || key == "model.device"
 }
 
-/// The newest checkpoint of use in `folder`.
+/// The newest usable checkpoint in `folder`.
 ///
 /// # Errors
-/// What is wrong with the last one, if the one before is of no use either.
+/// The error of the last checkpoint, if the one before is unusable too.
 pub(crate) fn latest_resume_point(folder: &Path) -> Result<ResumePoint> {
     let last = match load_matching(folder, checkpoint::LAST) {
         Ok((checkpoint, scene)) => return Ok(ResumePoint { checkpoint, scene, warning: None }),
@@ -71,7 +71,7 @@ pub(crate) fn latest_resume_point(folder: &Path) -> Result<ResumePoint> {
             );
             Ok(ResumePoint { checkpoint, scene, warning: Some(warning) })
         }
-        // Said once where both say the same, and nothing of one that never was.
+        // An error that both checkpoints have is reported once, and a previous checkpoint that does not exist is not reported.
         Err(why) if why.message == last.message || !folder.join(checkpoint::PREVIOUS).exists() => Err(last),
         Err(why) => {
             let help = last.help.clone().unwrap_or_default();
@@ -80,7 +80,7 @@ pub(crate) fn latest_resume_point(folder: &Path) -> Result<ResumePoint> {
     }
 }
 
-/// Whether `folder` holds a checkpoint, be it of use or not.
+/// Whether `folder` contains a checkpoint, usable or not.
 pub(crate) fn has_checkpoint(folder: &Path) -> bool {
     [checkpoint::LAST, checkpoint::PREVIOUS].iter().any(|name| folder.join(name).exists())
 }

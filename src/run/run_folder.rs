@@ -74,8 +74,8 @@ pub(crate) fn remove_failure_report(folder: &Path) -> Result<()> {
     })
 }
 
-/// Copies the scene in `file` into the run's `folder`, or writes `text` in its place, and copies the tables beside it
-/// that `words` names, the TOML of the scene in force, so that the folder can be resumed wherever it is moved.
+/// Copies the scene in `file` into the run's `folder`, or writes `text` in its place. Also copies the tables beside it that are
+/// named in `words`, the TOML of the scene in force, so that the run can be resumed wherever its folder is moved.
 ///
 /// # Errors
 /// `File` if something cannot be read or written.

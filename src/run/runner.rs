@@ -41,12 +41,12 @@ pub(crate) struct Runner<const D: usize> {
     folder: PathBuf,
     /// The data of the next checkpoint that do not change during the run.
     checkpoint: Checkpoint,
-    /// How far the outputs were at each time (s) to which the simulation may go back, the older first.
+    /// Positions of the outputs at each time (s) to which the simulation may roll back, the oldest first.
     rollback_positions: Vec<(f64, OutputPositions)>,
     resumed: bool,
-    /// Whether the last checkpoint in the folder, if there is one, may become the one before.
+    /// Whether the last checkpoint in the folder, if there is one, is valid and may become the previous one.
     last_checkpoint_valid: bool,
-    /// How many removed particles are listed; more than there are if others may be listed than those.
+    /// Number of removed particles in the list; `usize::MAX` if the list may contain other particles than those.
     removed_written: usize,
     /// When the last checkpoint was written, and how long after it the next is due (s).
     last_checkpoint: (Instant, f64),
@@ -62,7 +62,7 @@ impl<const D: usize> Runner<D>
 where
     Dim<D>: Dimension<D>,
 {
-    /// Builds the scene and, once all is known to be right, makes the run's folder or opens it again.
+    /// Builds the scene and, if everything is valid, creates the run's folder or reopens it.
     pub(crate) fn new(scene: &Scene, origin: RunOrigin, ranks: &Ranks) -> Result<Self> {
         let (begun, begun_cpu) = (Instant::now(), ProcessorTime::now());
         let built = scene.build_on::<D>(ranks).and_then(|built| device::check_ranks(scene, ranks).map(|()| built));
@@ -93,7 +93,7 @@ where
             }
         };
         if resumed {
-            // Before any table is cut back: a state of no use leaves all as it was.
+            // This precedes the truncation of tables, so that an unusable state leaves all files unchanged.
             sim.restore(&std::mem::take(&mut checkpoint.state))?;
         }
         sim.store_rollback_states_in(&folder);
@@ -194,7 +194,7 @@ impl<const D: usize> Runner<D> {
             self.follow_rollback(rescued, watch)?;
             self.sim.events().iter().skip(known_events).for_each(|event| watch.event(event));
             let mut written = self.outputs.write_due(&self.sim, &self.leader)?;
-            // The clock on the wall decides when the state is kept, never what it is.
+            // The wall time decides when a checkpoint is written, never its content.
             written.checkpoint |= self.last_checkpoint.0.elapsed().as_secs_f64() >= self.last_checkpoint.1;
             if written.checkpoint {
                 self.save_checkpoint()?;
@@ -242,8 +242,8 @@ impl<const D: usize> Runner<D> {
         Ok(going)
     }
 
-    /// Follows the simulation back if it has been rescued more often than the `known` times: tells whoever watches, and the
-    /// manifest, and takes back what was written of the course that ended in the alarm.
+    /// Handles a rollback of the simulation, if there are more than the `known` ones: reports it to the observer and in the
+    /// manifest, and removes the outputs that were written after the time to which the simulation returned.
     fn follow_rollback(&mut self, known: usize, watch: &mut dyn RunObserver) -> Result<()> {
         let Some(how) = self.sim.rollbacks().get(known).cloned() else {
             return Ok(());
@@ -251,13 +251,13 @@ impl<const D: usize> Runner<D> {
         watch.rolled_back(&how);
         self.controls.repeat(&mut self.sim, &self.checkpoint.changes);
         self.manifest.warnings.push(how.to_string());
-        // As many may leave again, and be others.
+        // The same number of particles may leave again, but other ones.
         self.removed_written = if self.removed_written > 0 { usize::MAX } else { 0 };
         let Some((_, extent)) = self.rollback_positions.iter().rfind(|(time, _)| *time == how.back_to).cloned() else {
             return Ok(());
         };
-        // Both checkpoints first: those there may be of the course that ended, and ask for rows that are about to go. The state
-        // knows of no alarm yet: it is met again, or another guard is set.
+        // Both checkpoints are written first: the existing ones may be later than this state and require rows that are about to
+        // be removed. The state precedes the alarm: a run that resumes from it meets the alarm again, or has another guard.
         self.last_checkpoint_valid = false;
         self.outputs.sync()?;
         self.write_checkpoint(known, extent.clone())?;
@@ -265,7 +265,7 @@ impl<const D: usize> Runner<D> {
         self.outputs.roll_back_to(&extent)
     }
 
-    /// Lists the particles that were removed, if that is news.
+    /// Writes the list of removed particles, if it has changed.
     fn write_removed(&mut self) -> Result<()> {
         let lost = self.sim.removed_particles();
         if lost.len() != self.removed_written {
@@ -275,15 +275,15 @@ impl<const D: usize> Runner<D> {
         Ok(())
     }
 
-    /// Writes the checkpoint, of outputs that are on the disk.
+    /// Writes the checkpoint after all outputs are on the disk.
     fn save_checkpoint(&mut self) -> Result<()> {
         device::fetch(&mut self.sim, &self.leader, false)?;
         self.outputs.sync()?;
         self.write_checkpoint(self.sim.rollbacks().len(), self.outputs.positions())
     }
 
-    /// Writes the checkpoint with the present state of the simulation, of which only the first `rollbacks` rollbacks, and with the
-    /// positions `outputs`.
+    /// Writes the checkpoint with the present state of the simulation, but with its first `rollbacks` rollbacks only, and with
+    /// the positions `outputs`.
     fn write_checkpoint(&mut self, rollbacks: usize, outputs: OutputPositions) -> Result<()> {
         let (time, wall, cpu) = (self.sim.time(), self.wall_seconds(), self.cpu_seconds());
         let now = Checkpoint { time, wall_seconds: wall, cpu_seconds: cpu, outputs, ..self.checkpoint.clone() };
@@ -294,7 +294,7 @@ impl<const D: usize> Runner<D> {
             self.sim.write_state(rollbacks, out)
         });
         if !is_given {
-            // The others give what the file cannot take.
+            // The other ranks send their data even if the file cannot be written.
             let _ = self.sim.write_state(rollbacks, &mut io::sink());
         }
         written?;
@@ -302,11 +302,11 @@ impl<const D: usize> Runner<D> {
         Ok(())
     }
 
-    /// Keeps what can be kept of a run that cannot go on; the error with where that is.
+    /// Saves the remaining data of a run that cannot continue. Returns the error with the folder of these data.
     fn record_failure(mut self, mut error: Error) -> Error {
         let mut reports = Vec::new();
         if let Some(fault) = &error.fault {
-            // Whatever of this fails, the fault itself is what the user must hear.
+            // Even if one of these files cannot be written, the error reports the fault itself.
             reports.push(self.outputs.write_last_frame(&self.sim, &self.leader));
             reports.push(self.write_removed());
             let text = serde_json::to_vec_pretty(fault).unwrap_or_default();
@@ -328,7 +328,7 @@ impl<const D: usize> Runner<D> {
         error.help(help)
     }
 
-    /// Holds the series against their references. A run that has not come to its end keeps and misses no bound.
+    /// Compares the series with their references. An unfinished run neither meets nor misses a bound.
     fn evaluate_checks(&mut self) {
         let series = series_folder(&self.folder);
         let whole = self.manifest.status == RunStatus::Finished;

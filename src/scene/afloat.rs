@@ -33,8 +33,8 @@ pub(super) struct PlacedSolids<const D: usize> {
     pub(super) enclosures: Vec<Option<Enclosure<D>>>,
 }
 
-/// Returns the solids in their places in `water`; `all`: with the space that each one encloses, else only with that
-/// of bodies that start at their equilibrium.
+/// Returns the solids in their places in `water`. If `all` is true, the result includes the space that each solid encloses;
+/// otherwise only that of bodies that start at their equilibrium.
 pub(super) fn placed_solids<const D: usize>(
     scene: &Scene,
     ctx: &Context,
@@ -115,8 +115,8 @@ fn note_other_levels<const D: usize>(
     }
 }
 
-/// Lifts the bodies that start at their equilibrium. They carry the ties as they are at the start: bodies at given
-/// heights that are joined to them or hang on taut ropes, springs and steady forces.
+/// Lifts the bodies that start at their equilibrium. They carry their constraints in the state at the start: springs, steady
+/// forces, and bodies at given heights that are joined to them or hang on taut ropes.
 fn float_bodies<const D: usize>(
     scene: &Scene,
     ctx: &Context,
@@ -165,7 +165,7 @@ fn float_bodies<const D: usize>(
         let own: Vec<usize> = group.iter().copied().filter(|i| afloat[*i]).collect();
         for &i in &own {
             let Some(body) = specs[i].initial_body() else { continue };
-            // One body carries all; several carry their own loads first, and what is left together.
+            // A single body carries all loads; several bodies first carry their own loads, and then the rest together.
             let carried = if own.len() == 1 { loads.of_group(i) } else { 0.0 } + loads.on(i);
             rises[i] = rise(i, body.mass + carried, &own)?;
         }

@@ -122,7 +122,7 @@ impl Scene {
         self.build_on(&Ranks::default())
     }
 
-    /// As [`Scene::build`], with the work of the filling shared among the `ranks`, of which each has the whole.
+    /// As [`Scene::build`], with the work of the filling shared among the `ranks`; each rank gets the whole result.
     ///
     /// # Errors
     /// As [`Scene::build`]; `Usage` if another rank cannot open its files.
@@ -432,7 +432,7 @@ impl<const D: usize> SceneParts<D> {
         }
         let limits = scene.guard.clone().unwrap_or_default().build();
         let sponge_layers = scene.damping.iter().map(|layer| layer.build(ctx, &still)).collect();
-        // Water in a hull that does not reach around it is meant.
+        // Water in a hull is intended if its region does not reach around the hull.
         own_water.into_iter().for_each(|i| {
             placed.specs[i].dry.get_or_insert(false);
         });

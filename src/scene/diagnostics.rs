@@ -5,7 +5,8 @@ use crate::{
     probe,
 };
 
-/// Examples by the whole key without its numbers; `*.` stands for any beginning. A whole key goes before such an end.
+/// Examples by the whole key without its numbers; `*.` stands for any beginning. A whole key takes precedence over an entry with
+/// `*.`.
 const EXAMPLES: &[(&str, &str)] = &[
     ("title", "title = \"Box in a wave train\""),
     ("dimension", "dimension = 2"),

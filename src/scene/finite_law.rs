@@ -6,14 +6,15 @@ use crate::{
     math::expression::Formula,
 };
 
-/// Number of equal intervals of the run at whose ends the value is looked at.
+/// Number of equal intervals of the span at whose ends the value is checked.
 const INTERVALS: u32 = 1000;
 
 /// Halvings of an interval that locate the first time without a value, to 1e-6 of the interval.
 const HALVINGS: u32 = 20;
 
-/// Refuses the `formula` with this `text` at `key` if its value is not finite when the part that it drives begins or ends
-/// with the run, or over an interval of the `span` (s) of the part. A step does not meet a single time between.
+/// Refuses the `formula` with this `text` at `key` if its value is not finite over an interval of the `span` (s) in which the
+/// part that it drives exists. A value that is not finite at the start or end of the run is refused too. At any other single time
+/// it is accepted, because no step meets such a time.
 pub(super) fn require_finite(ctx: &Context, key: &str, text: &str, formula: &Formula, span: [f64; 2]) -> Result<()> {
     let [from, until] = [span[0].max(0.0), span[1].min(ctx.until)];
     let value = |t: f64| formula.value_and_rate(t).0;

@@ -337,7 +337,7 @@ impl Scene {
         self
     }
 
-    /// What a mooring line refers to.
+    /// The objects to which a mooring line may refer.
     fn mooring_scope(&self) -> section::mooring::MooringScope<'_> {
         section::mooring::MooringScope { solids: &self.solid, points: &self.mooring_point, types: &self.line_type }
     }

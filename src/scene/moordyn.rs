@@ -325,7 +325,8 @@ impl Deck {
             }
         }
         for line in &self.lines {
-            // The solid or the point comes first, the ground second; of two, the end B, which is the fairlead in decks.
+            // An end at a solid or a point comes first, the ground second. If neither end is on the ground, end B comes first,
+            // which is the fairlead in decks.
             let [a, b] = line.points;
             let on_ground = |p: usize| self.points[p].attachment == Attachment::Fixed;
             let [first, second] = if on_ground(b) { [a, b] } else { [b, a] };
@@ -351,7 +352,8 @@ impl Deck {
         Ok(text)
     }
 
-    /// Writes what a scene does not take over of point number `p`: all of one without a line, and the body of one that is held.
+    /// Writes the data of point number `p` that a scene does not take over: all data of a point without a line, and the body of a
+    /// point that is held.
     fn write_left_out(&self, text: &mut String, p: usize, point: &DeckPoint) {
         let DeckPoint { id, attachment, body, .. } = point;
         if self.lines_at(p) == 0 {

@@ -123,8 +123,8 @@ pub struct PanelledBody {
     pub enclosed_water_kg: Option<f64>,
     /// Inertia of a free solid about its centre of mass along the axes of the scene, kg m².
     pub inertia_kg_m2: Option<[[f64; 3]; 3]>,
-    /// Hydrostatic stiffness about the reference point: N/m, N and N m. Rows are loads and columns motions, in the order surge, sway,
-    /// heave, roll, pitch, yaw. Without the weight, which has no part in it about the centre of mass.
+    /// Hydrostatic stiffness about the reference point: N/m, N and N m. Rows are loads and columns motions, in the order surge,
+    /// sway, heave, roll, pitch, yaw. It excludes the weight, which contributes nothing about the centre of mass.
     pub hydrostatic_stiffness: [[f64; 6]; 6],
     /// The panels: triangles, counter-clockwise seen from the water, m.
     #[serde(skip)]

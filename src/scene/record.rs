@@ -14,7 +14,7 @@ use crate::{
     },
 };
 
-/// A record of which so many times the duration of the run lies outside the run is probably not in seconds.
+/// A record is probably not in seconds if its part outside the run is this many times as long as the run.
 const MUCH_LONGER: f64 = 20.0;
 
 /// Largest difference between the spacings of even samples, over their mean, –.
@@ -27,7 +27,7 @@ const TIME_UNITS: [&str; 15] =
 /// Values by which loggers mark missing ones.
 const MISSING: [f64; 6] = [-999.0, -9999.0, -99999.0, 999.0, 9999.0, 99999.0];
 
-/// A marked value is so many times larger than all others.
+/// A value that marks a missing one is at least this many times larger than all others.
 const FAR_OFF: f64 = 10.0;
 
 /// The law outside the span of its record.

@@ -105,8 +105,8 @@ impl fmt::Display for ValueSource {
 }
 
 impl SceneSource {
-    /// The place of `key`, or of the nearest key above it that was written, put on `error`.
-    /// A check of the domain may have named a part of `key`.
+    /// Adds to `error` the place of `key`, or of the nearest key above it that was written. A check of the domain may have named
+    /// a part of `key`.
     pub(crate) fn with_location(&self, mut error: Error, key: &str) -> Error {
         let part = error.location.take_if(|location| location.file.is_empty());
         let key = &part.map_or(key.to_string(), |part| subkey(key, &part.key));

@@ -41,7 +41,8 @@ impl EquationOfState {
         (self.gamma == 7.0).then(|| binomial(self.stiffness, x))
     }
 
-    /// Excess density (–) at P/ρ₀ (m²/s²) for γ = 7 by four Newton steps, from −0.1 to 1 times c₀² in single precision.
+    /// Excess density (–) at P/ρ₀ (m²/s²) for γ = 7 by four Newton steps. They suffice in single precision for P/ρ₀ from −0.1 to
+    /// 1 times c₀².
     #[cfg(feature = "gpu")]
     pub(crate) fn binomial_compression<N: Num>(&self, p: N) -> N {
         let of = |c: f64| p.constant(c);
@@ -56,8 +57,8 @@ impl EquationOfState {
 
     /// Excess density (–) of water at rest under `head` = g·depth (m²/s²), its particles dp apart everywhere.
     ///
-    /// Deep water is denser, but as many particles fill a metre of it: the volumes m/ρ that the pressure force takes are by x too
-    /// small. It acts as P/(1 + x)², so that at rest P = ρ₀ g·depth (1 + 2x) to second order.
+    /// Deep water is denser, but a metre of it contains as many particles: the volumes m/ρ in the pressure force are too small by
+    /// the share x. The pressure P acts as P/(1 + x)², so that at rest P = ρ₀ g·depth (1 + 2x) to second order.
     pub(crate) fn hydrostatic_compression(&self, head: f64) -> f64 {
         self.compression(head * (1.0 + 2.0 * head / (self.stiffness * self.gamma)))
     }

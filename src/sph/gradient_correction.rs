@@ -7,26 +7,27 @@
 //!
 //!   dv_a/dt = −Σ m_b (P_a B_a + P_b B_b)/(ρ_a ρ_b) ∇_a W,
 //!
-//! which changes its sign when a and b swap, so that momentum is kept @zhang2024; angular momentum is no longer, to the extent to
-//! which M differs from 1. It acts among water alone: at faces it would count boundary particles above a waterline as neighbours,
-//! and bodies would float a tenth of dp too deep. Where few neighbours are left, as in spray, the correction fades:
-//! B = 1 + w (M⁻¹ − 1), w = min(1, 2ᴰ⁻¹ det M) @ren2023, by half at a flat free surface, where det M = 2⁻ᴰ. B belongs to the
-//! positions for which the neighbour lists were built: particles move by less than a tenth of the support until the next lists.
+//! which changes its sign when a and b swap. So it conserves momentum @zhang2024, but not angular momentum where M is not the
+//! unit matrix. It acts between water particles only: at faces it would count boundary particles above a waterline as neighbours,
+//! and bodies would float a tenth of dp too deep. Where a particle has few neighbours, as in spray, the correction fades:
+//! B = 1 + w (M⁻¹ − 1), w = min(1, 2ᴰ⁻¹ det M) @ren2023. At a flat free surface det M = 2⁻ᴰ, and w = ½. B is computed for new
+//! neighbour lists and at every 20th force pass: particles move by less than a tenth of the support in between.
 //!
-//! The pair force has the power −Σ V_a P_a (B_a − 1) : (∇v)_a, which no compression takes up. It stirs still water, the more the
-//! higher the pressure. Near the surface alone, where waves need the correction (Schulze et al. 2025), it does not:
+//! The correction adds the power −Σ V_a P_a (B_a − 1) : (∇v)_a, which no compression takes up. This power stirs still water, and
+//! more so at a higher pressure. A correction near the surface only, where waves need it (Schulze et al. 2025), does not stir the
+//! water:
 //!
 //!   B = 1 + s w (M⁻¹ − 1),   s = min(max(2 − P_a/(n ρ₀ |g| dp), 0), 1),   n = 4.
 
 use super::{AuxiliarySums, Num, Pair, Term};
 
-/// det M, –, below which there is nothing to tell a slope from.
+/// det M, –, below which the neighbours do not determine a gradient.
 const SINGULAR: f64 = 1e-9;
 
-/// Force passes after which corrections are made anew.
+/// Number of force passes after which the corrections are computed again.
 pub(crate) const PASSES: u64 = 20;
 
-/// n: from twice this depth over dp on, –, gradients are not corrected in [`near_surface`].
+/// n, –: below the depth 2 n dp, [`near_surface`] leaves gradients uncorrected.
 const SURFACE_DEPTH: f64 = 4.0;
 
 /// s (–) of water with pressure `p` (P/ρ₀, m²/s²), where one dp of water weighs `weight` (|g| dp, m²/s²).
@@ -37,7 +38,8 @@ pub fn near_surface<N: Num>(p: N, weight: f64) -> N {
 
 /// C = B − 1 (–) from the `moment` M of a particle (`[i][j]` with j ≤ i is read).
 pub fn correction<N: Num, const D: usize>(moment: &[[N; D]; D]) -> [[N; D]; D] {
-    // Gauss and Jordan without a search for pivots: M is symmetric and positive, or else there is no correction.
+    // Gauss–Jordan elimination without a search for pivots: M is symmetric and positive definite; otherwise there is no
+    // correction.
     let of = |x: f64| moment[0][0].constant(x);
     let unit = |i: usize, j: usize| of(f64::from(u8::from(i == j)));
     let mut left: [[N; D]; D] = std::array::from_fn(|i| std::array::from_fn(|j| moment[i.max(j)][i.min(j)]));

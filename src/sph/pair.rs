@@ -185,15 +185,15 @@ pub trait Term<const D: usize>: Copy + Send + Sync {
     const REPULSION: bool = false;
     /// Whether the sides' `stress` is read, in `vector`, and the strain summed.
     const STRESS: bool = false;
-    /// Whether the sides' `form` is read, in `vector`.
+    /// Whether the sides' `gradient_correction` is read, in `vector`.
     const GRADIENT_CORRECTION: bool = false;
     /// Whether the moment of the neighbours is summed.
     const RENORMALIZATION: bool = false;
     /// Whether the sums of shifting are made.
     const SHIFT: bool = false;
-    /// Whether the sides' `mark` is read and `held` summed.
+    /// Whether the sides' `shifting_suppressed` is read, and summed.
     const SHIFTING_SUPPRESSION: bool = false;
-    /// Whether `extra` is used.
+    /// Whether `auxiliary` is used.
     const AUXILIARY: bool = Self::STRESS || Self::RENORMALIZATION || Self::SHIFT || Self::SHIFTING_SUPPRESSION;
     /// Whether `vector` is used.
     const VECTOR: bool = Self::STRESS || Self::GRADIENT_CORRECTION;

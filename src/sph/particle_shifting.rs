@@ -24,8 +24,8 @@ impl Default for Shift {
 }
 
 impl Shift {
-    /// Displacement (m) in a step `dt` (s) of a particle of speed `speed` (m/s), from its finished sums; each
-    /// component is held to 0.1 dp, so that no shift can carry a particle past another.
+    /// Displacement (m) in a step `dt` (s) of a particle of speed `speed` (m/s), from its finished sums; each component is
+    /// limited to 0.1 dp, so that no shift can move a particle past another.
     pub fn displacement<N: Num, const D: usize>(
         &self,
         sums: &AuxiliarySums<N, D>,

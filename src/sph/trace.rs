@@ -1,5 +1,5 @@
-//! A number that records what is computed with it. An equation that is evaluated with it becomes a [`Trace`]: the list of its
-//! operations, from which the text of a program for another machine is written, or which is evaluated in double precision.
+//! A number that records the operations on it. An equation that is evaluated with such numbers becomes a [`Trace`], the list of
+//! its operations. A trace gives the text of a program for another machine, or is evaluated in double precision.
 
 use std::{
     cell::RefCell,
@@ -78,7 +78,7 @@ pub struct Trace {
 }
 
 impl Trace {
-    /// Records what `equation` computes; it gets the recorder to which it gives its results.
+    /// Records the operations of `equation`, which receives the recorder and passes its results to it.
     #[inline(never)]
     pub fn record(equation: &mut dyn FnMut(&Recorder)) -> Self {
         let recorder = Recorder(RefCell::default());

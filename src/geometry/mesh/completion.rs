@@ -14,7 +14,8 @@ use crate::{
 /// of the mesh.
 const IN_PLANE: f64 = 1e-4;
 
-/// Least eigenvalue of the sum of the normals' squares, over their number, in whose direction a corner of a plate moves.
+/// Least eigenvalue, over the sum of all, of the matrix Σ n nᵀ of the normals n at a corner: the corner of a plate moves only in
+/// directions of larger eigenvalues.
 const FLAT: f64 = 1e-3;
 
 /// The names of the axes.

@@ -1,4 +1,4 @@
-//! From text to the tree of a formula; what cannot be read is told with its place.
+//! Parses the text of a formula into a tree. An error names the place that cannot be read.
 
 use super::{Binary, CHOICES, FUNCTIONS, Node};
 use crate::error::{Error, Result, suggestion};
@@ -9,7 +9,7 @@ const DEPTH: usize = 64;
 /// Longest formula, bytes: with [`DEPTH`] it bounds the depth of the tree.
 const LENGTH: usize = 1000;
 
-/// Reads a formula of the numbers called `names`.
+/// Reads a formula of the variables called `names`.
 pub(super) fn read(text: &str, names: &'static [&'static str]) -> Result<Node> {
     let mut reader = Reader { text, names, place: 0, depth: 0 };
     if text.len() > LENGTH {
@@ -25,7 +25,7 @@ pub(super) fn read(text: &str, names: &'static [&'static str]) -> Result<Node> {
 /// Reads a formula from left to right.
 struct Reader<'a> {
     text: &'a str,
-    /// What the numbers that it is of are called.
+    /// Names of the variables.
     names: &'static [&'static str],
     place: usize,
     depth: usize,

@@ -226,18 +226,18 @@ fn size(unit: &str) -> Option<f64> {
     Some(Unit::parse(unit)?.size)
 }
 
-/// What the unit of a column is to that of the values that are meant.
+/// The relation of the unit of a column to the unit in which its values are meant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Conversion {
-    /// It has this size in the other.
+    /// The unit has this size in the other.
     Factor(f64),
-    /// It is a unit of mass, whose weight has this size in the other.
+    /// The unit is one of mass; its weight has this size in the other.
     Weight(f64),
-    /// It is one of another quantity.
+    /// The two units are of different quantities.
     OtherQuantity,
 }
 
-/// Returns what `unit` is to the unit `meant`, in 2-D also per metre of width; `None` if one of them is not known.
+/// Returns the relation of `unit` to the unit `meant`, in 2-D also per metre of width; `None` if one of them is not known.
 pub(crate) fn conversion(unit: &str, meant: &str, dimension: usize) -> Option<Conversion> {
     let (from, to) = (Unit::parse(unit)?, Unit::parse(meant)?);
     let factor = from.size / to.size;

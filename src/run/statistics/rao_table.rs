@@ -1,4 +1,5 @@
-//! How motions answer irregular waves over frequency, at a run's end: `rao.csv`, a row for each frequency of each motion.
+//! The response amplitude operators (RAO) of motions in irregular waves, at a run's end: `rao.csv`, a row for each frequency of
+//! each motion.
 
 use std::{f64::consts::PI, path::Path};
 
@@ -9,7 +10,7 @@ use crate::{analysis::RaoPoint, error::Result, output::write_atomically};
 /// The file, in the run's folder.
 pub const RAO_FILE: &str = "rao.csv";
 
-/// How a motion answers the waves at a frequency. In JSON it has the columns of [`RAO_FILE`] for keys.
+/// The RAO of a motion at a frequency. Its keys in JSON are the columns of [`RAO_FILE`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct RaoResult {
     /// Name of the `[[statistic]]`.
@@ -18,7 +19,7 @@ pub struct RaoResult {
     pub series: String,
     /// Unit of the ratio, as `m/m`.
     pub unit: String,
-    /// The answer.
+    /// The RAO at the frequency.
     pub point: RaoPoint,
 }
 
@@ -49,7 +50,7 @@ impl Serialize for RaoResult {
     }
 }
 
-/// An answer by the columns of the file.
+/// An RAO with the columns of the file.
 #[derive(Serialize)]
 struct RaoRow<'a> {
     name: &'a str,

@@ -8,7 +8,7 @@ use crate::{analysis::displayed_spectrum, error::Result, math::format::unit, out
 /// The file, in the run's folder.
 pub const SPECTRA_FILE: &str = "spectra.csv";
 
-/// Writes the spectra of all series of `tables` that swing into the run's `folder`; no file if none does.
+/// Writes the spectra of all oscillating series of `tables` into the run's `folder`; no file if none oscillates.
 ///
 /// # Errors
 /// `File` if it cannot be written.
@@ -31,7 +31,7 @@ pub(crate) fn write(folder: &Path, tables: &ProbeTables) -> Result<()> {
     write_atomically(&folder.join(SPECTRA_FILE), format!("series,f_Hz,S,unit\n{text}").as_bytes())
 }
 
-/// The unit of the spectral density of what is measured in `unit`.
+/// The unit of the spectral density of a quantity in `unit`.
 fn density_unit(unit: &str) -> String {
     match unit {
         "–" => "1/Hz".into(),

@@ -315,7 +315,7 @@ impl CheckConfig {
         Err(ctx.error_with_help(&format!("{key}.{word}"), what, help).with_code(ErrorCode::OutOfRange))
     }
 
-    /// The check of the run; opens its table to see that the columns are there.
+    /// Returns the check of the run. Opens its table and verifies that it has the columns.
     pub(crate) fn build(&self, ctx: &Context, key: &str) -> Result<CheckPlan> {
         let place = |e: Error| ctx.with_location(files::with_line_in_message(e), &format!("{key}.reference"));
         let reference = match (&self.formula, &self.response) {

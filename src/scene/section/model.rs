@@ -14,14 +14,14 @@ use crate::{
     sph::viscosity::Artificial,
 };
 
-/// Largest Courant number: still water around a float is at rest at 0.8 and unstable at 1.0, without another sign.
+/// Largest Courant number: still water around a float is at rest at 0.8. It is unstable at 1.0, although no other check fails.
 const CFL_MAX: f64 = 0.8;
 
-/// The same with corrected gradients: it is at rest at 0.6 and boils at 0.8.
+/// The same with corrected gradients: still water is at rest at 0.6 and unstable at 0.8.
 const CORRECTED_CFL_MAX: f64 = 0.6;
 
-/// Least stiffness μ of the lattice, –: below, still water around a float reached 0.07 to 0.13 √(g depth) within a second,
-/// above at most 0.08 (docs/explanation/stability.md).
+/// Least stiffness μ of the lattice, –. Below it, still water around a float reached speeds of 0.07 to 0.13 √(g depth) within a
+/// second; above it, at most 0.08 √(g depth) (docs/explanation/stability.md).
 const MIN_LATTICE_STIFFNESS: f64 = -0.07;
 
 /// Least depth of still water over the radius of the kernel, –: at 0.67 the water rises by some per cent of dp, at 0.75 not

@@ -24,7 +24,7 @@ use crate::{
 /// Number of segments of a line unless it is given.
 const SEGMENTS: usize = 20;
 
-/// Number of parts of a run at whose ends the length that a winch leaves is looked at.
+/// Number of parts of a run at whose ends the length of a line with a winch is checked.
 const PAID_OUT_SAMPLES: u32 = 1000;
 
 /// A section `[[mooring]]`: a mooring line with mass.
@@ -469,7 +469,7 @@ impl MooringConfig {
         Ok(made)
     }
 
-    /// Refuses a `law` of the winch that leaves less of the line over the `span` (s) than is computed.
+    /// Refuses a `law` of the winch that makes the line shorter, at a time of the `span` (s), than the program can compute.
     fn require_line_left(&self, ctx: &Context, key: &str, law: &TimeFunction, span: [f64; 2]) -> Result<()> {
         let time = |i: u32| span[0] + (span[1] - span[0]) * f64::from(i) / f64::from(PAID_OUT_SAMPLES);
         let left = |t: f64| self.length + law.value_and_rate(t).0;

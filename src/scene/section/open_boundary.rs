@@ -352,10 +352,10 @@ impl OpenBoundaryConfig {
             // The water follows its level by long waves, whatever `absorb` is: its default is false without a velocity.
             _ if changes && face.velocity.is_none() => Some((g * depth).sqrt()),
             (None | Some(false), _) => None,
-            // Long waves.
+            // Without a period, the speed is that of long waves.
             (Some(true), None) => Some((g * depth).sqrt()),
             (Some(true), Some(period)) => {
-                // Of the waves that leave, in the water, on the current that they meet.
+                // The phase speed relative to the water of the waves that leave, on the current that they meet.
                 let (omega, along) = (TAU / period, face.outward_velocity(&middle, 0.0).unwrap_or(0.0));
                 let k = wave_number_on_current(omega, depth, along, g).ok_or_else(|| {
                     let what = format!("the current of {} m/s stops waves of {period} s that would leave", -along);

@@ -425,7 +425,7 @@ impl PlacementConfig {
         Ok(())
     }
 
-    /// The pose of `shape` in this place. A draft in metres is measured below `level`; one of equilibrium starts at zero.
+    /// The pose of `shape` in this place. A draft in metres is measured below `level`; a draft of equilibrium starts at zero.
     pub(crate) fn build<const D: usize>(&self, shape: &Shape<D>, level: f64) -> Pose<D> {
         let position = vector(&[self.x.unwrap_or(0.0), self.y.unwrap_or(0.0), self.z.unwrap_or(0.0)]);
         let turn: Vec<f64> = match (&self.angle_deg, &self.turn_deg) {

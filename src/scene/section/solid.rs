@@ -22,7 +22,7 @@ use crate::{
     solid::{BallastSpec, DEFAULT_CONTACT_SKIN, DEFAULT_FRICTION, DEFAULT_RESTITUTION, FreeBody, Role, SolidSpec},
 };
 
-/// Largest extent, dp, of bodies that must weigh half a water particle.
+/// Largest extent, dp, of bodies that must weigh at least half a water particle.
 const SMALL: f64 = 7.9;
 
 /// Thickness, dp, below which one row of boundary particles stands for both faces of a body.
@@ -488,7 +488,7 @@ pub(crate) fn require_solid(ctx: &Context, solids: &[SolidConfig], key: &str, na
         .with_code(ErrorCode::UnknownName))
 }
 
-/// Refuses a free body under gravity that is small and weighs less than half a water particle: it would ride on single ones.
+/// Refuses a free body under gravity that is small and weighs less than half a water particle: it would ride on single particles.
 fn verify_weight<const D: usize>(ctx: &Context, key: &str, spec: &SolidSpec<D>) -> Result<()> {
     let (rho0, heavy) = (ctx.rho0.unwrap_or_default(), ctx.has_gravity());
     let Role::Free(body) = &spec.role else { return Ok(()) };
@@ -508,7 +508,7 @@ fn verify_weight<const D: usize>(ctx: &Context, key: &str, spec: &SolidSpec<D>) 
     ))
 }
 
-/// Refuses a light free plate of a single row of boundary particles, which cannot press on both sides as they should.
+/// Refuses a light free plate with a single row of boundary particles, which cannot have the pressures of both sides.
 fn verify_thickness<const D: usize>(ctx: &Context, key: &str, spec: &SolidSpec<D>) -> Result<()> {
     let (rho0, heavy) = (ctx.rho0.unwrap_or_default(), ctx.has_gravity());
     let Role::Free(body) = &spec.role else { return Ok(()) };

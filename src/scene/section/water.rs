@@ -203,7 +203,7 @@ pub struct StillWaterLevel {
 }
 
 impl StillWaterLevel {
-    /// Of all bodies of water but those inside solids, if there are others.
+    /// The still water of all bodies of water outside solids, or of all bodies if there are none outside.
     pub(crate) fn of<const D: usize>(water: &[WaterBody<D>]) -> Self {
         let level = outside_solids(water).map(|body| body.level).fold(f64::NEG_INFINITY, f64::max);
         let bottom = outside_solids(water).map(|body| body.bottom).fold(f64::INFINITY, f64::min);
@@ -211,7 +211,7 @@ impl StillWaterLevel {
     }
 }
 
-/// The bodies of water that no solid encloses; all of them if there are no such.
+/// The bodies of water that no solid encloses, or all bodies of water if solids enclose all of them.
 fn outside_solids<const D: usize>(water: &[WaterBody<D>]) -> impl Iterator<Item = &WaterBody<D>> {
     let all = water.iter().all(|body| body.inside.is_some());
     water.iter().filter(move |body| all || body.inside.is_none())
@@ -224,7 +224,7 @@ pub(crate) struct StillWater<const D: usize> {
 }
 
 impl<const D: usize> StillWater<D> {
-    /// Of the same bodies of water as [`StillWaterLevel::of`]; there is one at least.
+    /// The still water of the same bodies of water as in [`StillWaterLevel::of`], at least one.
     pub(crate) fn of(water: &[WaterBody<D>]) -> Self {
         let mut bounds: Bounds<D> =
             Bounds { min: Vector::repeat(f64::INFINITY), max: Vector::repeat(f64::NEG_INFINITY) };

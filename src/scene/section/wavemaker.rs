@@ -30,18 +30,18 @@ use crate::{
 /// Distance of the absorption gauge from the face of the paddle, in smoothing lengths: the radius of the kernel.
 const GAUGE_DISTANCE: f64 = 2.0;
 
-/// Where a paddle is that absorbs, and the direction of its waves.
+/// The place of an absorbing paddle, and the direction of its waves.
 struct AbsorberSite<const D: usize> {
     /// A point (m) of its face at rest, in the middle of its width.
     face: Vector<D>,
-    /// Where its waves go; a unit vector.
+    /// Direction of its waves, a unit vector.
     way: Vector<D>,
     /// Height of the still water, m.
     level: f64,
 }
 
 impl<const D: usize> AbsorberSite<D> {
-    /// Of a paddle in the box `own`, whose waves go along `way`.
+    /// The site of a paddle in the box `own`, whose waves go along `way`.
     fn of(own: &Bounds<D>, way: Vector<D>, level: f64) -> Self {
         let middle = 0.5 * (own.min + own.max);
         Self { face: middle + way * (support(own, &way) - middle.dot(&way)), way, level }
@@ -194,7 +194,7 @@ fn note_distance(ctx: &Context, key: &str, wave: &WaveConfig, ahead: f64) {
     ctx.add_note(FileNote::warning("gauge_distance", what, mend));
 }
 
-/// The still paddle's own wave: none, before those that it absorbs.
+/// The motion of a paddle that makes no waves of its own, before its absorption.
 fn zero_wave(ctx: &Context, key: &str, config: Option<AbsorptionConfig>, maker: &Wavemaker) -> Result<PaddleMotion> {
     match config.and_then(|config| config.period) {
         Some(period) => maker.at_rest(period).map_err(|e| ctx.with_location(e, key)),

@@ -4,11 +4,11 @@
 //!   P_w = [Σ_f V_f P_f W_wf + (g − a_w)·Σ_f m_f r_wf W_wf] / Σ_f V_f W_wf,   r_wf = r_w − r_f,
 //!   dρ_w/dt = continuity + (ρ(P_w) − ρ_w)/τ,   τ = 10 h/c₀.
 //!
-//! Where the water approaches the face slowly, the density becomes ρ(P_w) at once. Continuity also compresses boundary
-//! particles that water slides past or leaves at a waterline, and a pressure that they keep for τ is a lift and a drag that no
-//! water exerts. Where the water strikes, at more than [`SLOW_APPROACH`] of c₀, the relaxation takes τ: an impact meets the dynamic
-//! wall, which holds it back and dissipates it. A sudden increase, and any change at a plate thinner than the kernel's support,
-//! takes τ as well.
+//! Where the water approaches the face slowly, the density becomes ρ(P_w) at once. Continuity also compresses boundary particles
+//! along which water slides or which it leaves at a waterline. If they kept this pressure for τ, it would act as a false lift and
+//! drag. Where the water approaches faster than [`SLOW_APPROACH`] times c₀, the relaxation takes τ: the wall acts on an impact as
+//! a dynamic boundary, which stops it and dissipates its energy. A sudden increase of pressure, and any change at a plate thinner
+//! than the kernel's support, takes τ as well.
 //!
 //! P_w has a lower limit, so that the face exerts no suction: P_w ≥ min(0, ρ₀ g·n' d), with d the depth along n' from the
 //! water. Pressure may always decrease; an increase is scaled by the
@@ -16,29 +16,31 @@
 
 use crate::sph::Num;
 
-/// τ over h/c₀, –: at 40 a gap of 0.05 to 0.07 dp stays, at 0 water strays into the faces.
+/// τ over h/c₀, –. At 40 a gap of 0.05 to 0.07 dp remains before the faces; at 0 water enters the faces.
 pub(crate) const RELAXATION_TIME: f64 = 10.0;
 
-/// Approach of the water over c₀, –, up to which walls take its pressure at once; from twice this on they relax within τ. A
-/// float of draft d in water of depth 10 d has c₀ = 32 √(g d): its own motions are slower than 0.01 c₀, impacts are faster.
+/// Speed of approach of the water over c₀, –. Up to this value walls take its pressure at once; from twice this value on they
+/// relax within τ. A float of draft d in water of depth 10 d has c₀ = 32 √(g d): its own motions are slower than 0.01 c₀, impacts
+/// are faster.
 const SLOW_APPROACH: f64 = 0.01;
 
-/// Increase of density in a step over ρ₀, –, up to which walls take it at once; from twice this on they relax within τ. Sound of
-/// 2e-4 c₀ has it. Without this limit a light body that a rope stops at 0.1 c₀ is thrown back by half a particle.
+/// Increase of density in a step over ρ₀, –. Up to this value walls take it at once; from twice this value on they relax within
+/// τ. Sound with a particle velocity of 2e-4 c₀ has this increase. Without this limit a light body that a rope stops at 0.1 c₀ is
+/// thrown back by half a particle.
 const SLOW_INCREASE: f64 = 2e-4;
 
-/// Mass of a free body over that of as much water as its boundary particles hold, –, below which its walls keep τ, and from twice
-/// which on they are prompt: a sheet of foam would hop on the water.
+/// Mass of a free body over the mass of water in the volume of its boundary particles, –. Below this value its walls relax within
+/// τ, because a sheet of foam would hop on the water; from twice this value on they take the pressure at once.
 const LIGHT: f64 = 0.05;
 
-/// Weight over that behind a flat face under water, –, from which on a boundary particle has water on two faces: a plate thinner
-/// than the support.
+/// Weight of a boundary particle over the weight behind a flat face under water, –. From this value on, the particle has water on
+/// two faces: its plate is thinner than the support.
 const TWO_FACES: f64 = 1.3;
 
-/// Depths at which [`SupportCoverage`] is tabled, less one.
+/// Number of intervals between the depths in the table of [`SupportCoverage`].
 const DEPTHS: usize = 64;
 
-/// Shares of the full weight, –, below which no increase is applied and above which all of it is.
+/// Shares of the full weight, –: no increase is applied below the first, and all of it above the second.
 const COVERAGE_MIN: f64 = 0.8;
 const COVERAGE_FULL: f64 = 1.0;
 
@@ -95,7 +97,7 @@ fn dot<N: Num, const D: usize>(a: &[N; D], b: &[N; D]) -> N {
     (1..D).fold(a[0] * b[0], |sum, k| a[k].fma(b[k], sum))
 }
 
-/// Least weight of a boundary particle with water: at the rim of the support the weight is the square of a rounding.
+/// Least weight (–) of a boundary particle that has water: a smaller one, at the rim of the support, is round-off.
 const LEAST_WEIGHT: f64 = 1e-9;
 
 impl<N: Num, const D: usize> WallExtrapolation<N, D> {
@@ -121,11 +123,11 @@ impl<N: Num, const D: usize> WallExtrapolation<N, D> {
         self.weight_sum.select_below(x.constant(LEAST_WEIGHT), x.constant(0.0), x)
     }
 
-    /// The pressure P_w/ρ₀ (m²/s²) of a boundary particle that feels `pull` = g − a_w (m/s²), of which `g` is the weight, and lies
-    /// `depth` (m) below the face.
+    /// The pressure P_w/ρ₀ (m²/s²) of a boundary particle `depth` (m) below the face, from `pull` = g − a_w (m/s²) and the
+    /// gravity `g` (m/s²).
     #[inline(always)]
     pub fn pressure(&self, pull: &[N; D], g: &[N; D], depth: N) -> N {
-        // The face is where the water is: a thin plate has two.
+        // The face is on the side of the water: a thin plate has two faces.
         let least = (dot(g, &self.direction()) * depth).min(depth.constant(0.0));
         self.with_water(((self.pressure_sum + dot(pull, &self.offset_sum)) / self.divisor()).max(least))
     }
@@ -152,15 +154,16 @@ pub struct WallTarget<N> {
     pub prompt_increase: N,
 }
 
-/// Share (–) of a prompt change at the walls of a solid with this `heaviness`, the mass of the body over that of the water in its
-/// place, –.
+/// Share (–) of a change that the walls of a solid take at once. `heaviness` (–) is the mass of the body over the mass of the
+/// water in its place.
 pub fn promptness(heaviness: f64) -> f64 {
     (heaviness / LIGHT - 1.0).clamp(0.0, 1.0)
 }
 
 impl<N: Num> WallTarget<N> {
-    /// The target `density` (kg/m³) of a boundary particle of density `own`, which the water approaches with `approach` (m/s).
-    /// `cover` is its place in the [`SupportCoverage`], `promptness` that of its solid, –. ρ₀ in kg/m³, c₀ in m/s.
+    /// The target `density` (kg/m³) of a boundary particle of density `own` (kg/m³), which the water approaches with the speed
+    /// `approach` (m/s). `cover` is its coverage by water, `promptness` (–) the value of [`promptness()`] for its solid. ρ₀ in
+    /// kg/m³, c₀ in m/s.
     #[inline(always)]
     pub fn new(density: N, own: N, approach: N, cover: Cover<N>, promptness: N, [rho0, c0]: [f64; 2]) -> Self {
         let (zero, one) = (own.constant(0.0), own.constant(1.0));
@@ -171,7 +174,7 @@ impl<N: Num> WallTarget<N> {
         Self { density, increase: cover.fraction(), prompt_decrease: slow, prompt_increase: slow * gentle }
     }
 
-    /// The change of density (kg/m³) in a step in which the share `relaxation` (–) of a difference relaxes, from `own`.
+    /// The change of the density `own` (kg/m³) in a step in which the share `relaxation` (–) of a difference relaxes.
     #[inline(always)]
     pub(crate) fn change(&self, own: N, relaxation: N) -> N {
         let one = own.constant(1.0);
@@ -181,13 +184,13 @@ impl<N: Num> WallTarget<N> {
     }
 }
 
-/// Share of a boundary particle's kernel support before the face that water fills, from the weight of its
+/// Share of water in the part of a boundary particle's kernel support that lies before the face, from the weight of its
 /// [`WallExtrapolation`].
 #[derive(Clone, Debug)]
 pub struct SupportCoverage {
     /// Weights of boundary particles behind a flat face under water, at depths from 0.
     full: Vec<f64>,
-    /// From one depth to the next, m.
+    /// Distance from one depth to the next, m.
     step: f64,
 }
 
@@ -232,7 +235,8 @@ pub struct Cover<N> {
 }
 
 impl<N: Num> Cover<N> {
-    /// The factor (0 to 1) of an increase of pressure: 0 beside spray, a fifth in a film of one row, 1 where water is all around.
+    /// The factor (0 to 1) on an increase of pressure: 0 beside spray, 0.22 in a film of one row (2-D, h = 1.7 dp), 1 where water
+    /// fills the support.
     #[inline(always)]
     pub fn fraction(self) -> N {
         let of = |x: f64| self.share.constant(x);

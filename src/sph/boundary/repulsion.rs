@@ -1,16 +1,16 @@
 //! Repulsion: keeps water out of a face where pressure alone does not, as in a film under a heavy body.
 //!
-//! Water nearer than r₀ = ¾ dp to a boundary particle is pushed away from it with (A c₀²/dp²)(1 − r²/r₀²)² r, at any pressure. Water
-//! before a face comes nearer only if it is pressed a quarter of dp into it: first rows are dp from the boundary particles, and
-//! half of that from the face.
+//! Water nearer than r₀ = ¾ dp to a boundary particle is pushed away from it with (A c₀²/dp²)(1 − r²/r₀²)² r, at any pressure.
+//! The first row of water lies dp from the boundary particles and half a dp from the face. It meets this force only if it is
+//! pressed a quarter of dp towards the face.
 
 use crate::sph::{FluidProperties, Num, Pair, Term, kernel::Kernel};
 
 /// r₀/dp, –.
 const RANGE: f64 = 0.75;
 
-/// A, –: holds back water that comes with a third of the speed of sound, or is pressed with a tenth of ρ₀ c₀², and is
-/// no stiffer in a step than sound is.
+/// A, –. It stops water that approaches with a third of the speed of sound or is pressed with a tenth of ρ₀ c₀², and it requires
+/// no shorter time step than sound does.
 const STRENGTH: f64 = 2.0;
 
 /// The repulsion under one kernel.

@@ -1,7 +1,8 @@
 //! Slip: the tangential velocity of the water at a face.
 //!
-//! Partial: boundary particles act with the velocity v_w of their solid. No slip: where the water near a boundary particle, which
-//! lies d below the face, has the mean velocity ⟨v⟩ at a height d̄ above it, the particle acts along the face with
+//! Partial slip: boundary particles act on the water with the velocity v_w of their solid. No slip: a boundary particle lies d
+//! below the face, and the water near it has the mean velocity ⟨v⟩ at the mean height d̄ above the face. Along the face, the
+//! particle acts with
 //!
 //!   u_t = v_w − (d/d̄)(⟨v⟩ − v_w)_t,
 //!
@@ -33,11 +34,12 @@ impl Slip {
     }
 }
 
-/// Most d/d̄: at the rim of the support the mean of few particles says little.
+/// Largest d/d̄, –: at the rim of the support the mean over few particles is inaccurate.
 const MAX_RATIO: f64 = 4.0;
 
-/// The velocity (m/s) without slip of a boundary particle whose solid moves there with `v` (m/s), `depth` (m) below the face with
-/// outward normal `normal`, with sums `fit` over the water. Where the water is not before that face, its solid's.
+/// The velocity (m/s) with which a boundary particle acts on the water without slip. It lies `depth` (m) below the face with
+/// outward normal `normal`; its solid moves there with `v` (m/s); `fit` are its sums over the water. If the water is not before
+/// that face, the velocity is `v`.
 pub fn no_slip_velocity<const D: usize>(
     fit: &WallExtrapolation<f64, D>,
     v: Vector<D>,

@@ -1,4 +1,4 @@
-//! Density diffusion, one law a file. What the rest of the program needs of a law it asks here.
+//! Density diffusion, with one law in each file. The rest of the program uses the laws through this module only.
 
 mod fourtakas;
 mod molteni;
@@ -34,7 +34,7 @@ impl Diffusion {
         }
     }
 
-    /// λ h/c₀ (–) of the shortest waves, λ the rate at which the diffusion damps them: 7 δ.
+    /// λ h/c₀ (–), where λ is the rate (1/s) at which the diffusion damps the shortest waves: 7 δ.
     pub(crate) fn damping(&self) -> f64 {
         7.0 * match self {
             Self::None => 0.0,

@@ -26,8 +26,8 @@ impl Default for Molteni {
 }
 
 impl Molteni {
-    /// The law in water of the given constants: that of [`super::Fourtakas`] with no hydrostatic part, so that one
-    /// sweep less is compiled for every other choice of laws.
+    /// The law in water of the given constants: that of [`super::Fourtakas`] without the hydrostatic part. So both diffusions
+    /// share one compiled pair loop for each choice of the other laws.
     pub fn term<const D: usize>(&self, medium: &FluidProperties<D>) -> FourtakasTerm<D> {
         let mut term = Fourtakas { delta: self.delta }.term(&FluidProperties { gravity: Vector::zeros(), ..*medium });
         term.c2 = f64::INFINITY;

@@ -1,28 +1,29 @@
 //! Whether water that starts on a lattice stays there under its own pressure.
 //!
-//! A lattice of pressure P whose particles are displaced by u exp(ik·r) is pulled back, besides by sound, by
-//! (2P/ρ₀) H(k) u, H(k) = Σ V ∇∇W (1 − cos k·r): the pressure force of the displaced places at the densities of before. Where H has
-//! less than nothing across the direction in which sound acts, S = Σ V ∇W sin k·r, a shear of the lattice grows like
-//! exp(t √(2 P |μ|/ρ₀)/dp), μ = dp² H, and the water rearranges itself @monaghan2000. Pairing is one such mode.
+//! The particles of a lattice under the pressure P are displaced by u exp(ik·r). Sound pulls them back, and so does the
+//! acceleration (2P/ρ₀) H(k) u, with H(k) = Σ V ∇∇W (1 − cos k·r): the pressure force at the displaced places with the former
+//! densities. Sound acts along S = Σ V ∇W sin k·r. If H is negative across S, a shear of the lattice grows like
+//! exp(t √(2 P |μ|/ρ₀)/dp), with μ = dp² H, and the water rearranges itself @monaghan2000. Pairing is one such mode.
 
 use nalgebra::{Matrix3, Vector3};
 
 use super::{Kernel, SUPPORT_RATIO};
 use crate::sph::FluidProperties;
 
-/// Compression P/ρ₀c₀² at which sound is weighed against pressure, –: that at the bed with c₀ = 10 √(g depth).
+/// Compression P/ρ₀c₀² (–) for which the stiffness by sound is added to that by pressure: the one at the bed with c₀ =
+/// 10 √(g depth).
 const COMPRESSION: f64 = 0.01;
 
-/// Waves are tried at every π/12 per dp.
+/// The wave numbers that are tried are multiples of π/12 per dp.
 const PARTS: usize = 12;
 
-/// μ (–), the least stiffness of a square (cubic) lattice of the medium's spacing against any wave under `kernel`: 0 if the lattice
-/// holds, less if a wave grows.
+/// μ (–), the least stiffness of a square (cubic) lattice of the medium's spacing against any wave under `kernel`: 0 if the
+/// lattice is stable, negative if a wave grows.
 pub fn lattice_stiffness<const D: usize>(kernel: impl Kernel, medium: &FluidProperties<D>) -> f64 {
     let neighbours = neighbours(kernel.normalised_on_lattice(medium), medium);
     let sines: Vec<f64> = (0..2 * PARTS).map(|i| (i as f64 * std::f64::consts::PI / PARTS as f64).sin()).collect();
     let mut least = 0.0_f64;
-    // The others are mirrored from these.
+    // Symmetry gives the other wave numbers.
     for a in 1..=PARTS {
         for b in 0..=a {
             for c in 0..=if D == 2 { 0 } else { b } {

@@ -18,13 +18,13 @@ pub trait Kernel: Copy + Send + Sync {
     /// The same with W and ∂W multiplied by `volume`.
     fn times_volume(self, volume: f64) -> Self;
 
-    /// The same, weighed with the volume of a particle so that −Σ r_x ∂W r_x = 1 over a lattice of spacing dp: there the
-    /// gradient of what is linear is exact.
+    /// The same, multiplied by a volume such that −Σ r_x ∂W r_x = 1 over a lattice of spacing dp: there the gradient of a linear
+    /// field is exact.
     fn normalised_on_lattice<const D: usize>(self, medium: &FluidProperties<D>) -> Self {
         self.times_volume(1.0 / moment(&self, medium, |_| 1.0))
     }
 
-    /// The part that r²/(r² + η²) leaves of a viscous force on a lattice, –.
+    /// The factor (–) by which r²/(r² + η²) reduces a viscous force on a lattice.
     fn viscous_sum<const D: usize>(&self, medium: &FluidProperties<D>) -> f64 {
         let eta2 = medium.eta2();
         moment(self, medium, |r2| r2 / (r2 + eta2)) / moment(self, medium, |_| 1.0)

@@ -21,8 +21,8 @@ impl Default for Laminar {
 }
 
 impl Laminar {
-    /// The law, in those units. Of a viscous force on a lattice η² leaves the part `damped`, which is made good: 0.8 % at
-    /// h = 1.7 dp.
+    /// The law, in `units`. η² reduces a viscous force on a lattice by the factor `damped` (–); the law compensates for this, by
+    /// 0.8 % at h = 1.7 dp.
     pub fn term(&self, units: &Units, damped: f64) -> LaminarTerm {
         LaminarTerm { nu0: self.nu0 / damped * units.time / (units.length * units.length) }
     }

@@ -1,5 +1,5 @@
-//! Viscosities, one a file. What the rest of the program needs of a viscosity it asks here: its terms in the pair loop, the
-//! time step that it allows, its stress and its damping. A new viscosity is a file and its lines in this one.
+//! Viscosities, with one in each file. The rest of the program uses them through this module only: their terms in the pair loop,
+//! the time steps that they allow, their stress and their damping. A new viscosity needs its file and its lines in this one.
 
 mod artificial;
 mod laminar;
@@ -44,7 +44,7 @@ pub(crate) trait TermConsumer<const D: usize> {
 
 impl Viscosity {
     /// Calls `next` with the terms in the given units. `wall_share` (–) is the part of the viscosity that acts between water and
-    /// solids, `viscous_sum` that of a viscous force that η² leaves on the lattice.
+    /// solids. `viscous_sum` (–) is the factor by which η² reduces a viscous force on the lattice.
     pub(crate) fn terms<const D: usize, N: TermConsumer<D>>(
         self,
         properties: &FluidProperties<D>,
@@ -84,10 +84,10 @@ impl Viscosity {
         h * h / (8.0 * nu0)
     }
 
-    /// The effective kinematic viscosity ν (m²/s) of a shear flow in water with speed of sound `c0` (m/s) and smoothing length `h`
-    /// (m), in `dimension` D: ν₀, or α c₀ h/(4 (D + 2)) of the artificial viscosity, which acts on approaching pairs only
-    /// @monaghan2005; of the Riemann dissipation at the rate of `shear` (1/s) see [`Riemann::effective`]. The eddy viscosity of SPS is
-    /// not part of it.
+    /// The effective kinematic viscosity ν (m²/s) of a flow with the shear rate `shear` (1/s), in water with speed of sound `c0`
+    /// (m/s) and smoothing length `h` (m), in `dimension` D. It is ν₀ of a laminar viscosity, α c₀ h/(4 (D + 2)) of the
+    /// artificial viscosity, which acts on approaching pairs only @monaghan2005, and [`Riemann::effective`] of the Riemann
+    /// dissipation. It excludes the eddy viscosity of SPS.
     pub fn effective(&self, c0: f64, h: f64, dimension: usize, shear: f64) -> f64 {
         match self {
             Self::None => 0.0,
@@ -103,7 +103,7 @@ impl Viscosity {
         if let Self::Sps(law) = self { Some(*law) } else { None }
     }
 
-    /// λ h/c₀ (–) of the shortest waves, λ the rate at which the viscosity damps them: 3.5 α.
+    /// λ h/c₀ (–), where λ is the rate (1/s) at which the viscosity damps the shortest waves: 3.5 α.
     pub(crate) fn damping(&self) -> f64 {
         if let Self::Artificial(law) = self { 3.5 * law.alpha } else { 0.0 }
     }

@@ -24,10 +24,10 @@ impl Default for Riemann {
 }
 
 impl Riemann {
-    /// The kinematic viscosity ν (m²/s) of a flow that shears at the rate `shear` (1/s), in `dimension` D: η × 0.0295 h² times the rate
-    /// in 2-D, 0.0243 in 3-D. Half the pairs approach, with u = γ r |n_x n_y|, and the stress is
-    /// ½ η γ² ⟨|n_x n_y|³⟩/2 (D + 2) ⟨r²⟩, where ⟨|n_x n_y|³⟩ is 1/(6π) in 2-D and 0.0243 in 3-D, and ⟨r²⟩ of the Wendland kernel
-    /// 5/9 h² and 4/5 h². `h` in m.
+    /// The kinematic viscosity ν (m²/s) of a flow with the shear rate γ = `shear` (1/s), for the smoothing length `h` (m):
+    /// 0.0295 η γ h² in 2-D, 0.0243 η γ h² in 3-D. Half of the pairs approach, with u = γ r |n_x n_y|. The stress over ρ is
+    /// ½ η γ² ⟨|n_x n_y|³⟩/2 (D + 2) ⟨r²⟩ in `dimension` D. Here ⟨|n_x n_y|³⟩ is 1/(6π) in 2-D and 0.0243 in 3-D; ⟨r²⟩ of the
+    /// Wendland kernel is 5/9 h² in 2-D and 4/5 h² in 3-D.
     pub fn effective(&self, h: f64, dimension: usize, shear: f64) -> f64 {
         let constant = if dimension == 3 { 0.0243 } else { 0.0295 };
         self.eta * constant * shear * h * h

@@ -146,8 +146,8 @@ fn work<const D: usize>(load: &Load<D>, then: &Kinematics<D>, now: &Kinematics<D
     dt * load.power(&Kinematics { velocity, spin, ..*now })
 }
 
-/// Returns the work of a driven solid on the water in a step (J): minus that of the water's load, which is that of the last force
-/// pass, at mid-step for two passes.
+/// Returns the work (J) of a driven solid on the water in a step: minus the work of the water's load on the solid. The load is
+/// that of the last force pass, which is at mid-step if a step has two passes.
 fn driven_work<const D: usize>(then: &Kinematics<D>, now: &Solid<D>, dt: f64) -> f64 {
     let Role::Driven(_) = &now.spec.role else { return 0.0 };
     -work(&now.load, then, &now.kinematics, dt)
@@ -163,8 +163,8 @@ fn constraint_work<const D: usize>(sim: &Simulation<D>, before: &[Kinematics<D>]
     before.iter().enumerate().filter_map(one).sum()
 }
 
-/// Returns the work (J) in a step of the films of water between solids: what opens a gap raises the water around by the same energy,
-/// which is lost when the gap fills.
+/// Returns the work (J) in a step of the films of water between solids: the motion that opens a gap raises the water around it by
+/// the same energy, which is lost when the gap fills.
 fn film_work<const D: usize>(sim: &Simulation<D>, before: &[Kinematics<D>], dt: f64) -> f64 {
     let loads = film::loads(sim.system());
     let moved = before.iter().zip(sim.system().solids());
