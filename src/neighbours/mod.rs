@@ -14,7 +14,7 @@ mod search;
 pub use clusters::{Clusters, ListPart, PAD};
 pub(crate) use clusters::{Slab, fill_positions, occupied_lanes};
 pub(crate) use columns::Columns;
-pub(crate) use division::Division;
+pub(crate) use division::{Division, Numbers};
 pub(crate) use grid::CellGrid;
 pub use lists::CHUNK;
 pub(crate) use lists::{ParticleListChunk, ParticleLists};
@@ -137,17 +137,21 @@ impl<const D: usize> NeighbourLists<D> {
 
     /// The columns of the water of all ranks, of which this one has its own at the places `r` (m); shares the slabs out anew.
     pub(crate) fn share_out(&mut self, r: &[Vector<D>]) -> Columns<D> {
-        let own = self.division().and_then(Division::own_water).map_or(&[][..], |(own, _)| own);
-        let own = || own.iter().map(|&i| &r[i as usize]);
-        let bounds = Bounds::around(own());
+        let own = self.own_numbers().map(|i| &r[i as usize]);
+        let bounds = Bounds::around(own.clone());
         let columns = self.columns(self.division().map_or(bounds, |division| division.union(&bounds)), r.len());
         let mut particles = vec![0; columns.slab_count()];
-        own().for_each(|r| particles[columns.slab_at(r)] += 1);
+        own.for_each(|r| particles[columns.slab_at(r)] += 1);
         if let Some(division) = self.division_mut() {
             division.ranks.add_numbers(&mut particles);
             division.share_out(&particles);
         }
         columns
+    }
+
+    /// The water particles that this rank advances; none if it advances all.
+    fn own_numbers(&self) -> impl Iterator<Item = u32> + Clone {
+        self.division().into_iter().flat_map(Division::own_numbers)
     }
 
     /// Search radius of the lists, m.
@@ -157,8 +161,7 @@ impl<const D: usize> NeighbourLists<D> {
 
     /// The order of this rank's water at `r` (m) in `columns`.
     pub(crate) fn own_order(&self, columns: &Columns<D>, r: &[Vector<D>]) -> Vec<u32> {
-        let own = self.division().and_then(Division::own_water).map_or(&[][..], |(own, _)| own);
-        columns.sort(r, own).order
+        columns.sort(r, &self.own_numbers().collect::<Vec<_>>()).order
     }
 
     /// Builds the lists for these positions of water and boundary particles.
@@ -180,11 +183,7 @@ impl<const D: usize> NeighbourLists<D> {
     /// `next` of the next rank's first slab.
     pub(crate) fn build_own(&mut self, columns: &Columns<D>, water: &[Vector<D>], next: &[u32], skin: &[Vector<D>]) {
         self.positions_at_build = zeros(water.len());
-        let own = match &self.pair_lists {
-            PairLists::Clusters(clusters, _) => clusters.division.own_water(),
-            PairLists::Lists(_) => None,
-        };
-        let mut which = own.map_or(Vec::new(), |(own, _)| own.to_vec());
+        let mut which: Vec<u32> = self.own_numbers().collect();
         which.iter().for_each(|&i| self.positions_at_build[i as usize] = water[i as usize]);
         which.extend(next);
         self.build_sorted(columns, (water, &columns.sort(water, &which)), skin);
@@ -222,8 +221,7 @@ impl<const D: usize> NeighbourLists<D> {
     /// Lets queries at a point find `these` particles of the `water` (m) alone, which this rank knows, in the order in which they find
     /// all.
     pub(crate) fn know(&mut self, these: Vec<u32>, water: &[Vector<D>]) {
-        let own = self.division().and_then(Division::own_water).map_or(&[][..], |(own, _)| own);
-        let bounds = Bounds::around(own.iter().map(|&i| &water[i as usize]));
+        let bounds = Bounds::around(self.own_numbers().map(|i| &water[i as usize]));
         let bounds = self.division().map_or(bounds, |division| division.union(&bounds));
         let places: Vec<Vector<D>> = these.iter().map(|&i| water[i as usize]).collect();
         let grid = CellGrid::of_part(&places, (bounds, water.len()), self.list_radius());
@@ -378,3 +376,7 @@ pub(crate) fn to_integer(x: f64, inv_unit: f64) -> i32 {
     // Added to 1.5·2⁵², the nearest whole number stands in the lowest bits.
     (x * inv_unit + 6_755_399_441_055_744.0).to_bits() as i32
 }
+
+#[cfg(test)]
+#[path = "../../tests/unit/neighbours/known.rs"]
+mod tests;

@@ -339,13 +339,13 @@ impl<const D: usize> System<D> {
         }
     }
 
-    /// Sets the density (kg/m³) of each boundary particle near water to what `rho` makes of its place among them, its
-    /// index and its density, but not below what the wall law allows; then it relaxes to its target, by the share `relaxation` (–)
-    /// where that takes time, or not at all. The others stay at ρ₀.
+    /// Sets the density (kg/m³) of each boundary particle near water that this rank advances to what `rho` makes of its place among
+    /// these, its place among all near water, its index and its density, but not below what the wall law allows; then it relaxes to its
+    /// target, by the share `relaxation` (–) where that takes time, or not at all. The others stay at ρ₀.
     pub(crate) fn set_boundary_density(
         &mut self,
         relaxation: Option<f64>,
-        mut rho: impl FnMut(usize, usize, f64) -> f64,
+        mut rho: impl FnMut([usize; 3], f64) -> f64,
     ) {
         let (rho0, Boundary { particles, target_density, .. }) = (self.properties.rho0, &mut self.boundary);
         let mut targets = target_density.iter().flatten().peekable();
@@ -357,7 +357,7 @@ impl<const D: usize> System<D> {
             while targets.next_if(|target| target.particle < i).is_some() {}
             let target = targets.next_if(|target| target.particle == i);
             let i = i as usize;
-            let bare = rho(k, i, particles.rho[i]);
+            let bare = rho([place, k, i], particles.rho[i]);
             particles.rho[i] = match target {
                 None => DynamicBoundary.limited_density(bare, rho0),
                 Some(TargetDensity { target, .. }) => {

@@ -81,9 +81,7 @@ impl<'a> Columns<'a> {
         match (self.division, self.which) {
             (None, _) => WaterColumn::Read(Cow::Borrowed(all)),
             (Some(division), SavedWater::All) => WaterColumn::Shared(all, division),
-            (Some(division), SavedWater::Own) => {
-                WaterColumn::Own(all, division.own_water().map_or(&[][..], |(own, _)| own))
-            }
+            (Some(division), SavedWater::Own) => WaterColumn::Own(all, division.own_water().map(|(own, _)| own)),
         }
     }
 }

@@ -46,7 +46,7 @@ pub use step_check::{Escape, ExitPath, ParticleLimits, RemovedParticle};
 pub(crate) use step_check::{LimitViolation, StepCheck};
 pub(crate) use symmetry::{AxisSet, reflected};
 
-use own_water::WaterAtStart;
+use own_water::StateAtStart;
 use symmetry::{reflected_auxiliary, reflected_sums, reflected_tensor};
 
 pub use crate::interaction::StepLimits;
@@ -291,6 +291,9 @@ impl<const D: usize> System<D> {
         }
         // Most are of fixed solids: velocities that nothing writes take no memory.
         system.boundary.particles.v = zeros(system.boundary.particles.len());
+        if ranks.rank() > 0 {
+            system.boundary.particles.id = Vec::new();
+        }
         for i in 0..system.solids.len() {
             system.place_boundary(i);
         }
@@ -331,12 +334,14 @@ impl<const D: usize> System<D> {
     }
 
     /// Rebuilds the neighbour lists within a step that began at `at_start`, if that is needed; the water keeps its order.
-    pub(crate) fn rebuild_within_step(&mut self, at_start: &mut WaterAtStart<D>) {
+    pub(crate) fn rebuild_within_step(&mut self, at_start: &mut StateAtStart<D>) {
         if self.needs_rebuild() {
             self.pair_loop.free_buffers();
+            let boundary = at_start.all_boundary_densities(self);
             let columns =
                 own_water::is_apart(&self.neighbours).then(|| own_water::share_out(self, Some(at_start), false));
             self.rebuild_lists(columns);
+            at_start.set_boundary_densities(self, &boundary);
         }
     }
 
