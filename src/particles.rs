@@ -17,7 +17,7 @@ pub struct Particles<const D: usize> {
     pub v: Vec<Vector<D>>,
     /// Density, kg/m³.
     pub rho: Vec<f64>,
-    /// Name of the particle for life, from 0; sorting moves it with the rest.
+    /// Name of the particle for life, from 0; sorting moves it with the rest. Boundary particles have none on ranks that write no files.
     pub id: Vec<u32>,
 }
 
@@ -44,7 +44,12 @@ impl<const D: usize> Particles<D> {
 
     /// The first `n` of them.
     pub(crate) fn first_n(&self, n: usize) -> ParticlesView<'_, D> {
-        ParticlesView { r: &self.r[..n], v: &self.v[..n], rho: &self.rho[..n], id: &self.id[..n] }
+        ParticlesView {
+            r: &self.r[..n],
+            v: &self.v[..n],
+            rho: &self.rho[..n],
+            id: self.id.get(..n).unwrap_or_default(),
+        }
     }
 
     /// Memory of the arrays, B.

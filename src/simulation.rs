@@ -245,6 +245,11 @@ impl<const D: usize> Simulation<D> {
         (self.compiled.gather_water)(self, everyone);
     }
 
+    /// Leaves the first rank the places of its own water, if it got those of all at the set-up.
+    pub(crate) fn forget_places(&mut self) {
+        own_water::forget_places(&mut self.system);
+    }
+
     fn complete_water(&mut self, everyone: bool) {
         own_water::gather(&mut self.system, everyone);
     }

@@ -3,20 +3,20 @@
 //! A boundary particle of the outer layer near water acts as a spring of stiffness k = ρ₀ c₀² dpᴰ⁻² along its normal n: a column
 //! of water dp long on a face dpᴰ⁻¹. All of them give the stiffness K = Σ k J Jᵀ with J = (n, arm ∧ n). A body of mass matrix M
 //! oscillates on it with ω_b² = max eig(M⁻¹K) and radiates sound. Particles carry no sound above 1.14 c₀/h (Wendland kernel), so
-//! a body with a higher ω_b cannot radiate: a time step adds the share λ/4 of the energy of that mode, λ = Δt² ω_b², and the
-//! oscillation never decays or grows. Such a body gets the inertia of the water that sound reaches in T = h/c₀, Z = θ T² K,
+//! a body with a higher ω_b cannot radiate: each time step adds the share λ/4, λ = Δt² ω_b², to the energy of that mode, and the
+//! oscillation does not decay, or it grows. Such a body gets the inertia of the water that sound reaches in T = h/c₀, Z = θ T² K,
 //! θ = 1/Λ − 1/(T ω_b)², Λ = 1.3:
 //!
 //!   (M + Z) Δv = Δt (W + C) + s S,      S ← S + Δt (W + C) − M Δv,      s = 1 − exp(−Δt/τ),  τ = 10 h/c₀
 //!
-//! W is the load of water, weight and pushes; C that of contacts and joints, a mean over τ; S the pending impulse, which is
-//! applied within τ. Z therefore has no effect on slow motions, M Δv = Δt (W + C); at a frequency ω the error is ω τ Z/M, which
-//! falls with h². Momentum is conserved: the body has received, or will receive, what the water gave. A body with (T ω_b)² < Λ is
-//! unchanged.
+//! W is the load of water, weight and pushes. C is the load of contacts and joints, as a mean over τ. S is the pending impulse,
+//! which the body receives within τ. Z therefore has no effect on slow motions, M Δv = Δt (W + C); at a frequency ω the error is
+//! ω τ Z/M, which falls with h². Momentum is conserved: the body has received, or will receive, each impulse of the water. A body
+//! with (T ω_b)² < Λ is unchanged.
 //!
-//! When Z grows by ΔZ, the newly reached water moves with v_w before and with the body after. This inelastic collision gives the
-//! body M Δv = −M (M + Z)⁻¹ ΔZ (v − v_w) at once, and the water next to it the opposite impulse. Without it a light body that
-//! strikes water would meet it with all of Z, and would leave with energy from nowhere.
+//! When Z grows by ΔZ, the newly reached water moves at v_w before, and with the body afterwards. This inelastic collision gives
+//! the body M Δv = −M (M + Z)⁻¹ ΔZ (v − v_w) at once, and the water next to it the opposite impulse. Without this exchange a
+//! light body would strike water with the inertia M + Z instead of M, and would gain energy.
 
 use nalgebra::{SMatrix, SVector};
 use serde::{Deserialize, Serialize};
@@ -140,7 +140,7 @@ impl<const D: usize> AcousticAddedMass<D> {
         self.state = state;
     }
 
-    /// Takes pending impulse and contacts about a centre of mass that has moved by `shift` (m) within the body.
+    /// Refers the pending impulse and the load of contacts to the centre of mass, which has moved by `shift` (m) within the body.
     pub(super) fn shift_centre(&mut self, shift: &Vector<D>) {
         for load in [&mut self.state.pending, &mut self.state.contacts] {
             let torque = Bivector::torque(shift, &linear(load)) * -1.0;
@@ -218,8 +218,8 @@ impl<const D: usize> AcousticAddedMass<D> {
         self.state.contacts += (contacts - self.state.contacts) * applied_share(system, dt);
     }
 
-    /// Returns the stiffness K of the springs that are wet at present (N/m, N and N m) without locked motions, and the trace (N/m) of
-    /// its translational part with them.
+    /// Returns the stiffness K (N/m, N and N m) of the wet springs without the locked motions, and the trace (N/m) of its
+    /// translational part with the locked motions.
     fn springs(&self, system: &System<D>, body: &FreeBody<D>) -> (Square, f64) {
         let mut sum = Square::zeros();
         self.for_each_wet(system, |part, _, _, along| sum += along * along.transpose() * part);
@@ -232,8 +232,8 @@ impl<const D: usize> AcousticAddedMass<D> {
         (sum, trace)
     }
 
-    /// Returns K v_w of the springs that are wet at present, N/s and N m/s; `way` (m) leads from them to where the body is when the
-    /// water is where it is.
+    /// Returns K v_w (N/s and N m/s) of the wet springs. `way` (m) is the distance that the body has moved between the time of
+    /// its boundary particles and the time of the water.
     fn flow(&self, system: &System<D>, body: &FreeBody<D>, way: &Vector<D>) -> Six {
         let mut sum = Six::zeros();
         self.for_each_wet(system, |part, x, normal, along| {

@@ -57,7 +57,7 @@ impl<const D: usize> Bodies<D> {
         Self { engine, added_masses, constraints, moorings, accounting: None, external, steps, spent }
     }
 
-    /// Whether the bodies, or what accounts for them, read or change the water itself beside its loads.
+    /// Whether the bodies or their accounting read or change the water itself, besides its loads.
     pub(crate) fn read_water(&self) -> bool {
         self.external || self.accounting.is_some() || !self.added_masses.is_empty() || !self.moorings.is_empty()
     }
@@ -134,7 +134,7 @@ impl<const D: usize> Bodies<D> {
         })
     }
 
-    /// Returns to a saved state of a run after `steps` steps, which [`Bodies::matches`] has let pass.
+    /// Restores a saved state, taken after `steps` steps, that [`Bodies::matches`] has accepted.
     ///
     /// # Errors
     /// `Restart` if the state of the engine is damaged.
@@ -410,7 +410,7 @@ impl<const D: usize> BodyStep<'_, D> {
         }
     }
 
-    /// Records what the water has received.
+    /// Records impulse and energy that the water has received.
     fn add_transfer(&mut self, transfer: Option<MomentumTransfer<D>>) {
         let energy = transfer.as_ref().map_or(0.0, |transfer| transfer.energy);
         self.bodies.accounting.iter_mut().for_each(|accounting| accounting.add_returned(energy));
@@ -475,8 +475,8 @@ const AT_SIDE: &str = "Too long a solid is not repeated. Let it reach 2.5 kernel
 const AT_FACE: &str = "The water beyond a face is prescribed and carries no body. Hold it with a mooring or  free.locked,  move the \
                        face further away, or end the run earlier:  until.";
 
-/// Returns the fault of the first solid that stands where it may not be at the end of a step with these `solids`: at its image
-/// across a symmetry plane, at a periodic side, or in the buffer of an open boundary.
+/// Returns the fault of the first solid whose position in `solids`, at the end of a step, is not allowed: at its image across a
+/// symmetry plane, at a periodic side, or in the buffer of an open boundary.
 fn out_of_place<const D: usize>(system: &System<D>, solids: &[Kinematics<D>]) -> Option<EngineFault<D>> {
     let fault = |(solid, now): (usize, &Kinematics<D>)| {
         let (reason, cause) = if system.meets_its_image(solid, &now.pose) {

@@ -222,7 +222,7 @@ impl<const D: usize> Accounting<D> {
         self.budget.removed -= energy;
     }
 
-    /// Adds the energy (J) of a solid or of ballast that was added. The energy of what was removed is negative.
+    /// Adds the energy (J) of an added solid or of added ballast; the energy is negative for a removed solid or removed ballast.
     pub(crate) fn add_solid_energy(&mut self, energy: f64) {
         self.budget.solids += energy;
     }

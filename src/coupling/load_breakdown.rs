@@ -39,9 +39,9 @@ pub struct LoadBreakdown<const D: usize> {
     pub ballast: Load<D>,
     /// Reaction of locked motions: by definition the negative sum of the other loads along these motions.
     pub locks: Load<D>,
-    /// Rate of change of momentum and angular momentum, with that of ballast. For a 3-D body in a joint, on a rope or
-    /// partly locked, the rate of change of angular momentum is the expression that the engine integrates,
-    /// I(R₀) ΔΩ/Δt + Ω ∧ I Ω.
+    /// Rate of change of momentum and angular momentum, including that of ballast. A 3-D body in a joint, on a rope or partly
+    /// locked is special: its rate of change of angular momentum is the expression that the engine integrates, I(R₀) ΔΩ/Δt + Ω ∧
+    /// I Ω.
     pub change: Load<D>,
 }
 

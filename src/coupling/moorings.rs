@@ -1,8 +1,8 @@
-//! Mooring lines in the water: what is around their nodes, and the loads on the solids at their ends.
+//! Mooring lines in the water: the surroundings of their nodes, and the loads on the solids at their ends.
 //!
-//! A node takes the mean velocity of the water around it, Σ V_b v_b W/Σ V_b W. Its wet share follows from the share of the kernel's
-//! weight that water fills, Σ V_b W, over the share that fixed solids leave free; it grows from 0 to 1 over about a smoothing
-//! length at the surface. The water and the surfaces of the solids hold for a whole step.
+//! A node takes the mean velocity of the water around it, Σ V_b v_b W/Σ V_b W. The wet share of the node follows from Σ V_b W,
+//! the share of the kernel support that water fills, over the share that fixed solids leave free. At the surface the wet share
+//! grows from 0 to 1 over about a smoothing length. The water and the surfaces of the solids are constant during a step.
 
 use super::Interval;
 use crate::{
@@ -25,22 +25,23 @@ pub(crate) struct Moorings<const D: usize> {
     junctions: Junctions,
     /// Fixed solids with the boxes (m) in which they are near.
     fixed: Vec<(usize, Bounds<D>)>,
-    /// Distance (m) at which a fixed solid is near: a segment that leaves it has its other end so far away at most.
+    /// Distance (m) within which a fixed solid is near: at least the length of the longest segment, so that both ends of a
+    /// segment that leaves a bed find this bed.
     bed_reach: f64,
     /// Load on each solid in the last step; empty without lines.
     loads: Vec<Load<D>>,
-    /// Impulses (N s) on the water in the last step and their places (m), of the lines that act on it.
+    /// Impulses (N s) that lines gave to the water in the last step, and their positions (m).
     on_water: Vec<(Vector<D>, Vector<D>)>,
 }
 
-/// The name of a line, and what happens to it.
+/// The name of a line, and its change.
 pub(crate) type Change = (String, ConstraintChange);
 
 impl<const D: usize> Moorings<D> {
-    /// The lines of `system` at rest between their ends, on solids that start as `start`.
+    /// Makes the lines of `system`, at rest between their ends on solids that start as `start`.
     ///
     /// # Errors
-    /// `Scene` if a line finds no rest.
+    /// `Scene` if no equilibrium of a line is found.
     pub(crate) fn new(system: &System<D>, start: &[Kinematics<D>]) -> Result<Self> {
         let specs = &system.constraints().moorings;
         let (junctions, bodies) = junctions(&system.constraints().mooring_points, specs);
@@ -76,7 +77,8 @@ impl<const D: usize> Moorings<D> {
         Ok(made)
     }
 
-    /// Brings all `lines` that act to rest. Returns the largest force on a node of each over its weight.
+    /// Finds the equilibrium of all active `lines`. Returns for each line the largest residual force on a node over the weight of
+    /// a node.
     fn find_rest(&self, system: &System<D>, lines: &mut [&mut MooringLine<D>]) -> Vec<f64> {
         self.junctions.bring_to_rest(lines, &|x| self.surroundings(system, x), &system.gravity())
     }
@@ -88,13 +90,13 @@ impl<const D: usize> Moorings<D> {
         mooring.reading(&around)
     }
 
-    /// Whether there is none.
+    /// Whether there are no lines.
     pub(crate) fn is_empty(&self) -> bool {
         self.lines.is_empty()
     }
 
-    /// Stiffness (N/m) of the lines on solid number `solid` against a displacement along the x axis, at rest where it is.
-    /// The lines find their rest again with their ends displaced.
+    /// Stiffness (N/m) of the lines against a displacement of solid number `solid` along the x axis from its present position.
+    /// The lines are in equilibrium at each displacement.
     pub(crate) fn surge_stiffness(&self, system: &System<D>, solid: usize) -> f64 {
         let own = || {
             let ends = self.lines.iter().enumerate().flat_map(|(i, line)| [0, 1].map(|k| (i, k, line.solids()[k])));
@@ -123,13 +125,14 @@ impl<const D: usize> Moorings<D> {
         self.loads.get(i).copied().unwrap_or_else(Load::zero)
     }
 
-    /// Impulses (N s; N s/m in 2-D) of drag and added mass on the water in the last step, and their places (m): the nodes of the lines
-    /// that act on it.
+    /// Impulses (N s; N s/m in 2-D) of drag and added mass on the water in the last step, and their positions (m): the nodes of
+    /// the lines that act on the water.
     pub(crate) fn impulses_on_water(&self) -> &[(Vector<D>, Vector<D>)] {
         &self.on_water
     }
 
-    /// The boxes (m) whose water the lines read in a step from time `t` (s) on; `None` if a line begins then, which may read any.
+    /// The boxes (m) in which the lines read the water in a step from time `t` (s) on. `None` if a line begins in this step,
+    /// because it may read water anywhere.
     #[cfg(feature = "gpu")]
     pub(crate) fn water_ranges(&self, t: f64, reach: f64) -> Option<Vec<Bounds<D>>> {
         let begins = |mooring: &Mooring<D>| !mooring.line.state.acts && mooring.lifetime().contains(t);
@@ -143,7 +146,8 @@ impl<const D: usize> Moorings<D> {
         self.lines.iter().map(|mooring| mooring.lifetime().next_limit(t)).fold(f64::INFINITY, f64::min)
     }
 
-    /// Advances all lines over a step, while the solids go from `now` on; `next` is where driven solids go. Returns what happens to them.
+    /// Advances all lines over a step. `now` has the solids at its start, and `next` the driven solids at its end. Returns the
+    /// lines that began, ended or broke.
     pub(super) fn advance(
         &mut self,
         system: &System<D>,
@@ -190,7 +194,7 @@ impl<const D: usize> Moorings<D> {
         changes
     }
 
-    /// Lets a line begin, at rest between its ends, or end at time `t` (s). Returns what happens.
+    /// Begins a line, at rest between its ends, or ends it, if its lifetime requires this at time `t` (s). Returns this change.
     fn update_lifetime(
         &self,
         system: &System<D>,
@@ -267,14 +271,14 @@ impl<const D: usize> Moorings<D> {
         states.len() == self.lines.len() && self.lines.iter().zip(states).all(fits)
     }
 
-    /// Returns to saved states, which [`Moorings::matches`] has let pass.
+    /// Restores saved states that [`Moorings::matches`] has accepted.
     pub(super) fn restore(&mut self, states: Vec<LineState<D>>) {
         self.lines.iter_mut().zip(states).for_each(|(mooring, state)| mooring.line.state = state);
     }
 }
 
-/// The share of a kernel's weight behind a plane at the distance `t` of its centre over its radius, –: ∫ (1 − s²)³ ds from `t` to 1,
-/// over that from −1 to 1.
+/// Returns the share of a kernel's weight behind a plane: ∫ (1 − s²)³ ds from `t` to 1 over the same integral from −1 to 1, –.
+/// `t` is the distance of the kernel's centre from the plane over the kernel's radius.
 fn share_behind(t: f64) -> f64 {
     let t = t.clamp(-1.0, 1.0);
     let t2 = t * t;

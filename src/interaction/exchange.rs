@@ -21,11 +21,9 @@ pub(super) fn receive_next_water<const D: usize>(packed: &mut PackedParticles<D>
     }
     let ([before, after], own) = (clusters.division.adjacent(), clusters.own_slabs());
     let water = |slab: usize| clusters.slabs.get(slab).map_or(0..0, |slab| slab.first..slab.middle);
-    let out = if before.is_some() { packed.words(water(own.start)) } else { Vec::new() };
-    let next = if after.is_some() { water(own.end) } else { 0..0 };
-    let mut into = vec![0; next.len() * PackedCluster::<D>::WORDS];
-    clusters.division.ranks.pass((before, &out), (after, &mut into));
-    packed.set_words(next, &into);
+    let passed = ((before, water(own.start)), (after, water(own.end)));
+    let width = PackedCluster::<D>::WORDS;
+    clusters.division.ranks.pass_items(packed, passed, width, PackedParticles::give, PackedParticles::take);
 }
 
 /// Completes `sums`, of which slab s has `lengths[s]` rows, with those of other ranks. A rank that advances its own water only
@@ -36,22 +34,23 @@ pub(super) fn complete_sums(sums: &mut [LaneRow], clusters: &Clusters, lengths: 
         return share_all_sums(sums, clusters, lengths);
     }
     let ([before, after], own) = (division.adjacent(), clusters.own_slabs());
-    // What slab s adds to the next one.
-    let rows = |s: usize| {
-        let (slab, next) = (&clusters.slabs[s], &clusters.slabs[s + 1]);
-        let each = lengths[s] / (next.end - slab.first + 1);
-        let start = lengths[..s].iter().sum::<usize>() + (next.first - slab.first) * each;
-        start..start + (next.end - next.first) * each
+    // What the last slab of this rank adds to the next one.
+    let out = match after {
+        None => 0..0,
+        Some(_) => {
+            let (last, next) = (&clusters.slabs[own.end - 1], &clusters.slabs[own.end]);
+            let each = lengths[own.end - 1] / (next.end - last.first + 1);
+            let start = lengths[..own.end - 1].iter().sum::<usize>() + (next.first - last.first) * each;
+            start..start + (next.end - next.first) * each
+        }
     };
-    let bits = |row: &LaneRow| row.0.map(f32::to_bits);
-    let out: Vec<u32> =
-        if after.is_some() { sums[rows(own.end - 1)].iter().flat_map(bits).collect() } else { Vec::new() };
-    let theirs = if before.is_some() { rows(own.start - 1) } else { 0..0 };
-    let mut into = vec![0; theirs.len() * LANES];
-    division.ranks.pass((after, &out), (before, &mut into));
-    for (row, words) in sums[theirs].iter_mut().zip(into.chunks_exact(LANES)) {
-        row.0 = std::array::from_fn(|l| f32::from_bits(words[l]));
-    }
+    // Of the slab before there are no other rows.
+    let theirs = if before.is_some() { 0..lengths[own.start - 1] } else { 0..0 };
+    let give = |sums: &&mut [LaneRow], row: usize, words: &mut Vec<u32>| words.extend(sums[row].0.map(f32::to_bits));
+    let take = |sums: &mut &mut [LaneRow], row: usize, words: &[u32]| {
+        sums[row].0 = std::array::from_fn(|l| f32::from_bits(words[l]));
+    };
+    division.ranks.pass_items(&mut { sums }, ((after, out), (before, theirs)), LANES, give, take);
 }
 
 /// The sums of all water particles; `own(i)` are those of a particle of this rank. Empty if this rank has all sums already.
@@ -59,7 +58,7 @@ pub(super) fn gather_sums<const D: usize>(clusters: &Clusters, own: impl Fn(usiz
     let division = &clusters.division;
     let Some((these, _)) = division.own_water() else { return Vec::new() };
     let mut all = vec![PairSums::zero(); clusters.fluid_slots.len()];
-    these.iter().for_each(|&i| all[i as usize] = own(i as usize));
+    these.iter().for_each(|i| all[i as usize] = own(i as usize));
     let give = |_: &Vec<PairSums<D>>, i: usize, numbers: &mut Vec<f64>| own(i).give(numbers);
     let take = |all: &mut Vec<PairSums<D>>, i: usize, numbers: &[f64]| all[i] = PairSums::taken(numbers);
     division.share_water(these, &mut all, D + 1, give, take);

@@ -97,22 +97,23 @@ impl<const D: usize> SimdPairLoop<D> {
         }
     }
 
-    /// Allocates the sums, with `rows` rows for each cluster: for the slabs that this rank computes and the slab before them, or
-    /// for all slabs if this rank needs all sums. Returns the number of rows that each slab writes.
+    /// Allocates the sums, `rows` a cluster, of the slabs that this rank computes, after what the slab before adds to the first of
+    /// them; or those of all slabs if it needs the sums of all. Returns the number of rows that each slab writes.
     fn lay_out(&mut self, clusters: &Clusters, rows: usize) -> Vec<usize> {
         self.has_rates = false;
-        let own = clusters.own_slabs();
-        let laid_out = match clusters.division.by_owner {
-            true if own.is_empty() => own,
-            true => own.start.saturating_sub(1)..own.end,
-            false => 0..clusters.slabs.len(),
-        };
+        let laid_out = if clusters.division.by_owner { clusters.own_slabs() } else { 0..clusters.slabs.len() };
         let these = clusters.clusters_of(laid_out.clone());
         self.first = these.start;
         self.at.clear();
         self.at.resize(these.len(), [0; 2]);
         let mut lengths = vec![0; clusters.slabs.len()];
         let (mut offset, mut before) = (0, None);
+        if !laid_out.is_empty() && laid_out.start > 0 {
+            let first = &clusters.slabs[laid_out.start];
+            offset = (first.end - first.first) * rows;
+            lengths[laid_out.start - 1] = offset;
+            before = Some((0, first.first));
+        }
         for s in laid_out {
             let slab = &clusters.slabs[s];
             for (c, at) in (slab.first..slab.end).zip(&mut self.at[slab.first - these.start..]) {
@@ -288,17 +289,10 @@ impl<const D: usize> PairLoop<D> for SimdPairLoop<D> {
         self.gravity = input.properties.gravity;
         let acceleration2 = |slot: u32| (self.pair_sums_of(slot).acceleration + self.gravity).norm_squared();
         let slots = &clusters.fluid_slots;
-        let a2 = match clusters.division.own_water() {
-            None => slots
-                .par_iter()
-                .with_min_len(PARTICLES_PER_TASK)
-                .map(|&slot| acceleration2(slot))
-                .reduce(|| 0.0, f64::max),
-            Some((own, _)) => {
-                let own = own.par_iter().with_min_len(PARTICLES_PER_TASK);
-                own.map(|&i| acceleration2(slots[i as usize])).reduce(|| 0.0, f64::max)
-            }
-        };
+        let is_own = clusters.division.own_water().map(|(_, is_own)| is_own);
+        let own = clusters.division.own_range(slots.len()).into_par_iter().with_min_len(PARTICLES_PER_TASK);
+        let own = own.filter(|&i| is_own.is_none_or(|is_own| is_own[i]));
+        let a2 = own.map(|i| acceleration2(slots[i])).reduce(|| 0.0, f64::max);
         let [low, high] = ranks::words_of(a2);
         let mut largest = (0.0, 0.0);
         for [low, high, closing] in clusters.division.ranks.gather_words([low, high, closing.to_bits()]) {

@@ -1,7 +1,5 @@
 //! Memory layout of the particles for the SIMD pair loop.
 
-use std::ops::Range;
-
 use rayon::prelude::*;
 
 use super::{PairLoopInput, accumulators::RequiredSums};
@@ -80,30 +78,20 @@ impl<const D: usize> PackedParticles<D> {
         [slab.first, slab.middle, slab.end].map(|c| c - self.first)
     }
 
-    /// Where the clusters `these` are packed.
-    fn places(&self, these: Range<usize>) -> Range<usize> {
-        if these.is_empty() { 0..0 } else { these.start - self.first..these.end - self.first }
+    /// Appends the words of cluster `c`.
+    pub(super) fn give(&self, c: usize, words: &mut Vec<u32>) {
+        let PackedCluster { x, v, s } = self.clusters[c - self.first];
+        words.extend(x.into_iter().flatten().map(|x| x as u32));
+        words.extend(v.into_iter().chain(s).flatten().map(f32::to_bits));
     }
 
-    /// The clusters `these` as words.
-    pub(super) fn words(&self, these: Range<usize>) -> Vec<u32> {
-        let words = |cluster: &PackedCluster<D>| {
-            let PackedCluster { x, v, s } = *cluster;
-            let integers = x.into_iter().flatten().map(|x| x as u32);
-            integers.chain(v.into_iter().chain(s).flatten().map(f32::to_bits))
-        };
-        self.clusters[self.places(these)].iter().flat_map(words).collect()
-    }
-
-    /// Sets the clusters `these` to what [`PackedParticles::words`] gave.
-    pub(super) fn set_words(&mut self, these: Range<usize>, words: &[u32]) {
-        let these = self.places(these);
-        for (cluster, words) in self.clusters[these].iter_mut().zip(words.chunks_exact(PackedCluster::<D>::WORDS)) {
-            let row = |k: usize| -> [u32; LANES] { std::array::from_fn(|l| words[k * LANES + l]) };
-            cluster.x = std::array::from_fn(|k| row(k).map(|x| x as i32));
-            cluster.v = std::array::from_fn(|k| row(D + k).map(f32::from_bits));
-            cluster.s = std::array::from_fn(|k| row(2 * D + k).map(f32::from_bits));
-        }
+    /// Sets cluster `c` to the words that [`PackedParticles::give`] appended.
+    pub(super) fn take(&mut self, c: usize, words: &[u32]) {
+        let cluster = &mut self.clusters[c - self.first];
+        let row = |k: usize| -> [u32; LANES] { std::array::from_fn(|l| words[k * LANES + l]) };
+        cluster.x = std::array::from_fn(|k| row(k).map(|x| x as i32));
+        cluster.v = std::array::from_fn(|k| row(D + k).map(f32::from_bits));
+        cluster.s = std::array::from_fn(|k| row(2 * D + k).map(f32::from_bits));
     }
 
     /// Packs the additional rows: marks of boundary particles, stress and gradient correction of the water, repulsion of both.

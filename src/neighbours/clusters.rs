@@ -1,9 +1,9 @@
 //! Clusters of eight particles of one kind, and for each particle the later clusters with which it has pairs.
 //!
-//! A column is cut into runs of eight. The clusters of a slab follow one another, water first, then boundary
-//! particles. A list holds, for one particle, every cluster of its own slab or the next that comes later and has a
-//! particle within the lists' reach: so each pair of particles is met once, and what a slab writes lies in itself and the
-//! slab after it. A water particle's list begins with its own cluster; boundary particles do not meet.
+//! A column is cut into runs of eight. The clusters of a slab follow one another, water first, then boundary particles. The list
+//! of a particle holds every later cluster of its own slab or the next slab that has a particle within the lists' reach. Each
+//! pair of particles therefore occurs once, and the results of a slab belong to this slab and the next. The list of a water
+//! particle begins with its own cluster; pairs of boundary particles are not listed.
 
 use std::ops::Range;
 
@@ -23,8 +23,8 @@ use crate::{
 /// No particle: a pad that fills up a cluster.
 pub const PAD: u32 = u32::MAX;
 
-/// Position of a pad: half the integer range from its cluster, so far that no kernel support reaches it and
-/// so near that no difference overflows.
+/// Distance of a pad from its cluster, in integer units: larger than any kernel support, and small enough that no difference
+/// overflows.
 pub(crate) const FAR_POSITION: i32 = 1 << 30;
 
 /// Widths of a column that a cluster may span.
@@ -39,12 +39,12 @@ pub struct Slab {
     pub middle: usize,
     /// End of the slab's clusters.
     pub end: usize,
-    /// Parts of each list: one, unless the slab and the next have more clusters than an entry can number.
+    /// Number of parts of each list: one, unless the slab and the next have more clusters than an entry can number.
     pub(super) parts: usize,
-    /// For each part of the list of each slot: first entry in `index`, first entry of a cluster of boundary particles. The next
-    /// one's first entry is the end.
+    /// For each part of the list of each slot: its first entry in `index`, and its first entry of a cluster of boundary
+    /// particles. A part ends where the next begins.
     pub(super) spans: Vec<[u32; 2]>,
-    /// Clusters with which there are pairs, counted from the slab's first cluster and the start of the part.
+    /// The clusters in the lists, numbered from the slab's first cluster and the start of the part.
     pub(super) index: Vec<u16>,
 }
 
@@ -122,8 +122,8 @@ impl Clusters {
             + self.slabs.iter().map(slab).sum::<usize>()
     }
 
-    /// Makes clusters and lists of the water and of those boundary particles that may be near it; returns which
-    /// boundary particles are, in ascending order. Water that this rank lacks has no clusters, so that each rank has numbers of its own.
+    /// Makes clusters and lists of the water and of the boundary particles that may be near it. Returns the boundary particles
+    /// near water, in ascending order. Water that this rank lacks has no clusters, so cluster numbers differ between ranks.
     pub(super) fn build<const D: usize>(
         &mut self,
         columns: &Columns<D>,

@@ -151,8 +151,8 @@ impl<const D: usize> Columns<D> {
         Sorted { order: keys.into_par_iter().with_min_len(PARTICLES_PER_TASK).map(|key| key as u32).collect(), start }
     }
 
-    /// Which of the places `skin` may be within reach of the water, in ascending order, by the heights (m) of the water in each
-    /// column.
+    /// Returns the indices of the places `skin` (m) that may be within reach of the water, in ascending order. `heights` are
+    /// those of [`Self::heights`].
     pub(super) fn near_fluid(&self, heights: &[Option<(f64, f64)>], skin: &[Vector<D>]) -> Vec<u32> {
         let around = |c: usize| {
             let heights = self.neighbouring_columns(c).filter_map(|c| heights[c]);
@@ -170,8 +170,8 @@ impl<const D: usize> Columns<D> {
             .collect()
     }
 
-    /// For each column, between which heights (m) places within `reach` (m) of its sorted water may lie. A column without water has
-    /// none.
+    /// For each column, the lowest and the highest height (m) of places that may lie within `reach` (m) of its sorted water;
+    /// `None` for a column without water.
     pub(super) fn heights(&self, r: &[Vector<D>], sorted: &Sorted, reach: f64) -> Vec<Option<(f64, f64)>> {
         let height = |k: u32| r[sorted.order[k as usize] as usize][self.up];
         let of = |c: usize| {

@@ -14,6 +14,50 @@ use crate::{
 /// Particles of which the first rank gets the numbers at a time.
 const PIECE: usize = 1 << 13;
 
+/// Different numbers in ascending order, kept as ranges: a rank's water has few of these once it is sorted.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Numbers(Vec<Range<u32>>);
+
+impl Numbers {
+    /// These numbers, which ascend.
+    pub(crate) fn new(ascending: impl IntoIterator<Item = u32>) -> Self {
+        let mut ranges: Vec<Range<u32>> = Vec::new();
+        for i in ascending {
+            match ranges.last_mut().filter(|last| last.end == i) {
+                Some(last) => last.end += 1,
+                None => ranges.push(i..i + 1),
+            }
+        }
+        Self(ranges)
+    }
+
+    /// How many there are.
+    pub(crate) fn len(&self) -> usize {
+        self.0.iter().map(ExactSizeIterator::len).sum()
+    }
+
+    /// The numbers.
+    pub(crate) fn iter(&self) -> impl Iterator<Item = u32> + Clone {
+        self.0.iter().cloned().flatten()
+    }
+
+    /// Those of them in `part`.
+    fn within(&self, part: &Range<usize>) -> impl Iterator<Item = u32> + Clone {
+        let (start, end) = (part.start as u32, part.end as u32);
+        let ranges = self.0[self.0.partition_point(|range| range.end <= start)..].iter();
+        let ranges = ranges.take_while(move |range| range.start < end);
+        ranges.flat_map(move |range| range.start.max(start)..range.end.min(end))
+    }
+
+    /// The least range that has them all.
+    fn around(&self) -> Range<usize> {
+        match self.0.first().zip(self.0.last()) {
+            Some((first, last)) => first.start as usize..last.end as usize,
+            None => 0..0,
+        }
+    }
+}
+
 /// The division; of a single rank, which has everything, it is empty.
 #[derive(Clone, Debug, Default)]
 pub struct Division {
@@ -24,8 +68,8 @@ pub struct Division {
     pub(crate) by_owner: bool,
     /// Whether ranks lack the present water of others, because each has advanced its own.
     pub(crate) is_apart: bool,
-    /// Water particles of this rank, in ascending order.
-    own: Vec<u32>,
+    /// Water particles of this rank.
+    own: Numbers,
     /// Whether the water particle is this rank's.
     is_own: Vec<bool>,
     /// Boundary particles near water of each rank, by their place among all of these.
@@ -46,19 +90,19 @@ impl Division {
         if own.is_empty() { own } else { own.start..(own.end + 1).min(count) }
     }
 
-    /// The water particles that this rank advances, in ascending order, and whether it is this rank's for every particle; `None` if
-    /// it advances all.
-    pub(crate) fn own_water(&self) -> Option<(&[u32], &[bool])> {
-        self.by_owner.then_some((&self.own[..], &self.is_own[..]))
+    /// The water particles that this rank advances, and whether it is this rank's for every particle; `None` if it advances all.
+    pub(crate) fn own_water(&self) -> Option<(&Numbers, &[bool])> {
+        self.by_owner.then_some((&self.own, &self.is_own[..]))
+    }
+
+    /// The water particles that this rank advances; none if it advances all.
+    pub(crate) fn own_numbers(&self) -> impl Iterator<Item = u32> + Clone {
+        self.own_water().into_iter().flat_map(|(own, _)| own.iter())
     }
 
     /// The range of the water particles that this rank advances, of `count`; others may be among them.
     pub(crate) fn own_range(&self, count: usize) -> Range<usize> {
-        match (self.by_owner, self.own.first(), self.own.last()) {
-            (false, ..) => 0..count,
-            (true, Some(&first), Some(&last)) => first as usize..last as usize + 1,
-            _ => 0..0,
-        }
+        if self.by_owner { self.own.around() } else { 0..count }
     }
 
     /// The places, among the boundary particles near water, of those that this rank advances, in ascending order; `None` if it advances
@@ -71,7 +115,7 @@ impl Division {
     pub(crate) fn set_own_water(&mut self, own: Vec<u32>, count: usize) {
         self.is_own = vec![false; count];
         own.iter().for_each(|&i| self.is_own[i as usize] = true);
-        self.own = own;
+        self.own = Numbers::new(own);
     }
 
     /// The rank that computes `slab`.
@@ -161,6 +205,7 @@ impl Division {
                 self.boundary[rank].push(k as u32);
             }
         }
+        self.boundary.iter_mut().for_each(Vec::shrink_to_fit);
     }
 
     /// Completes the numbers of boundary particles near water in `data`, `width` of each: `give` appends those of place k, `take`
@@ -192,7 +237,7 @@ impl Division {
     /// appends those of a particle, `take` gets those of another rank's.
     pub(crate) fn share_water<C>(
         &self,
-        these: &[u32],
+        these: &Numbers,
         data: &mut C,
         width: usize,
         give: impl Fn(&C, usize, &mut Vec<f64>),
@@ -200,10 +245,12 @@ impl Division {
     ) {
         let counts: Vec<usize> = self.counts(these.len());
         let [mut given, mut taken] = [Vec::with_capacity(width), Vec::with_capacity(width)];
-        let pack = |data: &C, k: usize, words: &mut Vec<u32>| {
+        let mut rest = these.iter();
+        let pack = |data: &C, _: usize, words: &mut Vec<u32>| {
+            let Some(i) = rest.next() else { return };
             given.clear();
-            give(data, these[k] as usize, &mut given);
-            words.push(these[k]);
+            give(data, i as usize, &mut given);
+            words.push(i);
             words.extend(given.iter().flat_map(|x| ranks::words_of(*x)));
         };
         let unpack = |data: &mut C, _: usize, _: usize, words: &[u32]| {
@@ -220,15 +267,13 @@ impl Division {
         let (ranks, width) = (&self.ranks, size_of::<T>() / 4);
         let pieces: Vec<Range<usize>> =
             (0..all.len()).step_by(PIECE).map(|start| start..all.len().min(start + PIECE)).collect();
-        let place = |i: usize| self.own.partition_point(|&k| (k as usize) < i);
-        let own = |piece: &Range<usize>| &self.own[place(piece.start)..place(piece.end)];
-        let given: Vec<u32> = pieces.iter().map(|piece| own(piece).len() as u32).collect();
+        let given: Vec<u32> = pieces.iter().map(|piece| self.own.within(piece).count() as u32).collect();
         let counts = ranks.gather_lists(&given);
         let (mut words, mut whole) = (Vec::<u32>::new(), Vec::new());
         for (k, piece) in pieces.into_iter().enumerate() {
             words.clear();
             if ranks.rank() > 0 {
-                for &i in own(&piece) {
+                for i in self.own.within(&piece) {
                     words.push(i);
                     words.extend_from_slice(bytemuck::cast_slice(std::slice::from_ref(&all[i as usize])));
                 }
@@ -258,3 +303,7 @@ impl Division {
         self.ranks.gather_words([own as u32]).into_iter().map(|[n]| n as usize).collect()
     }
 }
+
+#[cfg(test)]
+#[path = "../../tests/unit/neighbours/division.rs"]
+mod tests;

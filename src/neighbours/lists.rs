@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::CellGrid;
 use crate::math::{Bounds, Vector};
 
-/// Particles in a chunk: the unit of parallel work, fixed so that no result depends on the threads.
+/// Number of particles in a chunk, the unit of parallel work. It is fixed, so that no result depends on the number of threads.
 pub const CHUNK: usize = 128;
 
 /// Where in its chunk's `index` a particle's neighbours are.
@@ -53,8 +53,8 @@ impl ParticleLists {
         self.fluid.iter().chain(&self.boundary).map(chunk).sum()
     }
 
-    /// Lists all pairs of water with water and boundary nearer than `reach` (m); returns which of the boundary
-    /// particles `near` have any.
+    /// Lists all pairs of a water particle with a water or boundary particle nearer than `reach` (m). Returns those of the
+    /// boundary particles `near` that are in a pair.
     pub(super) fn build<const D: usize>(
         &mut self,
         (water, water_r): (&CellGrid<D>, &[Vector<D>]),

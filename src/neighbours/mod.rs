@@ -1,8 +1,9 @@
 //! Neighbour lists: positions in, indices out.
 //!
 //! The lists reach beyond the kernel support by a margin, and hold while no particle has moved by half the margin.
-//! Most steps therefore search nothing. The SIMD pair loop has lists of clusters ([`Clusters`]), the reference of particles
-//! (`ParticleLists`). Both record the boundary particles near water; the others cost nothing until the next rebuild.
+//! Most steps therefore search nothing. The SIMD pair loop uses lists of clusters ([`Clusters`]), the reference pair loop lists
+//! of particles (`ParticleLists`). Both record the boundary particles near water; all other boundary particles cost nothing until
+//! the next rebuild.
 
 mod clusters;
 mod columns;
@@ -14,7 +15,7 @@ mod search;
 pub use clusters::{Clusters, ListPart, PAD};
 pub(crate) use clusters::{Slab, fill_positions, occupied_lanes};
 pub(crate) use columns::Columns;
-pub(crate) use division::Division;
+pub(crate) use division::{Division, Numbers};
 pub(crate) use grid::CellGrid;
 pub use lists::CHUNK;
 pub(crate) use lists::{ParticleListChunk, ParticleLists};
@@ -66,8 +67,8 @@ pub struct NeighbourLists<const D: usize> {
 }
 
 impl<const D: usize> NeighbourLists<D> {
-    /// No lists yet, for a kernel of support `reach` (m) and particles `dp` (m) apart: of clusters, searched with
-    /// the instructions of `level`, or else of single neighbours.
+    /// Makes empty lists for a kernel of support `reach` (m) and the particle spacing `dp` (m): lists of clusters, searched with
+    /// the instructions of `level`, or lists of single neighbours if `level` is `None`.
     pub fn new(reach: f64, dp: f64, level: Option<Level>) -> Self {
         let pairs = match level {
             Some(level) => PairLists::Clusters(Clusters::default(), level),
@@ -137,17 +138,21 @@ impl<const D: usize> NeighbourLists<D> {
 
     /// The columns of the water of all ranks, of which this one has its own at the places `r` (m); shares the slabs out anew.
     pub(crate) fn share_out(&mut self, r: &[Vector<D>]) -> Columns<D> {
-        let own = self.division().and_then(Division::own_water).map_or(&[][..], |(own, _)| own);
-        let own = || own.iter().map(|&i| &r[i as usize]);
-        let bounds = Bounds::around(own());
+        let own = self.own_numbers().map(|i| &r[i as usize]);
+        let bounds = Bounds::around(own.clone());
         let columns = self.columns(self.division().map_or(bounds, |division| division.union(&bounds)), r.len());
         let mut particles = vec![0; columns.slab_count()];
-        own().for_each(|r| particles[columns.slab_at(r)] += 1);
+        own.for_each(|r| particles[columns.slab_at(r)] += 1);
         if let Some(division) = self.division_mut() {
             division.ranks.add_numbers(&mut particles);
             division.share_out(&particles);
         }
         columns
+    }
+
+    /// The water particles that this rank advances; none if it advances all.
+    fn own_numbers(&self) -> impl Iterator<Item = u32> + Clone {
+        self.division().into_iter().flat_map(Division::own_numbers)
     }
 
     /// Search radius of the lists, m.
@@ -157,8 +162,7 @@ impl<const D: usize> NeighbourLists<D> {
 
     /// The order of this rank's water at `r` (m) in `columns`.
     pub(crate) fn own_order(&self, columns: &Columns<D>, r: &[Vector<D>]) -> Vec<u32> {
-        let own = self.division().and_then(Division::own_water).map_or(&[][..], |(own, _)| own);
-        columns.sort(r, own).order
+        columns.sort(r, &self.own_numbers().collect::<Vec<_>>()).order
     }
 
     /// Builds the lists for these positions of water and boundary particles.
@@ -180,11 +184,7 @@ impl<const D: usize> NeighbourLists<D> {
     /// `next` of the next rank's first slab.
     pub(crate) fn build_own(&mut self, columns: &Columns<D>, water: &[Vector<D>], next: &[u32], skin: &[Vector<D>]) {
         self.positions_at_build = zeros(water.len());
-        let own = match &self.pair_lists {
-            PairLists::Clusters(clusters, _) => clusters.division.own_water(),
-            PairLists::Lists(_) => None,
-        };
-        let mut which = own.map_or(Vec::new(), |(own, _)| own.to_vec());
+        let mut which: Vec<u32> = self.own_numbers().collect();
         which.iter().for_each(|&i| self.positions_at_build[i as usize] = water[i as usize]);
         which.extend(next);
         self.build_sorted(columns, (water, &columns.sort(water, &which)), skin);
@@ -219,18 +219,18 @@ impl<const D: usize> NeighbourLists<D> {
         };
     }
 
-    /// Lets queries at a point find `these` particles of the `water` (m) alone, which this rank knows, in the order in which they find
-    /// all.
+    /// Restricts queries at a point to `these` particles of the `water` (m), which this rank knows. The order of the results is
+    /// the same as in a query of all particles.
     pub(crate) fn know(&mut self, these: Vec<u32>, water: &[Vector<D>]) {
-        let own = self.division().and_then(Division::own_water).map_or(&[][..], |(own, _)| own);
-        let bounds = Bounds::around(own.iter().map(|&i| &water[i as usize]));
+        let bounds = Bounds::around(self.own_numbers().map(|i| &water[i as usize]));
         let bounds = self.division().map_or(bounds, |division| division.union(&bounds));
         let places: Vec<Vector<D>> = these.iter().map(|&i| water[i as usize]).collect();
         let grid = CellGrid::of_part(&places, (bounds, water.len()), self.list_radius());
         (self.grids, self.known) = ([OnceLock::from(grid), OnceLock::new()], Some(these));
     }
 
-    /// Lets queries at a point find the positions `water` (m), for which the lists were built and of which this rank may lack some.
+    /// Makes queries at a point use the positions `water` (m), for which the lists were built. This rank may lack some of the
+    /// particles.
     pub(crate) fn find_at(&mut self, water: &[Vector<D>]) {
         self.grids[0] = OnceLock::from(CellGrid::new(water, self.list_radius()));
     }
@@ -345,8 +345,8 @@ impl<const D: usize> NeighbourLists<D> {
         these
     }
 
-    /// Calls `visit` with the index of every boundary particle that may be within the support of `x`. `at_build` says where they
-    /// were (m) at the last build.
+    /// Calls `visit` with the index of every boundary particle that may be within the support of `x` (m). `at_build` returns the
+    /// positions (m) of all boundary particles at the last build.
     pub(crate) fn visit_boundary_around(
         &self,
         at_build: impl FnOnce() -> Vec<Vector<D>>,
@@ -371,10 +371,14 @@ fn all_indices(n: usize) -> Vec<u32> {
     (0..n as u32).collect()
 }
 
-/// `x` (m) in integer units of which `inv_unit` are a metre, modulo 2³²: differences of near positions are
-/// exact up to 2⁵¹ units from the origin.
+/// Returns `x` (m) in integer units, `inv_unit` to the metre, modulo 2³². Differences of near positions are exact up to 2⁵¹ units
+/// from the origin.
 #[inline(always)]
 pub(crate) fn to_integer(x: f64, inv_unit: f64) -> i32 {
     // Added to 1.5·2⁵², the nearest whole number stands in the lowest bits.
     (x * inv_unit + 6_755_399_441_055_744.0).to_bits() as i32
 }
+
+#[cfg(test)]
+#[path = "../../tests/unit/neighbours/known.rs"]
+mod tests;

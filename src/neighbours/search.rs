@@ -189,8 +189,8 @@ impl<const D: usize> Search<'_, D> {
         }
     }
 
-    /// Writes to `list` those of `clusters`, counted from `base`, that have a particle within reach of `at`, and says to `note`
-    /// which lanes; returns how many.
+    /// Writes to `list` those of `clusters`, counted from `base`, that have a particle within reach of `at`, and passes the lanes
+    /// of such particles to `note`. Returns the number of these clusters.
     #[inline(always)]
     fn meet<S: Simd>(
         &self,

@@ -271,6 +271,33 @@ impl Ranks {
         group.count(start, bytes);
     }
 
+    /// Sends the items `out` to the rank `to` and receives as many as `into` names from the rank `from`, where there are such ranks; each
+    /// has `width` words. `give` appends those of an item, `take` gets those of another rank's. Both work on `data`.
+    pub(crate) fn pass_items<C>(
+        &self,
+        data: &mut C,
+        ((to, out), (from, into)): ((Option<usize>, Range<usize>), (Option<usize>, Range<usize>)),
+        width: usize,
+        give: impl Fn(&C, usize, &mut Vec<u32>),
+        take: impl Fn(&mut C, usize, &[u32]),
+    ) {
+        let block = (BLOCK / width).max(1);
+        let part = |items: &Range<usize>, start: usize| {
+            (items.start + start).min(items.end)..(items.start + start + block).min(items.end)
+        };
+        let out = if to.is_some() { out } else { 0..0 };
+        let into = if from.is_some() { into } else { 0..0 };
+        let (mut given, mut taken) = (Vec::new(), Vec::new());
+        for start in (0..out.len().max(into.len())).step_by(block) {
+            let (out, into) = (part(&out, start), part(&into, start));
+            given.clear();
+            out.clone().for_each(|i| give(data, i, &mut given));
+            taken.resize(width * into.len(), 0);
+            self.pass((to.filter(|_| !out.is_empty()), &given), (from.filter(|_| !into.is_empty()), &mut taken));
+            into.zip(taken.chunks_exact(width)).for_each(|(i, words)| take(data, i, words));
+        }
+    }
+
     fn gather(&self, own: &[u32], counts: &[usize], all: &mut [u32]) {
         let Some(group) = &self.0 else { return all.copy_from_slice(own) };
         let start = Instant::now();

@@ -75,6 +75,7 @@ where
         let checks = probe_factory::checks_from_plan(&plan, &probes).map_err(|e| scene.with_location(e))?;
         let columns: Vec<usize> = probes.iter().map(|p| p.columns().len()).collect();
         let preflight = preflight::preflight(&sim, &plan, initial_water, &columns);
+        sim.forget_places();
         let mut warnings = preflight.with_file_notes(&file_notes).warnings();
         let notes = file_notes.iter().filter(|note| !note.is_warning);
         let mut notes: Vec<String> = notes.map(|note| format!("{}: {}", note.what, note.remedy)).collect();

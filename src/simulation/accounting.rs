@@ -8,12 +8,12 @@ use crate::{
     sph::boundary::Slip,
 };
 
-/// Steps from one power breakdown to the next, where only the energy budget is kept: one force pass in sixteen more.
+/// Steps between two power breakdowns if only the energy budget is enabled: one additional force pass in sixteen.
 const INTERVAL: u32 = 8;
 
 impl<const D: usize> Simulation<D> {
-    /// Enables the load breakdown of free bodies: [`Simulation::load_breakdown`]. Where the viscosity acts between water and
-    /// solids, every step takes another force pass for the viscous load; otherwise the breakdown costs nothing.
+    /// Enables the load breakdown of free bodies: [`Simulation::load_breakdown`]. If viscosity acts between water and solids,
+    /// every step makes another force pass for the viscous load; otherwise the breakdown costs nothing.
     pub fn enable_load_breakdown(&mut self)
     where
         Dim<D>: Dimension<D>,
@@ -33,7 +33,7 @@ impl<const D: usize> Simulation<D> {
         (self.compiled.account)(self, true, Some(interval.unwrap_or(INTERVAL)));
     }
 
-    /// Whether the energy budget is kept already, and the interval of power breakdowns.
+    /// Whether the energy budget is enabled already, and the interval of power breakdowns.
     fn accounted(&self) -> (bool, Option<u32>) {
         let accounting = self.bodies.accounting.as_ref();
         accounting.map_or((false, None), |accounting| (accounting.has_energy_budget(), accounting.power_interval()))
@@ -47,12 +47,12 @@ impl<const D: usize> Simulation<D> {
         self.bodies.accounting = Some(Accounting::new(&self.system, energy, interval));
     }
 
-    /// The loads on free solid number `solid` in the last step by their origin, if they are kept.
+    /// The loads on free solid number `solid` in the last step by their origin, if the load breakdown is enabled.
     pub fn load_breakdown(&self, solid: usize) -> Option<&LoadBreakdown<D>> {
         self.bodies.accounting.as_ref().map(|accounting| accounting.breakdown(solid))
     }
 
-    /// The energy budget since it was enabled, if it is kept.
+    /// The energy budget since the start of the accounting, if it is enabled.
     pub fn energy_budget(&self) -> Option<&EnergyBudget> {
         self.bodies.accounting.as_ref().and_then(Accounting::budget)
     }

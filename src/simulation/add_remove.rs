@@ -25,15 +25,15 @@ impl<const D: usize> Simulation<D>
 where
     Dim<D>: Dimension<D>,
 {
-    /// Adds a solid between two steps. A driven solid starts at the present value of its law. Ballast is that of
-    /// the present time.
+    /// Adds a solid between two steps. A driven solid starts at the present value of its law, and ballast has its present mass.
     ///
-    /// Water particles inside it are removed, with their mass and momentum; their number is returned. A run with such
-    /// solids has the same bits at any number of threads; its states are read by [`Simulation::restore_with_added_solids`].
+    /// Water particles inside the solid are removed, with their mass and momentum; the result has their number. Results of a run
+    /// with added solids are bit-identical for any number of threads. [`Simulation::restore_with_added_solids`] restores states
+    /// of such a run.
     ///
     /// # Errors
-    /// `Scene` if the solid cannot be meant, has a name that another has or had, or lies deeper than 0.05 dp inside another:
-    /// says which and how deep. Nothing has changed then.
+    /// `Scene` if the solid is invalid, if its name is or was in use, or if it lies deeper than 0.05 dp inside another solid: the
+    /// message names that solid and the depth. The simulation is unchanged then.
     pub fn add_solid(&mut self, spec: SolidSpec<D>) -> Result<AddedSolid> {
         (self.compiled.add_solid)(self, spec)
     }
@@ -74,12 +74,12 @@ where
         Ok(AddedSolid { solid, displaced })
     }
 
-    /// As [`Simulation::restore`], in a simulation made from the same setup, of a state to whose simulation the solids `added` had
-    /// been added, in this order.
+    /// Restores a state as [`Simulation::restore`] does, in a simulation made from the same setup. `added` are the solids that
+    /// the simulation of the state had added, in this order.
     ///
     /// # Errors
-    /// `Restart` if the bytes are damaged or another number of solids had been added: nothing has changed then. `Restart` also if they
-    /// belong to another setup, or other solids had been added: the solids have come in then.
+    /// `Restart` if the bytes are damaged or the number of added solids differs: nothing has changed then. `Restart` also if the
+    /// bytes belong to another setup or to other added solids: the simulation has the solids `added` then.
     pub fn restore_with_added_solids(&mut self, bytes: &[u8], added: Vec<SolidSpec<D>>) -> Result<()> {
         (self.compiled.restore_with_added_solids)(self, bytes, added)
     }
@@ -102,7 +102,7 @@ where
         self.restore(bytes)
     }
 
-    /// Refuses a solid deeper inside another than is let pass.
+    /// Refuses a solid deeper inside another solid than is allowed.
     fn refuse_overlap(&self, spec: &SolidSpec<D>, start: &Kinematics<D>) -> Result<()> {
         let Some(engine) = self.bodies.engine() else { return Ok(()) };
         let allowed = OVERLAP_MAX * self.system.model().dp;
@@ -119,7 +119,7 @@ where
         }
     }
 
-    /// With which solid, and how deep (m), one that comes would overlap most where it touches nothing: inside a mesh.
+    /// Returns the solid that a new solid would overlap most where the engine finds no contact, inside a mesh, and the depth (m).
     fn overlap_inside_mesh(&self, spec: &SolidSpec<D>, start: &Kinematics<D>, allowed: f64) -> Option<(usize, f64)> {
         let free = |role: &Role<D>| matches!(role, Role::Free(_));
         let depth = |(i, other): (usize, &Solid<D>)| {
@@ -155,11 +155,12 @@ where
 }
 
 impl<const D: usize> Simulation<D> {
-    /// Takes solid number `solid` out between two steps; the water closes over its place. It keeps its number and its name, stands
-    /// where it was, and has neither skin nor load any more. What the water had yet to give to it stays in the water.
+    /// Removes solid number `solid` between two steps; water flows into its place. The solid keeps its number, name and position,
+    /// but has no boundary particles and no load any more. Impulse that the water had not yet passed to the solid returns to the
+    /// water.
     ///
     /// # Errors
-    /// `Usage` if there is no such solid, or something is tied to it: says what.
+    /// `Usage` if there is no such solid, or if a constraint holds it: the message names the constraint.
     pub fn remove_solid(&mut self, solid: usize) -> Result<()> {
         (self.compiled.remove_solid)(self, solid)
     }
@@ -222,7 +223,7 @@ impl<const D: usize> Simulation<D> {
         self.system.remove_body(solid);
     }
 
-    /// Completes a change of the solids: the stepper starts anew, removed particles are listed, and the rates computed.
+    /// Completes a change of the solids: restarts the stepper, records the removed particles, and computes the rates.
     fn finish_change(&mut self, reordering: Option<Reordering<D>>) {
         self.stepper.reset();
         if let (Some(accounting), Some(reordering)) = (&mut self.bodies.accounting, &reordering) {

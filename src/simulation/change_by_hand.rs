@@ -1,4 +1,4 @@
-//! States that a program gives water and solids.
+//! States of water and solids that a program sets.
 
 use rayon::prelude::*;
 

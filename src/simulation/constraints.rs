@@ -44,12 +44,12 @@ impl<const D: usize> Simulation<D> {
         self.bodies.step_limit(&self.system, self.clock.time)
     }
 
-    /// What joint number `joint` felt in the last step.
+    /// The readings of joint number `joint` in the last step.
     pub fn joint_reading(&self, joint: usize) -> JointReading<D> {
         self.bodies.constraints().joint_reading(joint)
     }
 
-    /// What is to be said of joints that do not hold now: their ends are more than a tenth of dp or a degree apart.
+    /// A message for each joint that is violated now: its ends are more than 0.1 dp or one degree apart.
     pub fn violated_joints(&self) -> Vec<String> {
         let solids: Vec<_> = self.system.solids().iter().map(|solid| solid.kinematics).collect();
         let said = |(i, joint): (usize, &JointSpec<D>)| {
@@ -72,7 +72,7 @@ impl<const D: usize> Simulation<D> {
         self.bodies.constraints().joint_coordinates(joint, &solids)
     }
 
-    /// What spring number `spring` felt in the last step.
+    /// The readings of spring number `spring` in the last step.
     pub fn spring_reading(&self, spring: usize) -> LineReading {
         self.bodies.constraints().spring_reading(spring)
     }
@@ -105,34 +105,36 @@ impl<const D: usize> Simulation<D> {
         (0..self.system.constraints().moorings.len()).map(|i| self.mooring_reading(i)).collect()
     }
 
-    /// What rope number `rope` felt in the last step.
+    /// The readings of rope number `rope` in the last step.
     pub fn rope_reading(&self, rope: usize) -> LineReading {
         self.bodies.constraints().rope_reading(rope)
     }
 
-    /// Drives joint number `joint`, a hinge or a slider, from now on, in place of the motor that it was made with; `None` gives
-    /// it back to that. A checkpoint keeps it.
+    /// Drives joint number `joint`, a hinge or a slider, with this command from now on, in place of its own motor; `None`
+    /// restores its own motor. A checkpoint stores the command.
     pub fn set_motor(&mut self, joint: usize, drive: Option<MotorCommand>) {
         self.bodies.constraints_mut().set_motor(joint, drive);
     }
 
-    /// The command of the motor of joint number `joint` now, set by a program or its own; `None` if it has no motor.
+    /// The command of the motor of joint number `joint` now: that set by a program, or that of its own motor; `None` if it has
+    /// neither.
     pub fn motor_command(&self, joint: usize) -> Option<MotorCommand> {
         self.bodies.constraints().motor_command(joint, self.clock.time)
     }
 
-    /// Gives force number `force` these components from now on, in place of those that it was made with; `None` gives it back to
-    /// those. A checkpoint keeps them.
+    /// Gives force number `force` these components from now on, in place of its own; `None` restores its own components. A
+    /// checkpoint stores the command.
     pub fn set_force(&mut self, force: usize, command: Option<ForceCommand>) {
         self.bodies.constraints_mut().set_force(force, command);
     }
 
-    /// The components of force number `force` now, set by a program or its own.
+    /// The components of force number `force` now: those set by a program, or its own.
     pub fn force_command(&self, force: usize) -> ForceCommand {
         self.bodies.constraints().force_command(force, self.clock.time)
     }
 
-    /// Stiffness, damping and rest length of spring number `spring`, to be read or changed from now on. A checkpoint keeps them.
+    /// Stiffness, damping and rest length of spring number `spring`. A program may read and change them; a checkpoint stores
+    /// them.
     pub fn spring_parameters(&mut self, spring: usize) -> &mut SpringParameters {
         self.bodies.constraints_mut().spring_parameters(spring)
     }

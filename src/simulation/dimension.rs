@@ -1,7 +1,8 @@
-//! The functions of a simulation that do much, as this library compiles them for each dimension.
+//! The large functions of a simulation, which this library compiles for each dimension.
 //!
-//! A program that calls a generic function compiles it anew, with all that it calls: for a simulation that takes a minute. So the
-//! methods of a [`Simulation`] call these functions by pointers. `inline(never)` keeps the table of them out of other crates.
+//! A program that calls a generic function compiles this function and all functions that it calls anew, which takes a minute for
+//! a simulation. The methods of a [`Simulation`] therefore call these functions by pointers. `inline(never)` keeps the table of
+//! pointers out of other crates.
 
 use super::{AddedSolid, Setup, Simulation, change_by_hand};
 use crate::{

@@ -11,12 +11,13 @@ impl<const D: usize> Simulation<D> {
     /// Sets up a simulation whose free solids an external program moves, such as a rapier world of your own: see
     /// [`Simulation::step_with`], and `examples/own_world.rs`.
     ///
-    /// The setup says of each of them its shape and mass, as of any free solid; [`solid::rapier2d`](crate::solid::rapier2d) and
-    /// [`solid::rapier3d`](crate::solid::rapier3d) take both from a body of rapier's. Contacts and constraints are those
-    /// of your world. Such a simulation does not roll back, because your world cannot.
+    /// The setup gives the shape and mass of each such solid, as for any free solid; [`solid::rapier2d`](crate::solid::rapier2d)
+    /// and [`solid::rapier3d`](crate::solid::rapier3d) derive both from a rapier body. Contacts and constraints are those of your
+    /// world. Such a simulation does not roll back, because your world cannot.
     ///
     /// # Errors
-    /// `Scene` if a constant has no valid value, a solid cannot be made or has ballast, or solids are tied: says which.
+    /// `Scene` if a constant is invalid, a solid cannot be made or has ballast, or a constraint holds a solid: the message names
+    /// it.
     pub fn with_external_bodies(setup: Setup<D>) -> Result<Self>
     where
         Dim<D>: Dimension<D>,
@@ -31,11 +32,12 @@ impl<const D: usize> Simulation<D> {
         Ok((Dim::<D>::compiled().set_up)(setup, None, true, &Ranks::default())?.without_rollback())
     }
 
-    /// Goes one step on, and not past time `end` (s), and calls `hook` once, when the water has moved and the bodies have
-    /// not.
+    /// Advances by one step, but not past time `end` (s). Calls `hook` once, after the water has moved and before the bodies
+    /// move.
     ///
-    /// There you can read the loads of the water, push bodies, advance them ([`BodyStep::advance_bodies`]; done afterwards if you
-    /// do not) and read their motion. With external bodies you step your own world instead: it takes loads and returns poses.
+    /// The hook can read the loads of the water, push bodies, advance them ([`BodyStep::advance_bodies`]; the simulation does so
+    /// after the hook if the hook does not) and read their motion. With external bodies the hook steps your own world instead,
+    /// which takes loads and returns poses.
     ///
     /// ```
     /// # fn main() -> pontoon::Result<()> {
@@ -55,8 +57,8 @@ impl<const D: usize> Simulation<D> {
     /// # }
     /// ```
     ///
-    /// After an alarm the simulation may roll back to a good state, and what `hook` keeps does not: count in simulated time, or
-    /// switch the rollback off with [`without_rollback`](Simulation::without_rollback).
+    /// After an alarm the simulation may roll back to an earlier state, but the variables of `hook` keep their values. Let `hook`
+    /// count in simulated time, or switch the rollback off with [`without_rollback`](Simulation::without_rollback).
     ///
     /// # Errors
     /// As [`Simulation::step`], the error that `hook` returns, and `Usage` if an external body was left without kinematics.

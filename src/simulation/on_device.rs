@@ -51,13 +51,14 @@ impl<const D: usize> OnDevice<D> {
 /// Steps from one state for a rollback to the next.
 const STATE_EVERY: u64 = 500;
 
-/// The same simulation with its water on the device `name`: the number of an adapter, `gpu` for the first graphics card, or
-/// part of a name; see [`crate::device::adapters`].
+/// Places the water of the simulation on the device `name`: the number of an adapter, `gpu` for the first graphics card, or part
+/// of an adapter's name; see [`crate::device::adapters`].
 ///
-/// [`Simulation::step`] then brings the state back after each step. [`run`](crate::run) does so only where an output is due.
+/// [`Simulation::step`] then brings the state back after each step, [`run`](crate::run) only when an output is due.
 ///
 /// # Errors
-/// `Usage` if there is no such device, or the simulation has something that no device computes yet: names both and the remedy.
+/// `Usage` if there is no such device, or if the simulation has something that no device computes yet: the message says which,
+/// and the remedy.
 pub(super) fn place<const D: usize>(mut sim: Simulation<D>, name: &str) -> Result<Simulation<D>> {
     refuse_unsupported(&sim)?;
     let light = sim.bodies.added_masses().iter().flat_map(AcousticAddedMass::outer_particles);
@@ -145,7 +146,7 @@ pub(super) fn fetch_loads<const D: usize>(sim: &mut Simulation<D>) -> Result<()>
     Ok(())
 }
 
-/// Advances as [`advance`], and goes back to a good state at the first alarm.
+/// Advances as [`advance`], and rolls back to a valid state at the first alarm.
 pub(super) fn steps<const D: usize>(
     sim: &mut Simulation<D>,
     most: (u64, f64),
@@ -163,8 +164,8 @@ pub(super) fn steps<const D: usize>(
     outcome
 }
 
-/// Advances by up to `most` steps until time `pause` (s) is reached, not past `end` (s); the state stays on the device. Makes one step
-/// if a solid moves or there is a `hook`.
+/// Advances by up to `most` steps until time `pause` (s) is reached, not past `end` (s); the state stays on the device. Makes
+/// only one step if a solid moves or there is a `hook`.
 fn advance<const D: usize>(
     sim: &mut Simulation<D>,
     (most, pause): (u64, f64),
@@ -236,7 +237,7 @@ fn body_step<const D: usize>(
     Ok(Some(done))
 }
 
-/// Where (m) light bodies and mooring lines read the water at the end of a step, before they move.
+/// The boxes (m) in which light bodies and mooring lines read the water at the end of a step, before they move.
 fn ranges_at_end<const D: usize>(system: &System<D>, bodies: &Bodies<D>, over: Interval) -> Vec<Bounds<D>> {
     let of_body = |added_mass: &AcousticAddedMass<D>| {
         let solid = added_mass.solid();
@@ -246,8 +247,8 @@ fn ranges_at_end<const D: usize>(system: &System<D>, bodies: &Bodies<D>, over: I
     bodies.added_masses().iter().map(of_body).chain(lines.into_iter().flatten()).collect()
 }
 
-/// Whether bodies or lines read more water than that of [`ranges_at_end`]: a light body that has left the water, and gives it
-/// the rest of its impulse, or a line that begins.
+/// Whether bodies or lines read water outside the boxes of [`ranges_at_end`]: a light body that has left the water and returns
+/// its pending impulse to it, or a line that begins.
 fn reads_all_water<const D: usize>(system: &System<D>, bodies: &Bodies<D>, t: f64) -> bool {
     let gives_far = |added_mass: &AcousticAddedMass<D>| {
         added_mass.was_wet() && !device_state::has_water_beside(system, added_mass.solid())
@@ -255,7 +256,7 @@ fn reads_all_water<const D: usize>(system: &System<D>, bodies: &Bodies<D>, t: f6
     bodies.moorings.water_ranges(t, 0.0).is_none() || bodies.added_masses().iter().any(gives_far)
 }
 
-/// Removes the water that has left the domain from the host, which then gives the device the rest.
+/// Removes the water that has left the domain on the host, and loads the remaining water onto the device.
 fn remove_escaped<const D: usize>(sim: &mut Simulation<D>) -> Result<()> {
     fetch(sim)?;
     device_state::ask_for_lists(&mut sim.system);
@@ -263,7 +264,7 @@ fn remove_escaped<const D: usize>(sim: &mut Simulation<D>) -> Result<()> {
     load(sim)
 }
 
-/// Counts the steps of a device, and stops at what it found.
+/// Counts the steps of a device, and handles the event that ended them.
 fn take_steps<const D: usize>(sim: &mut Simulation<D>, done: &DeviceSteps) -> Result<()> {
     sim.clock.steps += done.steps;
     (sim.clock.time, sim.clock.dt) = (done.time, done.dt);

@@ -1,7 +1,7 @@
-//! What a simulation does when a guard sounds its first alarm: it goes back to a good state that it has stored and takes
-//! half the step for a while. If the alarm returns meanwhile, the run stops with the report of that.
+//! Rollback: after the first alarm of a guard the simulation returns to a stored valid state and halves its steps for a while. If
+//! an alarm occurs in this time, the run stops and reports this alarm.
 //!
-//! A run without an alarm is not changed by a bit: the states are only kept.
+//! Without an alarm no bit of the results changes: the states are only stored.
 
 use std::{
     fmt,
@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::ranks::Ranks;
 
-/// Steps from one kept state to the next: a state costs about a step's time to keep, so this costs less than 1 %.
+/// Steps between two stored states. Storing a state takes about as long as a step, so this costs less than 1 %.
 const EVERY: u64 = 500;
 
 /// Steps that a state must be older than the alarm; a younger one may be ill already.
@@ -54,7 +54,7 @@ const BUFFER: usize = 1 << 16;
 pub(super) enum StoredState {
     /// In memory.
     Memory(Vec<u8>),
-    /// In a file without a name, which goes with its handle, also if the program is killed.
+    /// In a file without a name, which the system deletes with its handle, even if the program is killed.
     File(File),
 }
 
@@ -84,8 +84,8 @@ impl StoredState {
     }
 }
 
-/// The state to go back to, of what this rank has stored: its own, if all ranks could read theirs, or that of the first. Empty if there
-/// is none. A state begins with the byte 1 if it has the water of a rank alone.
+/// The state to go back to. If the first rank has a state of all water, every rank gets that state; otherwise each rank keeps its
+/// `own`, if all ranks could read theirs. Empty if there is no state. A state of the water of one rank begins with the byte 1.
 pub(super) fn shared_state(ranks: &Ranks, own: Vec<u8>) -> Vec<u8> {
     let all = ranks.gather_words([u32::from(!own.is_empty()), u32::from(own.first() == Some(&1))]);
     match all[0][1] {
@@ -95,7 +95,7 @@ pub(super) fn shared_state(ranks: &Ranks, own: Vec<u8>) -> Vec<u8> {
     }
 }
 
-/// The states kept, and what came of them.
+/// The stored states, and the rollbacks so far.
 #[derive(Default)]
 pub(super) struct RollbackControl {
     off: bool,
@@ -113,7 +113,7 @@ impl RollbackControl {
         Self { off: true, ..Self::default() }
     }
 
-    /// Whether a state is to be kept after `steps` steps.
+    /// Whether a state must be stored after `steps` steps.
     pub(super) fn needs_state(&self, steps: u64) -> bool {
         !self.off && (self.states.is_empty() || steps.is_multiple_of(EVERY))
     }
@@ -129,7 +129,7 @@ impl RollbackControl {
         self.states.iter().any(|(_, at, _)| *at == time)
     }
 
-    /// Forgets the states kept, of another course of the run; `log` is what happened before.
+    /// Discards the stored states of another course of the run; `log` has the rollbacks before.
     pub(super) fn restart(&mut self, log: Vec<Rollback>) {
         (self.states, self.log) = (Vec::new(), log);
     }
@@ -146,8 +146,9 @@ impl RollbackControl {
         self.states.push((steps, time, state));
     }
 
-    /// The state to go back to after an `alarm` at `time` (s), `steps` steps into the run: what `shared` makes of the stored one, which
-    /// is empty if its file cannot be read. None if that is empty, or no use.
+    /// The state to go back to after an `alarm` at time `time` (s), `steps` steps into the run: the result of `shared` for the
+    /// stored state, which is empty if its file cannot be read. `None` if the result is empty, or if no further rollback is
+    /// allowed.
     pub(super) fn state_before(
         &mut self,
         alarm: &str,

@@ -6,7 +6,8 @@ use serde::Serialize;
 
 use crate::error::{Error, ErrorKind, Result};
 
-/// What is written to the end of a state, also after an error of the file: other ranks know of none, and go on with the exchange.
+/// A writer that takes a state to its end even after an error of the file, because other ranks do not know of the error and
+/// continue the exchange.
 struct ToTheEnd<'a> {
     out: &'a mut dyn Write,
     failure: Option<io::Error>,

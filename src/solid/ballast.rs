@@ -102,7 +102,7 @@ impl<const D: usize> FreeBody<D> {
     }
 }
 
-/// Times (s) of a run of `until` s between which a mass is not looked at: evenly spaced, and the samples of a table.
+/// Times (s) at which a mass is checked in a run of `until` s: evenly spaced, and the samples of a table.
 fn sample_times(mass: &TimeFunction, until: f64) -> impl Iterator<Item = f64> {
     let samples = match mass {
         TimeFunction::Table(series) => series.times(),

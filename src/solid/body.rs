@@ -129,7 +129,7 @@ impl<const D: usize> SolidSpec<D> {
             .map_err(|e| self.named(e))
     }
 
-    /// Refuses ballast of a solid that is not free, and ballast that is nowhere or has no valid mass at t = 0.
+    /// Refuses ballast of a solid that is not free, and ballast without a finite position or a valid mass at t = 0.
     fn check_ballast(&self) -> Result<()> {
         let free = matches!(self.role, Role::Free(_)) || self.ballast.is_empty();
         require(free, || "it has ballast and is not free".into(), "free: the mass of any other solid has no effect")?;
@@ -141,7 +141,7 @@ impl<const D: usize> SolidSpec<D> {
         Ok(())
     }
 
-    /// Whether it may be a hull among `water` (m): not if it is a fixed basin around all of the water, or a fixed bed.
+    /// Whether the solid may be a hull in the `water` (m). A fixed basin around all of the water and a fixed bed may not.
     pub(crate) fn may_be_hull(&self, water: &Bounds<D>) -> bool {
         let bounds = self.shape.bounds_at(&self.initial_kinematics().pose);
         let is_basin = (0..D - 1).all(|i| bounds.min[i] <= water.min[i] && water.max[i] <= bounds.max[i]);
@@ -217,7 +217,8 @@ impl<const D: usize> FreeBody<D> {
         self
     }
 
-    /// The homogeneous body of `density` (kg/m³) that fills `shape`, at rest.
+    /// The homogeneous body of `density` (kg/m³) that fills `shape`, at rest; J is the second moment of the volume about its
+    /// centroid.
     ///
     ///   m = ρ V,   I = ρ (tr J · 1 − J) in 3-D, ρ tr J in 2-D
     pub fn from_density(shape: &Shape<D>, density: f64) -> Self {

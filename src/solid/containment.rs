@@ -18,8 +18,8 @@ fn touchable<'a, const D: usize>(shape: &'a Shape<D>, pose: Pose<D>, found: &mut
     }
 }
 
-/// How deep (m) a place of one solid, more than `allowed` (m) inside, lies in a mesh of the other that is touched by its
-/// surface only: what is wholly inside is in touch with nothing there.
+/// Returns the largest depth (m) of one solid inside a mesh of the other, if it exceeds `allowed` (m). Contacts use only the
+/// surface of such a mesh, so a solid wholly inside touches nothing.
 pub(crate) fn depth_inside_mesh<const D: usize>(
     (one, here): PlacedSolid<D>,
     (other, there): PlacedSolid<D>,

@@ -7,7 +7,7 @@ use crate::{
     solid::{Kinematics, Lifetime, Load, TimeFunction},
 };
 
-/// A force and a torque on a solid, after laws of time.
+/// A force and a torque on a solid, as functions of time.
 ///
 /// ```
 /// use pontoon::solid::ForceSpec;
@@ -45,7 +45,7 @@ pub struct ForceCommand {
 }
 
 impl<const D: usize> ForceSpec<D> {
-    /// Neither force nor torque, on the centre of mass of solid number `solid`, along the axes of the world.
+    /// A load without force and torque, on the centre of mass of solid number `solid`, along the axes of the world.
     pub fn new(name: impl Into<String>, solid: usize) -> Self {
         Self {
             name: name.into(),
@@ -98,8 +98,8 @@ impl<const D: usize> ForceSpec<D> {
         ForceCommand { force: values(&self.force), torque: values(&self.torque) }
     }
 
-    /// The load about the centre of the solid, which started as `start` and is now as `now`, at time `t` (s), with the components
-    /// that a program has `set` or its own.
+    /// The load about the centre of the solid at time `t` (s), with the components that a program has `set`, or its own. `start`
+    /// and `now` are the kinematics of the solid at the start and at present.
     pub(super) fn load_at(
         &self,
         start: &Kinematics<D>,

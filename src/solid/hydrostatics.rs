@@ -34,13 +34,13 @@ impl HollowWater {
     }
 }
 
-/// The volume with which a solid displaces water: its material, its hollows that are dry, and those with water of their
-/// own, less that water.
+/// The volume with which a solid displaces water: its material and its hollows that outside water does not fill, less the water
+/// enclosed in these hollows.
 pub(crate) struct Hull<'a, const D: usize> {
     pub(crate) shape: &'a Shape<D>,
     /// The hollows without water.
     pub(crate) dry: Vec<&'a Hollow<D>>,
-    /// The hollows with water of their own.
+    /// The hollows with enclosed water, which moves with the hull.
     pub(crate) filled: Vec<(&'a Hollow<D>, HollowWater)>,
 }
 
@@ -50,8 +50,8 @@ impl<'a, const D: usize> Hull<'a, D> {
         Self { shape, dry: Vec::new(), filled: Vec::new() }
     }
 
-    /// Volume (m³; m² in 2-D) of the displaced water at `pose` with the still water at `level` (m), and its centroid,
-    /// less the water in hollows. A hollow whose rim lies below the level is full of water of that level.
+    /// Volume (m³; m² in 2-D) and centroid of the displaced water less the water in hollows, at `pose` with the still water at
+    /// `level` (m). A hollow whose rim lies below the level is full of water of that level.
     pub(crate) fn submerged_volume(&self, pose: &Pose<D>, level: f64) -> (f64, Vector<D>) {
         let (volume, centroid) = self.shape.submerged_volume(pose, level);
         // The level stands at the rim up to round-off where the search for an equilibrium begins.
@@ -69,12 +69,12 @@ impl<'a, const D: usize> Hull<'a, D> {
         if any && all != 0.0 { (all, first / all) } else { (all, centroid) }
     }
 
-    /// Volume (m³; m² in 2-D) of the water of its own in its hollows at `pose`, which moves with the hull.
+    /// Volume (m³; m² in 2-D) of the enclosed water at `pose`.
     pub(crate) fn enclosed_volume(&self, pose: &Pose<D>) -> f64 {
         self.filled.iter().map(|(hollow, water)| water.volume(hollow, pose)).sum()
     }
 
-    /// The same hull with the volumes of its own water at `pose`, which stay as it moves.
+    /// The same hull with fixed volumes of enclosed water: those at `pose`.
     pub(crate) fn with_own_water_at(mut self, pose: &Pose<D>) -> Self {
         self.filled.iter_mut().for_each(|(hollow, water)| *water = HollowWater::Volume(water.volume(hollow, pose)));
         self
@@ -136,8 +136,8 @@ impl<'a, const D: usize> Hull<'a, D> {
         Ok(0.5 * (under + over))
     }
 
-    /// As [`Hull::equilibrium_height`] for the displaced `volume` (m³; m² in 2-D), in a fifth of the evaluations but to 1e-12 of it
-    /// only; `None` if it sinks or floods.
+    /// The same as [`Hull::equilibrium_height`] for the displaced `volume` (m³; m² in 2-D), with a fifth of the evaluations, but
+    /// with a relative error of the volume of 1e-12. `None` if the hull sinks or floods.
     pub(crate) fn rise_afloat(&self, pose: &Pose<D>, volume: f64, level: f64) -> Option<f64> {
         let more = |rise: f64| {
             let mut pose = *pose;
@@ -186,10 +186,10 @@ impl<'a, const D: usize> Hull<'a, D> {
 }
 
 impl Hull<'_, 3> {
-    /// Hydrostatic stiffness over ρ g, about the point `reference` (m) of the body: the entry of row i and column j is the loss of
-    /// buoyancy i (vertical force; moments about x and y) over a small motion j (heave; turns about x, y and z). Forces over
-    /// displacements in m², moments over displacements in m³, moments over turns in m⁴. The weight is not included; about the centre
-    /// of mass it has no part. Rows and columns: surge, sway, heave, roll, pitch, yaw.
+    /// Hydrostatic stiffness over ρ g about the point `reference` (m) of the body, without the weight, which contributes nothing
+    /// about the centre of mass. The entry of row i and column j is the loss of buoyancy i (vertical force; moments about x and
+    /// y) over a small motion j (heave; turns about x, y and z). Its unit is m² for a force over a displacement, m³ for a moment
+    /// over a displacement, and m⁴ for a moment over a turn. Rows and columns: surge, sway, heave, roll, pitch, yaw.
     ///
     /// The derivatives are central differences over ±1e-4 of the size of the hull and ±1e-4 rad.
     pub(crate) fn stiffness(&self, pose: &Pose<3>, reference: &Vector<3>, level: f64) -> [[f64; 6]; 6] {
@@ -221,13 +221,13 @@ impl Hull<'_, 3> {
     }
 }
 
-/// Change of the pose's last coordinate (m) that floats the body as posed: ρ₀ V_submerged = m.
+/// Change of the pose's last coordinate (m) at which the body floats in this orientation: ρ₀ V_submerged = m.
 ///
 /// `mass`: kg (kg/m in 2-D); `rho0`: density of the water, kg/m³; `level`: height of the still water, m.
 /// The pose is only lifted or lowered, not turned. Hollows of the shape count as full of water.
 ///
 /// # Errors
-/// `Scene` if the body sinks: says how many times too dense it is.
+/// `Scene` if the body sinks: the message says how many times too dense it is.
 ///
 /// Source: Archimedes; V is monotone in the height, so bisection finds the only solution.
 pub fn equilibrium_height<const D: usize>(

@@ -1,5 +1,5 @@
 //! Solids: fixed, driven and free, with their kinematics, loads, equilibrium at rest, constraints and mooring lines, and the
-//! rigid-body engine (rapier) with its colliders and contacts. No sums over pairs.
+//! rigid-body engine (rapier) with its colliders and contacts. The module has no sums over pairs of particles.
 
 mod ballast;
 mod body;
@@ -90,8 +90,8 @@ pub struct SolidSpec<const D: usize> {
     pub restitution: f64,
     /// Distance outside its faces at which contact begins, m; 0: at the faces. The water is not affected.
     pub contact_skin: f64,
-    /// Whether the space that it encloses starts dry: `Some(true)` also of an open hull below its rim; `Some(false)`
-    /// if the water in it is meant. `None`: closed hollows are dry, and water in an open hull is reported.
+    /// Whether the enclosed space starts dry. `Some(true)`: dry, also in an open hull below its rim; `Some(false)`: with water on
+    /// purpose. `None`: closed hollows are dry, and water in an open hull is reported.
     pub dry: Option<bool>,
     /// Masses at points of a free solid that change with time, in addition to its own.
     pub ballast: Vec<BallastSpec<D>>,
@@ -144,8 +144,8 @@ pub struct FreeBody<const D: usize> {
 pub struct Kinematics<const D: usize> {
     /// Pose of the solid's frame.
     pub pose: Pose<D>,
-    /// World position about which `spin` turns and torques are taken: the centre of mass of a free
-    /// body, the hinge or the frame's origin of a driven one, the frame's origin of a fixed one; m.
+    /// World position (m) about which `spin` turns and torques are taken: the centre of mass of a free body, the hinge or the
+    /// frame's origin of a driven body, the frame's origin of a fixed body.
     pub centre: Vector<D>,
     /// Velocity of `centre`, m/s.
     pub velocity: Vector<D>,
@@ -232,7 +232,7 @@ impl<const D: usize> Solid<D> {
         motion.kinematics_with_absorption(&self.spec.pose, t, &self.absorption)
     }
 
-    /// Energy of its motion, ½ M V² + ½ Ω·I Ω, J (J/m in 2-D); 0 of a solid that is not free.
+    /// Kinetic energy, ½ M V² + ½ Ω·I Ω, J (J/m in 2-D); 0 for a solid that is not free.
     pub(crate) fn kinetic_energy(&self) -> f64 {
         let Some(body) = &self.body else { return 0.0 };
         let now = &self.kinematics;
@@ -240,7 +240,7 @@ impl<const D: usize> Solid<D> {
         0.5 * body.mass * now.velocity.norm_squared() + 0.5 * turning
     }
 
-    /// Energy of its height under `gravity` (m/s²), −M g·R, J (J/m in 2-D); 0 of a solid that is not free.
+    /// Potential energy under `gravity` (m/s²), −M g·R, J (J/m in 2-D); 0 for a solid that is not free.
     pub(crate) fn potential_energy(&self, gravity: &Vector<D>) -> f64 {
         let Some(body) = &self.body else { return 0.0 };
         -body.mass * gravity.dot(&self.kinematics.centre)

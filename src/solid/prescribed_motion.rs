@@ -2,8 +2,8 @@
 //! in the frame moved by those before it, as stacked actuators.
 //!
 //! Positions and velocities both come from the law itself, never from differences of poses, so that a slow
-//! start is as exact as a fast motion. At time t a driven solid has its start pose moved by the law's value
-//! at t: a table that starts at a non-zero value starts there.
+//! start is as exact as a fast motion. At time t the pose of a driven solid is its start pose, moved by the law's value at t; a
+//! table that starts at a non-zero value starts there.
 
 use crate::{
     error::{Error, Result},
@@ -116,14 +116,15 @@ impl<const D: usize> PrescribedMotion<D> {
         Self { stages: vec![Stage { path, law }], absorbing: None }
     }
 
-    /// Several motions at once, from the ground up: each goes in the frame that those before it have moved, its direction or hinge being
-    /// where it says when they are all at zero. What lies at x then lies at A₁(t) A₂(t) … Aₙ(t) x. None of them makes a wave.
+    /// Several motions at once, from the ground up. Each takes place in the frame that the motions before it have moved; its
+    /// direction or hinge is given in the position in which all motions are zero. A point at x then lies at A₁(t) A₂(t) … Aₙ(t)
+    /// x. No motion of a chain may make a wave.
     pub fn chain(motions: impl IntoIterator<Item = Self>) -> Self {
         Self { stages: motions.into_iter().flat_map(|motion| motion.stages).collect(), absorbing: None }
     }
 
-    /// The same motion, of a paddle that absorbs: its gauge is above `gauge` (m) when it is at rest, and goes with it along
-    /// `way`, a unit vector. Without effect on a law that is no wave's.
+    /// The same motion of an absorbing paddle. Its gauge is above `gauge` (m) when the paddle is at rest, and moves with the
+    /// paddle along the unit vector `way`. The call has no effect on a law that makes no wave.
     pub(crate) fn with_absorber(self, absorber: Absorber, gauge: Vector<D>, way: Vector<D>) -> Self {
         Self { absorbing: Some(Box::new(Absorbing { absorber, gauge, way })), ..self }
     }
@@ -168,7 +169,7 @@ impl<const D: usize> PrescribedMotion<D> {
         self.hinged().map(|centre| centre[D - 1])
     }
 
-    /// Whether it may move a point along axis number `axis`. A steady stage counts: it may turn those above it.
+    /// Whether it may move a point along axis number `axis`. A steady stage counts, because it may turn the stages above it.
     pub(crate) fn moves_along(&self, axis: usize) -> bool {
         self.stages.iter().any(|stage| stage.law.steady_value().is_none())
             && self.stages.iter().any(|stage| stage.path.leads_along(axis))
@@ -180,8 +181,8 @@ impl<const D: usize> PrescribedMotion<D> {
         self.stages.iter().any(turns)
     }
 
-    /// Which way its point that is at `x` (m) at the start goes as the value of each of its laws grows: unit vectors, from the ground
-    /// up; zero on the axis of a hinge.
+    /// The directions in which the point at `x` (m) at the start moves as the value of each law grows: unit vectors, from the
+    /// ground up; zero on the axis of a hinge.
     pub(crate) fn directions_at(&self, x: &Vector<D>) -> Vec<Vector<D>> {
         let way = |k: usize| {
             let alone = |i: usize, law: &TimeFunction| (law.value_and_rate(0.0).0, if i == k { 1.0 } else { 0.0 });
@@ -193,7 +194,7 @@ impl<const D: usize> PrescribedMotion<D> {
 
     /// The kinematics at time `t` (s) of a solid that starts at `start`, with exact rates.
     ///
-    /// The `centre` of the result is the hinge of what turns about one and does nothing else, or the frame's origin.
+    /// The `centre` of the result is the hinge if the motion is a single rotation, and otherwise the frame's origin.
     pub fn kinematics(&self, start: &Pose<D>, t: f64) -> Kinematics<D> {
         self.moved(start, |_, law| law.value_and_rate(t))
     }
@@ -211,7 +212,7 @@ impl<const D: usize> PrescribedMotion<D> {
         }
     }
 
-    /// Where a solid that starts at `start` is when the law of each stage has a value and a rate.
+    /// The kinematics of a solid that starts at `start`; `values` returns the value and the rate of the law of each stage.
     fn moved(&self, start: &Pose<D>, values: impl Fn(usize, &TimeFunction) -> (f64, f64)) -> Kinematics<D> {
         let still =
             Kinematics { pose: *start, centre: start.position, velocity: Vector::zeros(), spin: Bivector::zero() };
@@ -226,7 +227,8 @@ impl<const D: usize> PrescribedMotion<D> {
     /// Checks the motion.
     ///
     /// # Errors
-    /// `Scene` if there is none, one of several makes a wave, a direction or axis is zero or not finite, or a law is not finite at time 0.
+    /// `Scene` if there is no motion, one of several makes a wave, a direction or axis is zero or not finite, or a law is not
+    /// finite at t = 0.
     pub fn check(&self) -> Result<()> {
         let several = self.stages.len() > 1;
         if self.stages.is_empty() {
@@ -254,7 +256,8 @@ impl<const D: usize> Path<D> {
         }
     }
 
-    /// What moves as `inner` says, centre and all, carried along this path by a value (m or rad) that grows at a rate.
+    /// The kinematics `inner`, with their centre, moved along this path by a value (m or rad) that grows at a rate (m/s or
+    /// rad/s).
     fn carry(&self, inner: &Kinematics<D>, (value, rate): (f64, f64)) -> Kinematics<D> {
         match self {
             Self::Slide(direction) => {

@@ -1,12 +1,12 @@
 //! The turn of a floating body from its start to rest.
 //!
-//! A body turned at its own displacement has with the still water the energy
+//! A body that is turned at constant displacement has, together with the still water, the energy
 //!
 //!   E = m g (z_G − z_B),   dE = −T·dφ
 //!
 //! G is its centre of mass, B the centroid of the water that it displaces, and T their moment about the horizontal axes.
 //! The body turns downhill from its start to the first minimum of E, by Newton's method with steps of a few degrees at most.
-//! Where E has a maximum along an axis the sign of the step is that of the moment, so that it leads away.
+//! Near a maximum of E along an axis, the step has the sign of the moment, so that it leads away from the maximum.
 
 use nalgebra::{DMatrix, DVector, Dyn, SymmetricEigen};
 
@@ -91,13 +91,13 @@ impl<const D: usize> Floating<'_, D> {
         Some(Turn::Rests(angle(&turned, along)))
     }
 
-    /// Returns the least metacentric height (m) at the start; `None` if it cannot turn, or does not float.
+    /// Returns the least metacentric height (m) at the start; `None` if the body cannot turn or does not float.
     pub(crate) fn least_metacentric_height(&self) -> Option<f64> {
         self.stiffness(&Matrix::identity())?.eigenvalues.iter().copied().reduce(f64::min)
     }
 
-    /// Returns the metacentric heights (m) and their axes; `None` if it cannot turn, and where the water would run into the hull
-    /// beside it.
+    /// Returns the metacentric heights (m) and their axes. `None` if the body cannot turn, or if a slightly different turn floods
+    /// the hull.
     fn stiffness(&self, turned: &Matrix<D>) -> Option<SymmetricEigen<f64, Dyn>> {
         let n = self.free.len();
         if n == 0 {
@@ -116,7 +116,7 @@ impl<const D: usize> Floating<'_, D> {
         Some(SymmetricEigen::new((&stiffness + stiffness.transpose()) * 0.5))
     }
 
-    /// Returns the next step (rad, about the free axes); `None` where the water would run into the hull beside it.
+    /// Returns the next step (rad, about the free axes); `None` if a slightly different turn floods the hull.
     fn step(&self, turned: &Matrix<D>, lever: &DVector<f64>) -> Option<DVector<f64>> {
         let eigen = self.stiffness(turned)?;
         let mut step = DVector::zeros(self.free.len());

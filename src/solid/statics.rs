@@ -2,8 +2,8 @@
 //! initial orientation.
 //!
 //! Bodies that a joint keeps from rising against one another rise together; each such group has one unknown, its rise.
-//! Newton's method finds the rises at which buoyancy, weight, lines and forces balance. A rope is a stiff spring that
-//! bears tension only, as is the bottom of the water.
+//! Newton's method finds the rises at which buoyancy, weight, lines and forces balance. A rope is a stiff spring that only pulls;
+//! the bottom of the water is a stiff spring that only pushes.
 
 mod strength;
 mod ties;
@@ -293,8 +293,8 @@ impl<'a, const D: usize> StaticSystem<'a, D> {
                 break;
             }
             slope.iter_mut().flatten().for_each(|x| *x = -*x);
-            // Lines couple groups and leave the common rise of those in deep water free: with `least` beside what the lines give
-            // the matrix has an inverse.
+            // Lines couple groups, but leave the common rise of groups in deep water free. Row sums of `least` or more make the
+            // matrix invertible.
             for (k, row) in slope.iter_mut().enumerate() {
                 let others: f64 = row.iter().enumerate().filter(|(l, _)| *l != k).map(|(_, x)| x).sum();
                 row[k] = row[k].max(least - others);
@@ -443,8 +443,8 @@ impl<'a, const D: usize> StaticSystem<'a, D> {
         self.water.rho0 * self.bodies[i].hull.enclosed_volume(&self.pose(i))
     }
 
-    /// Returns the mass (kg) that heaves with body `i`: of bodies that rise with it, with the water inside, and of those that hang
-    /// on ropes or springs below it, and the stiffness (N/m) of lines and motors to the ground.
+    /// Returns the mass (kg) that heaves with body `i`, and the stiffness (N/m) of lines and motors to the ground. The mass is
+    /// that of the bodies that rise with it, of water inside, and of bodies that hang below on ropes or springs.
     pub(crate) fn heaving_mass_and_stiffness(&self, i: usize) -> (f64, f64) {
         let with_water = |j: usize| self.bodies[j].body.mass + self.enclosed_water(j);
         let (mut mass, mut stiffness) = (self.group_of(i).map(with_water).sum::<f64>(), 0.0);

@@ -1,8 +1,9 @@
-//! Loads that free bodies carry at rest through their ties, for placing them at their equilibrium: bodies that are joined
-//! to them or hang on them, springs and motors of sliders as they are at the start, and steady forces.
+//! Loads that constraints put on free bodies at rest, from which the equilibrium of the bodies follows: joined and hanging
+//! bodies, springs and motors of sliders in their initial state, and steady forces.
 //!
 //! A body that hangs on several lines divides its load among them by the balance of forces and moments, with the lines as they
-//! are at the start; of several such tensions the least count. Where no tensions balance it, each line gets the same part.
+//! are at the start; of several such sets of tensions, the smallest counts. If no tensions balance the body, each line gets an
+//! equal part.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -142,8 +143,8 @@ impl TieLoads {
         self.free[solid] && !self.groups.held[solid] && !(0..self.free.len()).any(floats)
     }
 
-    /// Returns the place (m) at which the weight of free solid `i`, less its buoyancy, acts together with what it bears; `None` if
-    /// it has other loads.
+    /// Returns the position (m) at which the weight of free solid `i` less its buoyancy acts, together with the loads that hang
+    /// on it; `None` if it has other loads.
     fn load_centre<const D: usize>(
         &self,
         state: &StartState<D>,

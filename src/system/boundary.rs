@@ -31,15 +31,15 @@ pub(crate) struct Boundary<const D: usize> {
     pub(crate) particles: Particles<D>,
     /// Positions in the frame of each solid, m; none of a fixed solid, whose particles stay where they are.
     pub(super) local_positions: Vec<Vec<Vector<D>>>,
-    /// Share of the kernel's support that water fills, Σ V_f W, of those near water, –, in ascending order; `None` unless a body needs
-    /// it. Of a system on a device, of those alone that a body needs.
+    /// Index and wet share of the boundary particles near water, in ascending order. The wet share is the share of the kernel
+    /// support that water fills, Σ V_f W, –. `None` unless a body needs it; on a device only for the particles that a body needs.
     pub(crate) wetness: Option<Vec<(u32, f64)>>,
     /// Depths below the face, m; `None` unless the density relaxes to the water's pressure or water sticks to the face.
     pub(super) depths: Option<Vec<f64>>,
     /// Outward normals in the frames of their solids; `None` unless water sticks to the face.
     normals: Option<Vec<Vector<D>>>,
-    /// Target densities of those that this rank advances and that had water near them in the last pass, in ascending order; `None`
-    /// unless walls relax.
+    /// Target densities of the particles that this rank advances and that had water near them in the last pass, in ascending
+    /// order; `None` unless walls relax.
     target_density: Option<Vec<TargetDensity>>,
     /// Velocities (m/s) with which they act on the water; `None` where those are their own.
     pub(super) extrapolated_velocity: Option<Vec<Vector<D>>>,
@@ -99,8 +99,8 @@ impl<const D: usize> Boundary<D> {
         }
     }
 
-    /// Appends `copies` of the boundary particles of a solid that moves as `kinematics`, the `extension` last in each, and their
-    /// mirror images across the symmetry planes; returns their range. All copies stand in the place of the solid.
+    /// Appends `copies` of the boundary particles of a solid with these `kinematics`, each with the `extension` last, and their
+    /// mirror images across the symmetry planes. Returns their range. All copies start at the position of the solid.
     pub(super) fn append(
         &mut self,
         model: &Model,
@@ -195,7 +195,7 @@ impl<const D: usize> Boundary<D> {
         pose.point(&((min + max) * 0.5))
     }
 
-    /// Ranges of the copies of the boundary particles of `solid`, number `number`, at `pose`, and the ways (m) to them.
+    /// Ranges of the copies of the boundary particles of `solid`, number `number`, at `pose`, and the displacements (m) to them.
     pub(super) fn copies<'a>(
         &'a self,
         images: &'a Images<D>,
@@ -261,8 +261,7 @@ impl<const D: usize> Boundary<D> {
         }
     }
 
-    /// Gives the copies of each boundary particle the density and the velocity, with which it acts, of that between the
-    /// sides.
+    /// Gives the copies of each boundary particle the density and the acting velocity of the copy between the periodic sides.
     pub(super) fn update_copies(&mut self, solids: &[Solid<D>], images: &Images<D>) {
         let Self { particles: Particles { r, rho, .. }, extrapolated_velocity, .. } = self;
         for solid in solids.iter().filter(|solid| solid.copied_axes != 0) {
@@ -339,13 +338,13 @@ impl<const D: usize> System<D> {
         }
     }
 
-    /// Sets the density (kg/m³) of each boundary particle near water to what `rho` makes of its place among them, its
-    /// index and its density, but not below what the wall law allows; then it relaxes to its target, by the share `relaxation` (–)
-    /// where that takes time, or not at all. The others stay at ρ₀.
+    /// Sets the density (kg/m³) of each boundary particle near water that this rank advances to what `rho` makes of its place among
+    /// these, its place among all near water, its index and its density, but not below what the wall law allows; then it relaxes to its
+    /// target, by the share `relaxation` (–) where that takes time, or not at all. The others stay at ρ₀.
     pub(crate) fn set_boundary_density(
         &mut self,
         relaxation: Option<f64>,
-        mut rho: impl FnMut(usize, usize, f64) -> f64,
+        mut rho: impl FnMut([usize; 3], f64) -> f64,
     ) {
         let (rho0, Boundary { particles, target_density, .. }) = (self.properties.rho0, &mut self.boundary);
         let mut targets = target_density.iter().flatten().peekable();
@@ -357,7 +356,7 @@ impl<const D: usize> System<D> {
             while targets.next_if(|target| target.particle < i).is_some() {}
             let target = targets.next_if(|target| target.particle == i);
             let i = i as usize;
-            let bare = rho(k, i, particles.rho[i]);
+            let bare = rho([place, k, i], particles.rho[i]);
             particles.rho[i] = match target {
                 None => DynamicBoundary.limited_density(bare, rho0),
                 Some(TargetDensity { target, .. }) => {
@@ -369,8 +368,8 @@ impl<const D: usize> System<D> {
         own_water::share_boundary_density(&self.neighbours, &mut self.boundary.particles.rho);
     }
 
-    /// Extrapolates the water to each boundary particle near it: the pressure there becomes its target density, if walls
-    /// relax to that, and the velocity the one with which it acts, if water sticks to the face.
+    /// Extrapolates the water to each boundary particle near it. If walls relax, the pressure there gives the target density; if
+    /// water sticks to the face, the velocity there gives the velocity with which the particle acts.
     pub(super) fn update_wall_state(&mut self) {
         let (relaxes, sticks) = (self.model.walls == Walls::RelaxedAdami, self.model.slip == Slip::None);
         if !relaxes && !sticks && self.boundary.wetness.is_none() {
@@ -482,7 +481,7 @@ impl<const D: usize> System<D> {
         r - self.fluid.images.way_to_copy(&middle, solid.copied_axes, copy)
     }
 
-    /// Pose of solid number `solid`; that of its copy with its middle between the periodic sides, if it has several.
+    /// Pose of solid number `solid`. If it has several copies: pose of the copy with its middle between the periodic sides.
     pub(crate) fn home_pose(&self, solid: usize) -> Pose<D> {
         self.home_of(solid, &self.solids[solid].kinematics.pose)
     }
@@ -498,8 +497,8 @@ impl<const D: usize> System<D> {
         pose
     }
 
-    /// Indices of the boundary particles of solid number `solid`; of several copies those with their middle between the
-    /// periodic sides.
+    /// Indices of the boundary particles of solid number `solid`. If it has several copies: indices of the copy with its middle
+    /// between the periodic sides.
     pub(crate) fn home_boundary(&self, solid: usize) -> Range<usize> {
         self.home_boundary_at(solid, &self.solids[solid].kinematics.pose)
     }

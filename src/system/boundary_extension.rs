@@ -12,8 +12,8 @@ use crate::{
 /// Faces touch if they are no further apart, dp.
 const TOUCH: f64 = 0.1;
 
-/// A solid slides along a face if each of its motions sets out at more than 60° from the face's normal: what rises from its bed, as a
-/// gate, opens.
+/// A solid slides along a face if each of its motions begins at more than 60° from the face's normal. A gate that rises from its
+/// bed does not slide along the bed, but opens.
 const ALONG: f64 = 0.5;
 
 /// A boundary particle of an extension, in the frame of its solid.

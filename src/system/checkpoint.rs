@@ -21,7 +21,7 @@ use crate::{
     wavemaker::AbsorptionState,
 };
 
-/// No boundary particle is so far away, m; a value that is not finite fails the comparison too.
+/// Upper bound (m) of the coordinates of boundary particles; a value that is not finite fails the comparison too.
 const FARTHEST: f64 = 1e100;
 
 /// The state of a system in a checkpoint; the arrays are borrowed where it is written. Positions and velocities of boundary
@@ -81,9 +81,7 @@ impl<'a> Columns<'a> {
         match (self.division, self.which) {
             (None, _) => WaterColumn::Read(Cow::Borrowed(all)),
             (Some(division), SavedWater::All) => WaterColumn::Shared(all, division),
-            (Some(division), SavedWater::Own) => {
-                WaterColumn::Own(all, division.own_water().map_or(&[][..], |(own, _)| own))
-            }
+            (Some(division), SavedWater::Own) => WaterColumn::Own(all, division.own_water().map(|(own, _)| own)),
         }
     }
 }
@@ -193,8 +191,8 @@ impl<const D: usize> System<D> {
         Ok(())
     }
 
-    /// Returns to a saved state of the same scene, which [`System::check_state`] has let pass, or to one of this rank's water, which
-    /// `own` names then.
+    /// Restores a saved state of the same scene that [`System::check_state`] has accepted. If it is a state of this rank's water
+    /// only, `own` has the names of this water.
     pub(crate) fn restore(&mut self, state: SystemState<D>, own: Option<OwnNames>) {
         let (water, poses) = (state.at_rebuild.0.into_vec(), state.at_rebuild.1.into_owned());
         let boundary = self.boundary.positions_at(&poses, &self.solids, &self.fluid.images);

@@ -1,4 +1,4 @@
-//! What a device reads of a system, and what a system takes back from it.
+//! Data that a device reads from a system, and data that the system takes back.
 
 use std::collections::BTreeMap;
 
@@ -132,7 +132,7 @@ pub(crate) fn place_solids<const D: usize>(system: &mut System<D>) {
     solids.iter().enumerate().for_each(|(i, solid)| boundary.place(i, solid, &fluid.images));
 }
 
-/// Sets what the water does to the solids, where they were in the force pass: loads, corrected for thin parts, and weights.
+/// Sets the effects of the water on the solids in the force pass: loads, corrected for thin parts, and wet shares.
 pub(crate) fn set_loads<const D: usize>(system: &mut System<D>, of: WaterLoads<D>) {
     let WaterLoads { loads, weights } = of;
     let weight = |i: u32| weights.binary_search_by_key(&i, |(watched, _)| *watched).ok().map(|place| weights[place].1);
@@ -156,7 +156,7 @@ pub(crate) fn place_solid<const D: usize>(system: &mut System<D>, solid: usize) 
     boundary.place(solid, &solids[solid], &fluid.images);
 }
 
-/// Where (m) the paddles that absorb look for the surface at time `t` (s), the start of a step.
+/// The boxes (m) in which absorbing paddles read the surface at time `t` (s), the start of a step.
 pub(crate) fn gauge_ranges<const D: usize>(system: &System<D>, t: f64) -> Vec<Bounds<D>> {
     let reach = system.model.support_radius().max(2.0 * system.model.h);
     let range = |solid: &Solid<D>| match &solid.spec.role {
@@ -170,7 +170,7 @@ pub(crate) fn gauge_ranges<const D: usize>(system: &System<D>, t: f64) -> Vec<Bo
     system.solids.iter().filter_map(range).collect()
 }
 
-/// Where (m) solid number `solid` gives impulses to the water that has moved by `way` (m) more.
+/// The box (m) in which solid number `solid` gives impulses to the water, after the water has moved by `way` (m).
 pub(crate) fn range_beside<const D: usize>(system: &System<D>, solid: usize, way: f64) -> Bounds<D> {
     bounds_beside(system, solid, system.model.support_radius() + way)
 }

@@ -65,7 +65,7 @@ pub struct Driving {
 }
 
 impl Driving {
-    /// Refuses what has no meaning in a scene that is `periodic` along some axes.
+    /// Refuses forces that have no meaning in a scene that is `periodic` along some axes.
     pub(super) fn check<const D: usize>(&self, periodic: &super::Periodic<D>) -> Result<()> {
         if let Some(Current { axis, discharge, response }) = self.current {
             if periodic.get(axis).is_none_or(Option::is_none) {
@@ -167,7 +167,8 @@ pub(crate) fn update_current<const D: usize>(system: &mut System<D>, dt: f64) {
     current.acceleration = current.integral - 2.0 / response * (now - *start);
 }
 
-/// Sets gravity, and what acts beside it, to that of time `t` (s). Returns its change (m/s²); `None` if it is constant.
+/// Sets gravity and the other uniform body forces to their values at time `t` (s). Returns the change (m/s²); `None` if they are
+/// constant.
 pub(crate) fn set_gravity_at<const D: usize>(system: &mut System<D>, t: f64) -> Option<Vector<D>> {
     if system.gravity_law.is_empty() && system.driving.is_none() {
         return None;

@@ -1,19 +1,20 @@
 //! Pressure of the film of water between a free solid and a solid that it touches or nearly touches.
 //!
 //! No particle of water fits into a gap narrower than a row, so that a body on the bed would be pressed onto it by all the water
-//! above. Such a gap carries the pressure that the water has at its rim. In a film of constant thickness the pressure is a harmonic
-//! function; with P* = p − ρ₀ g·x, which is constant in water at rest,
+//! above. Such a gap carries the pressure that the water has at its rim. In a film of constant thickness the pressure is a
+//! harmonic function. With P* = p − ρ₀ g·x, which is constant in water at rest, the pressure at particle i is
 //!
 //!   P*_i = Σ_j P*_j / |x_i − x_j|ᴰ⁻¹ / Σ_j 1 / |x_i − x_j|ᴰ⁻¹,   p_i = max(0, P*_i + ρ₀ g·x_i),
 //!
-//! over the particles j at the rim, is this function exactly for a strip (D = 2) and for a disc (D = 3, Poisson's integral).
-//! Rims in air have p = 0, also where the particles there see the water on the other side of a film of few rows, and a film of one row
-//! has the mean of its two sides. The film presses on the face of each boundary particle, dpᴰ⁻¹ in size, along the normal of the other
-//! solid, and on the other solid with the opposite force at the same place. It fades where water flows in: over gaps of half a dp to
-//! one, and where the water is.
+//! with the particles j at the rim. For a strip (D = 2) and for a disc (D = 3, Poisson's integral) this is the harmonic function
+//! exactly.
+//! Rims in air have p = 0, even if their particles see water on the other side of a film of few rows; a film of one row has the
+//! mean of its two sides. The film presses on the face of each boundary particle, dpᴰ⁻¹ in size, along the normal of the other
+//! solid, and on the other solid with the opposite force at the same place. The force of the film falls to zero as the gap grows
+//! from half a dp to one dp, and is zero where there are water particles.
 //!
-//! A gap g that opens at the speed V draws water in through its rim: with N particles in the film and M at its rim at the speed
-//! u = V N dp/(M g), which costs the pressure ½ ρ₀ u²; g is taken as half a dp at least.
+//! A gap g that opens at the speed V draws water in through its rim. With N particles in the film and M at its rim, this water
+//! has the speed u = V N dp/(M g), which lowers the pressure by ½ ρ₀ u². In this formula g is at least half a dp.
 
 use rayon::prelude::*;
 
@@ -36,8 +37,8 @@ const FIRST_ROW: f64 = 0.75;
 /// Distance between neighbours in a film, dp: along the axes and the diagonals of a face.
 const NEIGHBOURS: f64 = 1.6;
 
-/// Share of the distances to its neighbours, added as vectors, above which a particle is at the rim, –: 0 inside, 0.5 at a straight
-/// rim, 1 at the end of a strip.
+/// Length of the vector sum of the distances to the neighbours, over the sum of their lengths, above which a particle is at the
+/// rim, –. The ratio is 0 inside, 0.5 at a straight rim, and 1 at the end of a strip.
 const ONE_SIDED: f64 = 0.25;
 
 /// Distance from a rim, away from the film, at which water or air must have room, dp.
@@ -55,8 +56,8 @@ enum Rim<const D: usize> {
 }
 
 impl<const D: usize> Rim<D> {
-    /// Share (–) of the pressure of the water near the particle that the rim has, with the unit vector `away` from that water: none
-    /// where the water is on the other side of the film, a half where it is on one side of a particle alone.
+    /// Share (–) of the pressure of the water near the particle that acts at the rim. `away` is the unit vector away from that
+    /// water. The share is 0 if the water is on the other side of the film, and ½ if it is on one side of a single particle.
     fn share(&self, away: &Vector<D>) -> f64 {
         match self {
             Self::Elsewhere => 1.0,

@@ -9,8 +9,8 @@ use crate::{
     particles::{PARTICLES_PER_TASK, Particles, zeros},
 };
 
-/// The water: particles, then those in the buffers of open boundaries, then the images of those near periodic sides, and what the
-/// laws keep of each.
+/// The water: its particles, then the buffer particles of open boundaries, then the images of particles near periodic sides, and
+/// the quantities that the laws store for each particle.
 pub(crate) struct Fluid<const D: usize> {
     pub(crate) particles: Particles<D>,
     pub(super) buffer: Buffer<D>,

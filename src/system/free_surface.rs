@@ -7,8 +7,8 @@ use super::System;
 use crate::{math::Vector, particles::PARTICLES_PER_TASK, solid::Role};
 
 impl<const D: usize> System<D> {
-    /// Heights (m) of the surfaces above the horizontal place `at` (m; the last axis does not count), from the highest down, to
-    /// a thousandth of the spacing. Spray lighter than half a kernel does not count.
+    /// Heights (m) of the water surfaces at the horizontal position `at` (m; its last coordinate does not count), from the
+    /// highest down, to a thousandth of dp. Spray that fills less than half of a kernel does not count.
     pub fn surface_heights(&self, at: &Vector<D>) -> impl Iterator<Item = f64> {
         let (dp, h, up) = (self.model.dp, self.model.h, D - 1);
         let beside = |r: &Vector<D>| (0..up).map(|i| (r[i] - at[i]).powi(2)).sum::<f64>() < (2.0 * h).powi(2);
@@ -30,7 +30,7 @@ impl<const D: usize> System<D> {
         half_crossings(filled, low, high + 2.0 * h, 0.5 * dp, 1e-3 * dp)
     }
 
-    /// Lets the paddles that absorb see the water before them at time `t` (s), the start of a step; the lists must hold.
+    /// Updates the absorbing paddles for the surface in front of them at time `t` (s), the start of a step; the lists must hold.
     pub(crate) fn update_absorption(&mut self, t: f64) {
         for i in 0..self.solids.len() {
             let solid = &self.solids[i];

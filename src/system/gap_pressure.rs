@@ -6,9 +6,10 @@
 //!
 //!   dv_i/dt = −Σ_j (p_i + p_j) G(3 n_i·e) G(−3 n_j·e) G(−3 n_i·n_j) V₀ ∂W r_ij,   G(x) = min(1, max(0, x)),
 //!
-//! acts between boundary particles i and j of two solids, as between particles of water. n points from the water near a particle to
-//! it, so that pairs count only across water and between faces that look at each other: solids side by side in the same water,
-//! whose water is behind them, or that meet in a corner do not push each other. The forces are opposite, bit for bit.
+//! acts between boundary particles i and j of two solids, as between particles of water. n points from the water near a particle
+//! to the particle, so that a pair counts only across water and between faces that look at each other. Solids with the water
+//! behind them, solids side by side in the same water, and solids that meet in a corner do not push each other. The forces are
+//! opposite, bit for bit.
 
 use rayon::prelude::*;
 

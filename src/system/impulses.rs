@@ -13,8 +13,8 @@ pub(crate) struct MomentumTransfer<const D: usize> {
     pub(crate) energy: f64,
 }
 
-/// Returns the `impulse` (N s) to the water nearest to `solid`, in equal shares. Across a plane that cuts the solid the images of
-/// that water get their share of it.
+/// Returns the `impulse` (N s) to the water nearest to `solid`, in equal shares. If a symmetry plane cuts the solid, the images
+/// of that water get their share.
 pub(crate) fn return_impulse<const D: usize>(
     system: &mut System<D>,
     solid: usize,
@@ -54,9 +54,8 @@ pub(super) fn water_beside<const D: usize>(system: &System<D>, solid: usize, dis
     particles
 }
 
-/// Gives each of these impulses (N s) at its place (m) to the water around it, in shares V W of the kernel W as those of a mean over
-/// the water there. So what the impulse takes from the mean velocity is what all particles receive. A place without water, or with
-/// that of a buffer alone, gives none.
+/// Distributes each of these impulses (N s) at its position (m) over the water around it, in the shares V W/Σ V W of a kernel
+/// mean of the water there. An impulse at a position without water, or with buffer water only, is omitted.
 pub(crate) fn spread_impulses<const D: usize>(
     system: &mut System<D>,
     given: &[(Vector<D>, Vector<D>)],
@@ -77,8 +76,8 @@ pub(crate) fn spread_impulses<const D: usize>(
     (!changes.is_empty()).then(|| change_velocities(system, changes.into_iter().collect(), mass))
 }
 
-/// Changes the velocities (m/s) of these water particles, in the order of their numbers, and of their images. `mass` (kg) is that for
-/// which each particle stands.
+/// Changes the velocities (m/s) of these water particles, which are sorted by number, and of their images. Each particle stands
+/// for the mass `mass` (kg).
 fn change_velocities<const D: usize>(
     system: &mut System<D>,
     mut changes: Vec<(usize, Vector<D>)>,

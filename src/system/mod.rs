@@ -1,6 +1,6 @@
 //! Water and solids at one instant, and their rates: neighbour lists, pair sums, loads.
 //!
-//! Nothing here knows the length of a time step: time integration and coupling pass in what follows from it.
+//! No function here knows the length of a time step: time integration and coupling pass the quantities that depend on it.
 
 mod boundary;
 mod boundary_extension;
@@ -46,7 +46,7 @@ pub use step_check::{Escape, ExitPath, ParticleLimits, RemovedParticle};
 pub(crate) use step_check::{LimitViolation, StepCheck};
 pub(crate) use symmetry::{AxisSet, reflected};
 
-use own_water::WaterAtStart;
+use own_water::StateAtStart;
 use symmetry::{reflected_auxiliary, reflected_sums, reflected_tensor};
 
 pub use crate::interaction::StepLimits;
@@ -200,8 +200,8 @@ pub(crate) struct Reordering<const D: usize> {
 }
 
 impl<const D: usize> System<D> {
-    /// Places the water of `setup` in hydrostatic balance below its levels, and the solids with their boundary particles. Each of
-    /// `ranks` has its own water then, where it may.
+    /// Places the water of `setup` in hydrostatic balance below its levels, and the solids with their boundary particles.
+    /// Afterwards each of `ranks` has its own water, if the setup allows this.
     pub(crate) fn new(setup: Setup<D>, pair_loop: Box<dyn PairLoop<D>>, ranks: &Ranks) -> Result<Self> {
         let planes = setup.symmetry_planes();
         let Setup {
@@ -291,6 +291,9 @@ impl<const D: usize> System<D> {
         }
         // Most are of fixed solids: velocities that nothing writes take no memory.
         system.boundary.particles.v = zeros(system.boundary.particles.len());
+        if ranks.rank() > 0 {
+            system.boundary.particles.id = Vec::new();
+        }
         for i in 0..system.solids.len() {
             system.place_boundary(i);
         }
@@ -307,8 +310,8 @@ impl<const D: usize> System<D> {
         Ok(system)
     }
 
-    /// Sorts the water along the columns and rebuilds the neighbour lists, if that is needed; returns how arrays of
-    /// particles that are kept elsewhere must change.
+    /// Sorts the water along the columns and rebuilds the neighbour lists, if necessary. Returns the reordering for particle
+    /// arrays that are stored elsewhere.
     pub(crate) fn rebuild_neighbours(&mut self) -> Option<Reordering<D>> {
         if !self.needs_rebuild() && !open_boundary::needs_exchange(self) {
             return None;
@@ -331,12 +334,14 @@ impl<const D: usize> System<D> {
     }
 
     /// Rebuilds the neighbour lists within a step that began at `at_start`, if that is needed; the water keeps its order.
-    pub(crate) fn rebuild_within_step(&mut self, at_start: &mut WaterAtStart<D>) {
+    pub(crate) fn rebuild_within_step(&mut self, at_start: &mut StateAtStart<D>) {
         if self.needs_rebuild() {
             self.pair_loop.free_buffers();
+            let boundary = at_start.all_boundary_densities(self);
             let columns =
                 own_water::is_apart(&self.neighbours).then(|| own_water::share_out(self, Some(at_start), false));
             self.rebuild_lists(columns);
+            at_start.set_boundary_densities(self, &boundary);
         }
     }
 
@@ -354,8 +359,8 @@ impl<const D: usize> System<D> {
         moved.is_nan() || moved >= self.neighbours.margin()
     }
 
-    /// Rebuilds the neighbour lists and resets boundary particles without water near them to ρ₀. Returns those that had
-    /// water near them before. Where each rank has its own water, `columns` are those by which it is shared out, if it is already.
+    /// Rebuilds the neighbour lists and resets boundary particles without water near them to ρ₀. Returns those that had water
+    /// near them before. If the water is already shared out between ranks, `columns` are the columns by which it is.
     fn rebuild_lists(&mut self, columns: Option<Columns<D>>) -> Vec<u32> {
         let start = Instant::now();
         (self.rates.current, self.rates.corrections_current) = (false, false);
@@ -520,8 +525,8 @@ impl<const D: usize> System<D> {
         self.loads(&boundary)
     }
 
-    /// The load on each solid by the `sums` of the wet boundary particles, added up in chunks of fixed size, in order, by films,
-    /// and by thin parts.
+    /// The load on each solid by films, by thin parts and by the `sums` of the wet boundary particles, which are added up in
+    /// chunks of fixed size, in order.
     fn loads(&self, sums: &[PairSums<D>]) -> Vec<Load<D>> {
         let (mass, wet, r) = (self.particle_mass(), self.neighbours.boundary_near_fluid(), &self.boundary.particles.r);
         let beside = [film::loads(self), thin_layers::loads(self)];

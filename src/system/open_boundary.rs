@@ -6,21 +6,21 @@
 //! at the far end, one length of the buffer behind it. Water that has crossed the face becomes a buffer particle, and leaves at the
 //! far end.
 //!
-//! With x the compression of the water beside the face less that at rest below the level of the face, averaged with the
-//! kernel at the height of the buffer particle, its outward velocity u and its compression are
+//! Let x be the compression of the water beside the face less that at rest below the level of the face, a kernel average at the
+//! height of the buffer particle. The outward velocity u of the buffer particle and its compression x_b are
 //!
 //!   u = U,               x_b = x_rest + x     where the velocity U is prescribed,
 //!   u = U + c₀² x/c,     x_b = x_rest + x     where the face absorbs waves of speed c,
 //!   u = that of the water, x_b = x_rest       where the level alone is prescribed,
 //!   u = mean of that of the water + c₀² x/c, x_b = x_rest    where the level alone is prescribed, and moves,
-//!   u = that of the water, x_b = x_rest + x   where nothing is.
+//!   u = that of the water, x_b = x_rest + x   where neither is prescribed.
 //!
-//! The second is the relation of velocity and pressure in a linear wave that moves out, at every depth @dean1991; for long waves it is
-//! that of @flather1976. Waves that enter add their velocity to U and their pressure to x_rest.
+//! The second line is the relation of velocity and pressure in a linear wave that moves out, at every depth @dean1991; for long
+//! waves it is that of @flather1976. Waves that enter add their velocity to U and their pressure to x_rest.
 //!
-//! Beyond a face whose level or velocity changes in time, what lies in the buffer when the flow turns inwards is water that has left,
-//! as high as it was then, and where rows moved apart or together no longer one particle to each dpᴰ. Such a face keeps rows: see
-//! [`rows`].
+//! At a face whose level or velocity changes in time, the buffer holds water that has left when the flow turns inwards. This
+//! water stands at its former level, and no longer has one particle to each dpᴰ where rows moved apart or together. Such a face
+//! keeps rows: see [`rows`].
 
 mod buffer;
 mod check;
@@ -75,13 +75,14 @@ pub struct OpenBoundary<const D: usize> {
     pub is_lower: bool,
     /// Whether the prescribed velocity is that of water that enters.
     pub is_inflow: bool,
-    /// Velocity normal to the face (m/s), positive in the sense of the flow; that of the water beside the face if there is none.
+    /// Velocity normal to the face (m/s), positive in the sense of the flow. `None`: the velocity of the water beside the face.
     pub velocity: Option<UnsteadyField<D>>,
     /// Factor on the velocity as a function of time, –.
     pub factor: Option<TimeFunction>,
-    /// Height of the surface at rest (m) as a function of time; if there is none, the pressure is that of the water beside the face.
+    /// Height of the surface at rest (m) as a function of time. `None`: the pressure is that of the water beside the face.
     pub level: Option<TimeFunction>,
-    /// Speed of waves that leave through the face (m/s); a velocity is kept exactly if there is none, and water follows a moving level late.
+    /// Speed of waves that leave through the face (m/s). `None`: a velocity is kept exactly, and the water follows a moving level
+    /// late.
     pub absorbed_speed: Option<f64>,
     /// Waves that enter through the face, along its normal and on its current.
     pub waves: Option<IncidentWaves>,
@@ -181,8 +182,8 @@ impl<const D: usize> OpenBoundary<D> {
         vector
     }
 
-    /// Whether the particle at `x` (m) is beyond the far end of the buffer, `length` (m) away, at time `t` (s). In waves that is
-    /// decided where it rests without them; one that crosses the face, and its successor, rest up to the excursion further out.
+    /// Whether the particle at `x` (m) is beyond the far end of the buffer of this `length` (m) at time `t` (s). In waves its
+    /// position at rest decides. A particle that crosses the face, and its successor, may rest further out by the excursion.
     fn is_beyond_buffer(&self, x: &Vector<D>, length: f64, t: f64) -> bool {
         let moved = self.orbit(x, t).map_or(0.0, |(orbit, _)| orbit.displacement[0]);
         self.beyond(x) + moved > length + self.excursion()
@@ -193,8 +194,8 @@ impl<const D: usize> OpenBoundary<D> {
         self.waves.as_ref().map_or(0.0, IncidentWaves::excursion)
     }
 
-    /// The way (m) at time `t` (s) from a particle at `x` (m) to the one that rests `length` (m) further out without waves, and the
-    /// difference of their velocities (m/s).
+    /// The displacement (m) at time `t` (s) from a particle at `x` (m) to the particle that without waves rests `length` (m)
+    /// further out, and the difference of their velocities (m/s).
     fn way_out(&self, x: &Vector<D>, length: f64, t: f64) -> (Vector<D>, Vector<D>) {
         let (mut way, mut velocity_change) = (Vector::zeros(), Vector::zeros());
         way[self.axis] = self.outward() * length;
@@ -208,8 +209,8 @@ impl<const D: usize> OpenBoundary<D> {
         (way, velocity_change)
     }
 
-    /// Whether a solid of this `role` with these `bounds` (m) has an end in the buffer, `length` (m) long, of water of this `dp` (m);
-    /// a free solid may not reach beyond it either.
+    /// Whether a solid of this `role` with these `bounds` (m) has an end in a buffer of this `length` (m); `dp` (m) is the
+    /// particle spacing. For a free solid, an end beyond the buffer counts too.
     fn has_end_in_buffer(&self, role: &Role<D>, bounds: &Bounds<D>, length: f64, dp: f64) -> bool {
         let ends = [&bounds.min, &bounds.max].map(|x| self.beyond(x));
         let is_free = matches!(role, Role::Free(_));
@@ -267,9 +268,9 @@ pub(crate) fn update_buffer<const D: usize>(system: &mut System<D>, t: f64, dt: 
     }
 }
 
-/// Gives all `states`, velocity (m/s) and density (kg/m³), in a buffer below a level that moves and without a velocity of its own one
-/// velocity normal to the face, because rows that moved by themselves would part and cross: their mean, which they follow within
-/// the step `dt` (s) as an absorbing face does.
+/// In a buffer with a moving level and without a prescribed velocity, gives all `states` (velocity, m/s; density, kg/m³) one
+/// velocity normal to the face: their mean, which they follow within the step `dt` (s) as at an absorbing face. Rows with
+/// velocities of their own would part and cross.
 fn move_as_one<const D: usize>(system: &System<D>, states: &mut [(Vector<D>, f64)], dt: f64) {
     let (tags, before) = (&system.fluid.buffer.tags, &system.fluid.particles.v[system.particle_count()..]);
     for (number, face) in system.fluid_domain.open_boundaries.iter().enumerate() {
@@ -289,7 +290,8 @@ fn move_as_one<const D: usize>(system: &System<D>, states: &mut [(Vector<D>, f64
     }
 }
 
-/// The part of its way to the velocity that lets waves of this `speed` (m/s) leave which a face makes in the step `dt` (s).
+/// The fraction of the difference to its target velocity that a face covers in the step `dt` (s), if waves of this `speed` (m/s)
+/// leave through it.
 fn response<const D: usize>(system: &System<D>, speed: f64, dt: f64) -> f64 {
     if dt > 0.0 { (dt * speed / (RESPONSE * system.model.h)).min(1.0) } else { 1.0 }
 }

@@ -9,7 +9,7 @@ use super::{ExitPath, Fluid, RemovedParticle, StepCheck, System};
 use crate::{
     math::{Matrix, Vector},
     model::TimeScheme,
-    neighbours::{Columns, Division, NeighbourLists},
+    neighbours::{Columns, Division, NeighbourLists, Numbers},
     particles::{PARTICLES_PER_TASK, Particles, zeros},
     ranks::{self, Ranks},
     solid::Role,
@@ -104,10 +104,15 @@ pub(crate) fn gather<const D: usize>(system: &mut System<D>, everyone: bool) {
     system.status.has_all_water = everyone || is_first;
 }
 
-/// Gives the first rank the places and velocities of all water, for which the lists have just been made.
+/// Gives the first rank the places and velocities of all water, for which the lists have just been made, until
+/// [`forget_places`]. It has no sums of the water then: each step begins with a pass.
 pub(crate) fn gather_places<const D: usize>(system: &mut System<D>) {
     let Some(division) = divided(&system.neighbours) else { return };
-    let (is_first, own) = (division.ranks.rank() == 0, division.own_water().map_or(&[][..], |(own, _)| own));
+    if division.ranks.rank() == 0 {
+        system.pair_loop.free_buffers();
+        system.rates.current = false;
+    }
+    let (is_first, own) = (division.ranks.rank() == 0, Numbers::new(division.own_numbers()));
     let give = |water: &&mut Particles<D>, i: usize, numbers: &mut Vec<f64>| {
         numbers.extend(water.r[i].iter().chain(water.v[i].iter()));
     };
@@ -116,10 +121,27 @@ pub(crate) fn gather_places<const D: usize>(system: &mut System<D>) {
             water.take_motion(i, numbers);
         }
     };
-    division.share_water(own, &mut (&mut system.fluid.particles), 2 * D, give, take);
+    division.share_water(&own, &mut (&mut system.fluid.particles), 2 * D, give, take);
     if is_first {
         system.neighbours.find_at(&system.fluid.particles.r);
     }
+}
+
+/// Frees the memory of what [`gather_places`] gave.
+pub(crate) fn forget_places<const D: usize>(system: &mut System<D>) {
+    let count = system.fluid.particles.len();
+    let Some(division) = divided(&system.neighbours).filter(|division| division.ranks.rank() == 0) else { return };
+    if system.status.has_all_water {
+        return;
+    }
+    let own = division.own_range(count);
+    let Particles { r, v, .. } = &mut system.fluid.particles;
+    for vectors in [r, v] {
+        let mut kept = zeros(count);
+        kept[own.clone()].copy_from_slice(&vectors[own.clone()]);
+        *vectors = kept;
+    }
+    system.neighbours.forget_known();
 }
 
 /// Whether ranks lack the present water of others: the same for all ranks.
@@ -153,7 +175,7 @@ pub(super) fn share_first<const D: usize>(system: &mut System<D>, own: Option<us
     let Some(division) = divided(&system.neighbours) else { return own };
     let named = division.ranks.gather_words([own.map_or(u32::MAX, |i| i as u32)]);
     let first = named.into_iter().map(|[i]| i).min().filter(|&i| i < u32::MAX)?;
-    let these = own.filter(|&i| i == first as usize).map_or(Vec::new(), |i| vec![i as u32]);
+    let these = Numbers::new(own.filter(|&i| i == first as usize).map(|i| i as u32));
     let give = |water: &&mut Particles<D>, i: usize, numbers: &mut Vec<f64>| water.give(i, numbers);
     let take = |water: &mut &mut Particles<D>, i: usize, numbers: &[f64]| water.take(i, numbers);
     division.share_water(&these, &mut (&mut system.fluid.particles), Particles::<D>::NUMBERS, give, take);
@@ -220,7 +242,7 @@ pub(super) fn divided<const D: usize>(neighbours: &NeighbourLists<D>) -> Option<
 /// The names of this rank's water, if ranks lack that of others.
 pub(crate) fn own_names<const D: usize>(system: &System<D>) -> Option<OwnNames> {
     let (own, _) = divided(&system.neighbours)?.own_water()?;
-    Some((own.to_vec(), system.fluid.particles.len()))
+    Some((own.iter().collect(), system.fluid.particles.len()))
 }
 
 /// Gives each rank `water` with gradient corrections that it had stored, of the particles `own`, and makes the lists for the places
@@ -250,11 +272,11 @@ pub(super) fn restore<const D: usize>(
         division.set_own_water(own, count);
     }
     set_apart(system, true);
-    let mut now = WaterAtStart(now);
+    let mut now = StateAtStart { water: now, boundary_density: Vec::new() };
     let columns = share_out(system, Some(&mut now), true);
     let next = take_next_slab(system, &columns);
     system.neighbours.build_own(&columns, &system.fluid.particles.r, &next, boundary);
-    system.fluid.particles = now.0;
+    system.fluid.particles = now.water;
     if let Some(corrections) = &mut system.fluid.gradient_correction {
         take_next_corrections(&system.neighbours, corrections);
     }
@@ -269,7 +291,7 @@ fn scatter<T: Copy>(all: &mut [T], items: &[T], these: &[u32]) {
 /// that has its slab now. Returns the columns for new lists.
 pub(super) fn share_out<const D: usize>(
     system: &mut System<D>,
-    start: Option<&mut WaterAtStart<D>>,
+    start: Option<&mut StateAtStart<D>>,
     corrected: bool,
 ) -> Columns<D> {
     let columns = system.neighbours.share_out(&system.fluid.particles.r);
@@ -277,13 +299,13 @@ pub(super) fn share_out<const D: usize>(
     let Some(division) = division(&system.neighbours) else { return columns };
     let (rank, now) = (division.ranks.rank(), &system.fluid.particles);
     let owner = |r: &Vector<D>| division.owner_of(columns.slab_at(r));
-    let own = division.own_water().map_or(&[][..], |(own, _)| own);
-    let (mut own, leaving): (Vec<u32>, Vec<u32>) = own.iter().partition(|&&i| owner(&now.r[i as usize]) == rank);
+    let is_kept = |&i: &u32| owner(&now.r[i as usize]) == rank;
+    let (mut own, leaving): (Vec<u32>, Vec<u32>) = division.own_numbers().partition(is_kept);
     let mut arrived = Vec::new();
     let numbers = Particles::<D>::NUMBERS;
     let Fluid { particles, gradient_correction, .. } = &mut system.fluid;
     let corrections = gradient_correction.as_mut().filter(|_| corrected);
-    let start = start.map(|WaterAtStart(start)| start);
+    let start = start.map(|start| &mut start.water);
     let states = if start.is_some() { 2 } else { 1 };
     let width = states * numbers + if corrections.is_some() { D * D } else { 0 };
     type Data<'a, const D: usize> =
@@ -302,7 +324,7 @@ pub(super) fn share_out<const D: usize>(
             arrived.push(i as u32);
         }
     };
-    division.share_water(&leaving, &mut (particles, start, corrections), width, give, take);
+    division.share_water(&Numbers::new(leaving), &mut (particles, start, corrections), width, give, take);
     own.extend(arrived);
     own.sort_unstable();
     if let Some(division) = system.neighbours.division_mut() {
@@ -392,10 +414,10 @@ pub(super) fn take_next_slab<const D: usize>(system: &mut System<D>, columns: &C
     let Some(division) = division(&system.neighbours) else { return Vec::new() };
     let ([before, after], slabs) = (division.adjacent(), division.own_slabs());
     let r = &mut system.fluid.particles.r;
-    let own = division.own_water().map_or(&[][..], |(own, _)| own);
-    let first = own.iter().filter(|&&i| before.is_some() && columns.slab_at(&r[i as usize]) == slabs.start);
+    let first = division.own_numbers();
+    let first = first.filter(|&i| before.is_some() && columns.slab_at(&r[i as usize]) == slabs.start);
     let words =
-        |&i: &u32| std::iter::once(i).chain(r[i as usize].iter().flat_map(|&x| ranks::words_of(x)).collect::<Vec<_>>());
+        |i: u32| std::iter::once(i).chain(r[i as usize].iter().flat_map(|&x| ranks::words_of(x)).collect::<Vec<_>>());
     let (out, width) = (first.flat_map(words).collect::<Vec<u32>>(), 1 + 2 * D);
     let counts = division.counts(out.len());
     let mut into = vec![0; after.map_or(0, |rank| counts[rank])];
@@ -413,7 +435,7 @@ pub(super) fn know_adjacent_slabs<const D: usize>(system: &mut System<D>) {
     let System { neighbours, fluid: Fluid { particles: Particles { r, rho, .. }, .. }, .. } = system;
     let Some(division) = division(neighbours).filter(|division| division.is_apart) else { return };
     let ([before, after], slabs) = (division.adjacent(), division.own_slabs());
-    let mut known = division.own_water().map_or(Vec::new(), |(own, _)| own.to_vec());
+    let mut known: Vec<u32> = division.own_numbers().collect();
     let width = 1 + 2 * (D + 1);
     for (to, from, slab) in [(before, after, slabs.start), (after, before, slabs.end.saturating_sub(1))] {
         let mut out = Vec::new();
@@ -434,33 +456,70 @@ pub(super) fn know_adjacent_slabs<const D: usize>(system: &mut System<D>) {
     neighbours.know(known, r);
 }
 
-/// Arrays as long as those of `all`, of which only the places `these` are written.
+/// Arrays as long as those of `all`, of which only the places `these` are written, and no names.
 fn part<const D: usize>(all: &Particles<D>, these: &Range<usize>) -> Particles<D> {
     let mut part = Particles::unwritten(all.len());
     part.r[these.clone()].copy_from_slice(&all.r[these.clone()]);
     part.v[these.clone()].copy_from_slice(&all.v[these.clone()]);
     part.rho[these.clone()].copy_from_slice(&all.rho[these.clone()]);
-    part.id[these.clone()].copy_from_slice(&all.id[these.clone()]);
     part
 }
 
-/// The state of this rank's water at the start of a step.
-pub(crate) struct WaterAtStart<const D: usize>(Particles<D>);
+/// The state of this rank's water and of its boundary particles near water at the start of a step.
+pub(crate) struct StateAtStart<const D: usize> {
+    /// The water, without names.
+    water: Particles<D>,
+    /// Densities of the boundary particles near water that this rank advances, kg/m³.
+    boundary_density: Vec<f64>,
+}
 
-impl<const D: usize> WaterAtStart<D> {
-    /// That of the present, without names if this rank has all.
+impl<const D: usize> StateAtStart<D> {
+    /// That of the present.
     pub(crate) fn of(system: &System<D>) -> Self {
         let now @ Particles { r, v, rho, .. } = &system.fluid.particles;
-        match own(&system.neighbours, r.len()) {
-            (_, None) => Self(Particles { r: r.clone(), v: v.clone(), rho: rho.clone(), id: Vec::new() }),
-            (these, Some(_)) => Self(part(now, &these)),
-        }
+        let water = match own(&system.neighbours, r.len()) {
+            (_, None) => Particles { r: r.clone(), v: v.clone(), rho: rho.clone(), id: Vec::new() },
+            (these, Some(_)) => part(now, &these),
+        };
+        let mut start = Self { water, boundary_density: Vec::new() };
+        start.set_boundary_densities(system, &system.boundary.particles.rho);
+        start
     }
 
-    /// Position (m), velocity (m/s) and density (kg/m³) of particle `i`.
+    /// Position (m), velocity (m/s) and density (kg/m³) of water particle `i`.
     #[inline(always)]
     pub(crate) fn particle(&self, i: usize) -> (Vector<D>, Vector<D>, f64) {
-        let Particles { r, v, rho, .. } = &self.0;
+        let Particles { r, v, rho, .. } = &self.water;
         (r[i], v[i], rho[i])
     }
+
+    /// Density (kg/m³) of the boundary particle at this place among those near water that this rank advances.
+    pub(crate) fn boundary_density(&self, place: usize) -> f64 {
+        self.boundary_density[place]
+    }
+
+    /// Those of all boundary particles; far from water these are the present ones.
+    pub(super) fn all_boundary_densities(&self, system: &System<D>) -> Vec<f64> {
+        let mut all = system.boundary.particles.rho.clone();
+        own_near(&system.neighbours).zip(&self.boundary_density).for_each(|(i, rho)| all[i] = *rho);
+        share_boundary_density(&system.neighbours, &mut all);
+        all
+    }
+
+    /// Keeps those that this rank advances now of the densities of `all` boundary particles.
+    pub(super) fn set_boundary_densities(&mut self, system: &System<D>, all: &[f64]) {
+        self.boundary_density = own_near(&system.neighbours).map(|i| all[i]).collect();
+    }
 }
+
+/// The boundary particles near water that this rank advances.
+fn own_near<const D: usize>(neighbours: &NeighbourLists<D>) -> impl Iterator<Item = usize> {
+    let near = neighbours.boundary_near_fluid();
+    let own = own_boundary(neighbours);
+    (0..own.map_or(near.len(), <[u32]>::len))
+        .map(move |place| near[own.map_or(place, |own| own[place] as usize)] as usize)
+}
+
+#[cfg(test)]
+#[path = "../../tests/unit/system/own_water.rs"]
+mod tests;

@@ -1,16 +1,16 @@
-//! Periodic sides: what leaves at one comes in at the other, and sees across them.
+//! Periodic sides: water that leaves at one side enters at the other, and particles interact across the sides.
 //!
-//! Water near a side has an image one period away, a particle of the arrays like any other, after all that is real. An
-//! image takes its rates from the particle that it mirrors, so that whoever moves the water moves both alike; only what
-//! counts the water leaves images out. The images across symmetry planes are made here too ([`super::symmetry`]).
+//! Water near a side has an image one period away, a particle of the arrays like any other, after all that is real. An image
+//! takes its rates from the particle that it mirrors, so that both move alike; only functions that count the water leave images
+//! out. The images across symmetry planes are made here too ([`super::symmetry`]).
 //!
-//! Fixed solids have no images: they reach beyond the sides as far as those of the water do. A free solid is
-//! not wrapped: its kinematics go on beyond the sides. Its boundary particles stand in the arrays twice for each periodic
-//! axis, an even and an odd number of periods from its place: one copy with its middle between the sides, and one beyond
-//! the nearer side. So do those of a driven solid for each periodic axis along which it moves, if it starts between the
-//! sides and is short; a longer one reaches beyond both sides all the time. Of the copies of a particle exactly one lies
-//! between the sides. It gives the load, and the others take its density. A copy moves by two periods when the middle of
-//! the solid passes the middle between the sides; then no water is near it.
+//! Fixed solids have no images: they reach beyond the sides as far as the images of the water do. A free solid is not wrapped:
+//! its kinematics continue beyond the sides. Its boundary particles stand in the arrays twice for each periodic axis, an even and
+//! an odd number of periods from its place: one copy with its middle between the sides, and one beyond the nearer side. A driven
+//! solid has such copies for each periodic axis along which it moves, if it starts between the sides and is short; a longer one
+//! reaches beyond both sides all the time. Exactly one copy of a particle lies between the sides. It gives the load, and the
+//! other copies take its density. A copy moves by two periods when the middle of the solid passes the middle between the sides;
+//! at that time no water is near the copy.
 
 use super::{
     Fluid, RemovedParticle, System, open_boundary,
@@ -25,8 +25,8 @@ use crate::{
     solid::{Constraints, Kinematics, PrescribedMotion, Role, SolidSpec},
 };
 
-/// How far images reach beyond a side, over the kernel's support: the skin beyond a side sees water as that inside does, also
-/// while lists grow old.
+/// Distance to which images reach beyond a side, over the kernel's support. The boundary particles beyond a side then see the
+/// same water as those inside, also until the lists are rebuilt.
 pub(super) const WIDTH: f64 = 2.5;
 
 /// For each axis where a period begins and ends (m), if it has one.
@@ -113,7 +113,7 @@ impl<const D: usize> Images<D> {
         (0..D).filter(is_copied).fold(0, |axes, axis| axes | 1 << axis)
     }
 
-    /// The way (m) to copy number `copy` from a solid with copies along `axes` whose middle is at `middle` (m).
+    /// The displacement (m) of copy number `copy` from a solid with copies along `axes` whose middle is at `middle` (m).
     pub(super) fn way_to_copy(&self, middle: &Vector<D>, axes: AxisSet, copy: usize) -> Vector<D> {
         let mut way = Vector::zeros();
         let sides = self.periodic.iter().enumerate().filter_map(|(axis, side)| Some((axis, (*side)?)));
@@ -203,9 +203,9 @@ impl<const D: usize> Fluid<D> {
 }
 
 impl<const D: usize> System<D> {
-    /// Wraps the water round the periodic sides and folds it at the symmetry planes, removes what left the domain or is displaced,
-    /// sorts it along the columns and puts new images at its end. Returns how the arrays of particles have changed, and what was
-    /// removed.
+    /// Wraps the water round the periodic sides and folds it at the symmetry planes. Removes particles that left the domain or
+    /// are displaced, sorts the water along the columns, and puts new images at its end. Returns the change of the particle
+    /// arrays, and the removed particles.
     pub(super) fn sort_water(&mut self) -> (SortedWater, Vec<RemovedParticle<D>>) {
         let real = self.own_count();
         let folded = self.fluid.fold_at_planes(real);
@@ -277,9 +277,9 @@ fn longest<const D: usize>(spec: &SolidSpec<D>, motion: &PrescribedMotion<D>, bo
     if motion.turns() { spec.shape.bounds().size().norm() } else { bounds.size()[axis] }
 }
 
-/// Whether the boundary particles of a solid have copies along axis number `axis`, across which water sees as far as `width` (m):
-/// those of free solids, and of driven ones that move along the axis, start between the sides and are short enough. Copies
-/// are not combined with the images of symmetry planes.
+/// Whether the boundary particles of a solid have copies along axis number `axis`, across which water sees as far as `width` (m).
+/// Free solids have copies, and driven solids that move along the axis, start between the sides and are short enough. Copies are
+/// not combined with the images of symmetry planes.
 fn is_copied<const D: usize>(
     periodic: &Periodic<D>,
     has_planes: bool,
@@ -295,7 +295,7 @@ fn is_copied<const D: usize>(
     starts_inside && longest(spec, motion, &bounds, axis) <= to - from - 2.0 * width
 }
 
-/// Whether a solid with these `bounds` ends so near to a side that water sees, as far as `width` (m), past its end.
+/// Whether a solid with these `bounds` ends within `width` (m) of a side, so that water sees past its end.
 fn ends_near<const D: usize>(bounds: &Bounds<D>, axis: usize, sides: [f64; 2], width: f64) -> bool {
     let near = |x: f64, side: f64| (x - side).abs() < width * (1.0 - 1e-9);
     sides.iter().any(|&side| near(bounds.min[axis], side) || near(bounds.max[axis], side))
@@ -317,7 +317,7 @@ fn side_reached<const D: usize>(
 }
 
 impl<const D: usize> System<D> {
-    /// Name of the periodic axis at a side of which driven solid number `i`, without copies, ends if it moves as `now`.
+    /// Name of the periodic axis at whose side driven solid number `i`, which has no copies, ends with the kinematics `now`.
     pub(crate) fn side_reached(&self, i: usize, now: &Kinematics<D>) -> Option<&'static str> {
         let Images { periodic, planes, width, .. } = &self.fluid.images;
         let axis = side_reached(periodic, planes.any(), &self.solids[i].spec, (&now.pose, *width))?;
@@ -367,7 +367,7 @@ pub(crate) fn check_motions<const D: usize>(
     Ok(())
 }
 
-/// Refuses periodic sides that cannot be; `has_planes` tells of symmetry planes.
+/// Refuses invalid periodic sides; `has_planes`: whether there are symmetry planes.
 ///
 /// # Errors
 /// `Scene` if a period is too short or no whole number of dp, a fixed or driven solid ends at a side, or a free solid
@@ -416,8 +416,8 @@ pub(crate) fn check<const D: usize>(
     Ok(())
 }
 
-/// Refuses a free solid that starts across the sides `from` and `to` (m), or of which two copies could be beside the same
-/// water, which sees as far as `width` (m).
+/// Refuses a free solid that starts across the sides `from` and `to` (m). Refuses one so long that water could be beside two of
+/// its copies; `width` (m) is the reach of water.
 fn check_free<const D: usize>(
     solid: &SolidSpec<D>,
     (name, axis): (&str, usize),

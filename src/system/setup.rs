@@ -43,7 +43,7 @@ pub struct Setup<const D: usize> {
     pub surface_levels: Vec<f64>,
     /// Velocity of each of them, m/s; empty if all are at rest.
     pub velocity: Vec<Vector<D>>,
-    /// Pressure of each beyond that of water at rest, Pa; empty if there is none.
+    /// Pressure of each particle beyond that of water at rest, Pa; empty if none is set.
     pub pressure: Vec<f64>,
     /// The solids.
     pub solids: Vec<SolidSpec<D>>,
@@ -53,8 +53,8 @@ pub struct Setup<const D: usize> {
     pub domain: Option<Bounds<D>>,
     /// Which sides are periodic.
     pub periodic: Periodic<D>,
-    /// Coordinate of the symmetry plane normal to each axis, m. The water on one side is computed: the side with all the water,
-    /// or, of water on both sides, that of greater coordinates. Solids that a plane cuts are given whole.
+    /// Coordinate of the symmetry plane normal to each axis, m. The program computes the water on one side: the side with all the
+    /// water or, if both sides have water, the side of greater coordinates. Solids that a plane cuts are given whole.
     pub symmetry: [Option<f64>; D],
     /// The valid range of a water particle.
     pub limits: ParticleLimits,

@@ -1,4 +1,5 @@
-//! The valid range of a water particle, how far the water has moved, who leaves the range first, and who is taken out.
+//! The check of each step: the valid range of a water particle, the largest displacement, the first particle outside the range,
+//! and the removal of particles.
 
 use std::fmt;
 
@@ -61,8 +62,8 @@ pub enum Escape {
 }
 
 impl Default for ParticleLimits {
-    /// Half of c₀, where the density is off by an eighth and the water is no longer weakly compressible; half of ρ₀ and half as
-    /// much again; a particle that leaves stops the run.
+    /// Speeds up to half of c₀, where the density differs by an eighth and the water is no longer weakly compressible; densities
+    /// from 0.5 ρ₀ to 1.5 ρ₀. A particle that leaves the domain stops the run.
     fn default() -> Self {
         Self { speed: 0.5, density: [0.5, 1.5], escape: Escape::Stop }
     }
@@ -88,9 +89,9 @@ pub struct RemovedParticle<const D: usize> {
 pub enum ExitPath {
     /// By the top: thrown up.
     Up,
-    /// By a side, higher than the water stood at the start, or falling from higher: over a wall.
+    /// By a side, above the initial height of the water or after a fall from above it: over a wall.
     Over,
-    /// By the bottom or a side, from lower than that: through a gap or a wall that is too thin.
+    /// By the bottom or a side, from a lower height: through a gap or a wall that is too thin.
     Through,
 }
 
@@ -116,10 +117,10 @@ pub(crate) struct ValidRange<const D: usize> {
 /// A water particle outside the valid range: its number, the code, the reason and its usual cause.
 pub(crate) type LimitViolation = (usize, ErrorCode, &'static str, &'static str);
 
-/// What it saw of all particles.
+/// The result of the check of all particles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct StepCheck {
-    /// Square of the furthest way since the lists were made, m²; NaN if one is.
+    /// Square of the largest displacement since the lists were made, m²; NaN if any displacement is NaN.
     pub(crate) max_displacement2: f64,
     /// Whether all are in the valid range.
     pub(crate) valid: bool,
@@ -129,8 +130,8 @@ impl StepCheck {
     /// Nothing yet.
     pub(crate) const INITIAL: Self = Self { max_displacement2: 0.0, valid: true };
 
-    /// A particle in the middle of a step, that was at `then` when the lists were made: the end of the step will say whether it is
-    /// valid.
+    /// The check of a particle in the middle of a step, which was at `then` when the lists were made. The end of the step decides
+    /// whether the particle is valid.
     #[inline(always)]
     pub(crate) fn displacement<const D: usize>(then: &Vector<D>, r: &Vector<D>) -> Self {
         Self { max_displacement2: (r - then).norm_squared(), valid: true }
@@ -193,7 +194,8 @@ impl<const D: usize> System<D> {
         }
     }
 
-    /// The first water particle that has left the valid range, with what is wrong and its usual cause. All ranks get its state.
+    /// The first water particle that has left the valid range, with the reason and its usual cause. All ranks get the particle's
+    /// state.
     pub(crate) fn first_invalid_particle(&mut self) -> Option<LimitViolation> {
         if self.status.step_check.valid {
             return None;
@@ -223,7 +225,7 @@ impl<const D: usize> System<D> {
         }
     }
 
-    /// Takes those water particles out of `order` that have left the domain, if that is what becomes of them.
+    /// Removes water particles that have left the domain from `order`, if the limits say so. Returns these particles.
     pub(super) fn remove_outside(&self, order: &mut Vec<u32>) -> Vec<RemovedParticle<D>> {
         let Particles { r, v, rho, id } = &self.fluid.particles;
         let mut lost = Vec::new();
@@ -244,8 +246,9 @@ impl<const D: usize> System<D> {
     /// How a particle at `x` (m) with velocity `v` (m/s), outside the domain, is likely to have come there.
     fn exit_path(&self, x: &Vector<D>, v: &Vector<D>) -> ExitPath {
         let up = D - 1;
-        // Nothing but gravity acts out there: it fell from where it would rise to if time ran back. What goes through a
-        // wall comes from no higher than the water stood, give or take what pairs push it.
+        // Only gravity acts outside the domain: the particle fell from the height to which it would rise if time ran backwards. A
+        // particle that went through a wall comes from no higher than the initial water level, except for pushes by other
+        // particles.
         let (g, falls) = (-self.properties.gravity[up], v[up] < 0.0);
         let summit = if g > 0.0 && falls { x[up] + v[up].powi(2) / (2.0 * g) } else { x[up] };
         if x[up] > self.fluid_domain.domain.max[up] {

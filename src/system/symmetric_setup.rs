@@ -159,8 +159,8 @@ impl<const D: usize> Setup<D> {
         self.check_motion(solid, plane)
     }
 
-    /// Refuses a solid that `plane` cuts if its shape is not symmetric: the whole shape of a free one, of any other the part within
-    /// `width` (m) of the plane.
+    /// Refuses a solid that `plane` cuts if its shape is not symmetric. The whole shape of a free solid counts, and of any other
+    /// solid the part within `width` (m) of the plane.
     fn check_shape(&self, solid: &SolidSpec<D>, plane: &Named, width: f64) -> Result<()> {
         let (pose, dp) = (solid.initial_kinematics().pose, self.model.dp);
         let planes = SymmetryPlanes::<D>(std::array::from_fn(|axis| (axis == plane.axis).then_some(plane.plane)));
@@ -286,7 +286,7 @@ impl<const D: usize> Setup<D> {
         Ok(())
     }
 
-    /// Refuses a line that pulls a free body which the plane cuts to one side, unless its mirror image is there.
+    /// Refuses a line that pulls a free body on the plane to one side, unless there is a mirror image of the line.
     fn check_lines(&self, plane: &Named, cut: &[bool]) -> Result<()> {
         let springs = self.constraints.springs.iter().map(|s| {
             let numbers =
@@ -340,7 +340,7 @@ impl<const D: usize> Setup<D> {
         Ok(())
     }
 
-    /// Refuses forces and torques that turn a body which the plane cuts, unless the mirror image of the force is there.
+    /// Refuses forces and torques that turn a body on the plane, unless there is a mirror image of the force.
     fn check_moments(&self, plane: &Named, cut: &[bool]) -> Result<()> {
         let values = |laws: &[TimeFunction]| -> Vec<Vec<f64>> {
             times().map(|t| laws.iter().map(|law| law.value_and_rate(t).0).collect()).collect()

@@ -4,9 +4,9 @@
 //! tensors, equal density. A particle that has crossed a plane changes places with its image when the lists are rebuilt.
 //!
 //! The boundary particles of a solid on the computed side come first in the arrays, then their mirror images, which take density
-//! and velocity from them. Of a solid that a plane cuts they are its other part, so that its particles lie symmetrically. A
+//! and velocity from them. If a plane cuts the solid, the images are its other part, so that its particles lie symmetrically. A
 //! particle within [`ON_PLANE`] of the plane is set on it and is its own image: half of its force counts. The load is that of the
-//! whole solid: the load of the computed part and its reflection. Of any other solid the images are another solid.
+//! whole solid: the load of the computed part and its reflection. The images of any other solid are another solid.
 
 use crate::{
     interaction::PairSums,
@@ -75,7 +75,7 @@ impl<const D: usize> SymmetryPlanes<D> {
         self.mirrored(self.axes_beyond(x), x)
     }
 
-    /// How many images of a thing there are, itself counted, if the planes normal to the axes `cut` pass through it.
+    /// Number of images of an object, itself included, if the planes normal to the axes `cut` pass through it.
     pub(crate) fn multiplicity(&self, cut: AxisSet) -> f64 {
         self.each().filter(|(axis, _)| cut >> axis & 1 == 0).fold(1.0, |count, _| 2.0 * count)
     }

@@ -258,9 +258,10 @@ impl<const D: usize> System<D> {
     }
 
     /// Force (N; N/m in 2-D) of the computed water and of the computed parts of the solids on the symmetry plane normal to
-    /// axis number `axis`, positive outwards, at the last force pass: what the other side of the plane would get. 0 without a plane.
+    /// axis number `axis`, positive outwards, at the last force pass: the force that the other side would receive. 0 without a
+    /// plane.
     ///
-    /// Along its normal the momentum of the computed side changes by gravity, by this force, and by what holds the solids.
+    /// Along its normal, gravity, this force and the supports of the solids change the momentum of the computed side.
     pub fn symmetry_plane_force(&self, axis: usize) -> f64 {
         let Some(plane) = self.symmetry_planes().0.get(axis).copied().flatten() else { return 0.0 };
         let (mass, g, rates) = (self.particle_mass(), self.properties.gravity[axis], self.fluid_rates());
@@ -381,8 +382,8 @@ impl<const D: usize> System<D> {
             + size_of_val(&self.rates.boundary[..])
     }
 
-    /// Memory that a step takes beside [`System::memory_bytes`] for a while, B: the start of a symplectic step, shifts, and the
-    /// extrapolation of the water to the walls.
+    /// Additional memory (B) that a step takes for a while beside [`System::memory_bytes`]: the start of a symplectic step,
+    /// shifts, and the extrapolation of the water to the walls.
     pub(crate) fn step_memory_bytes(&self) -> usize {
         let (water, wet) = (self.fluid.particles.len(), self.boundary_near_fluid_count());
         let start = match self.model.scheme {

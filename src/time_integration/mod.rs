@@ -123,10 +123,14 @@ fn apply_shifts<const D: usize>(
 
 /// Sets the densities of boundary particles near water to what `rho` makes of their rate dx/dt (1/s), index and density, and
 /// relaxes them over `dt` (s).
-fn step_boundary_density<const D: usize>(system: &mut System<D>, dt: f64, mut rho: impl FnMut(f64, usize, f64) -> f64) {
+fn step_boundary_density<const D: usize>(
+    system: &mut System<D>,
+    dt: f64,
+    mut rho: impl FnMut(f64, [usize; 2], f64) -> f64,
+) {
     let medium = system.properties();
     let relaxation = relaxation(dt, medium.h, medium.c0);
     let rates = std::mem::take(&mut system.rates.boundary);
-    system.set_boundary_density(Some(relaxation), |k, i, now| rho(rates[k].compression_rate, i, now));
+    system.set_boundary_density(Some(relaxation), |[place, k, i], now| rho(rates[k].compression_rate, [place, i], now));
     system.rates.boundary = rates;
 }

@@ -14,7 +14,7 @@ use crate::{
     coupling::{Accounting, Interval, drift_half_step},
     interaction::RequestedSums,
     particles::PARTICLES_PER_TASK,
-    system::{StepCheck, System, own_water, own_water::WaterAtStart},
+    system::{StepCheck, System, own_water, own_water::StateAtStart},
 };
 
 /// The scheme @dominguez2022; it keeps no state between steps.
@@ -30,8 +30,7 @@ impl Symplectic {
     ) -> f64 {
         let (dt, half) = (over.dt, 0.5 * over.dt);
         let rho0 = system.properties().rho0;
-        let boundary_start = system.boundary.particles.rho.clone();
-        let mut start = WaterAtStart::of(system);
+        let mut start = StateAtStart::of(system);
         let (fluid, rates) = system.fluid_and_rates();
         let (these, own) = rates.own_water();
         let now =
@@ -90,7 +89,7 @@ impl Symplectic {
         if let Some(shifts) = shifts {
             apply_shifts(system, &shifts, &mut accounting);
         }
-        step_boundary_density(system, dt, |dx, i, rho| whole(boundary_start[i], rho, dx));
+        step_boundary_density(system, dt, |dx, [place, _], rho| whole(start.boundary_density(place), rho, dx));
         1.0
     }
 }

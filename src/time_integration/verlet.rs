@@ -160,7 +160,9 @@ impl<const D: usize> Verlet<D> {
             apply_shifts(system, &shifts, &mut accounting);
         }
         let before = &mut self.skin_rho_before;
-        step_boundary_density(system, span, |dx, i, rho| std::mem::replace(&mut before[i], rho) + rho0 * dx * span);
+        step_boundary_density(system, span, |dx, [_, i], rho| {
+            std::mem::replace(&mut before[i], rho) + rho0 * dx * span
+        });
 
         self.dt_before = dt;
         self.steps += 1;

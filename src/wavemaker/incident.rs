@@ -4,8 +4,9 @@
 //!
 //!   x = X − Σ a cosh k(Z + d)/sinh kd sin θ,   z = Z + Σ a sinh k(Z + d)/sinh kd cos θ,   θ = k X − ω t + φ,
 //!
-//! with (ω − k U)² = g k tanh kd @peregrine1976: in a frame that moves with the current it is a wave in water at rest. Rows stay rows, because
-//! no particle drifts relative to the current. The pressure is that of linear theory, which vanishes at the surface Z = 0.
+//! with (ω − k U)² = g k tanh kd @peregrine1976. In a frame that moves with the current this is a wave in water at rest. Rows
+//! stay rows, because no particle drifts relative to the current. The pressure is that of linear theory, which vanishes at the
+//! surface Z = 0.
 
 use std::f64::consts::TAU;
 
@@ -24,11 +25,12 @@ const CLOSE: f64 = 1e-6;
 /// Samples of the motion of an irregular sea in the period of its shortest component.
 const SAMPLES: f64 = 16.0;
 
-/// Most components that are summed for all samples together, some seconds. A longer run has fewer samples in a period; 1000 waves
-/// of 40 components have all.
+/// Largest number of components times samples that are summed, which takes some seconds. A longer run has fewer samples in a
+/// period; a run of 1000 waves of 40 components has all samples.
 const SUMMED_MAX: f64 = 4e7;
 
-/// Factor on an opposing current: waves that this current would stop are as short as some dp, and left out of a spectrum.
+/// Factor on an opposing current. Waves that the increased current would stop are as short as some dp, and are left out of a
+/// spectrum.
 const FASTER: f64 = 1.1;
 
 /// Most of the energy of a spectrum that waves hold that are left out.
@@ -50,7 +52,7 @@ pub struct IncidentWaves {
     excursion: f64,
     /// The greatest velocity relative to the current, m/s.
     orbital_speed: f64,
-    /// Part of the energy of a spectrum in waves that the current stops; the others have it in their place.
+    /// Share of the energy of a spectrum in waves that the current stops; the other waves get this energy.
     left_out: f64,
 }
 
@@ -63,7 +65,7 @@ pub(crate) struct WaterAtFace {
     pub current: f64,
     /// Acceleration of gravity, m/s².
     pub g: f64,
-    /// Duration of the rise to the full height, s; two periods of the peak if there is none.
+    /// Duration of the rise to the full height, s. `None`: two periods of the peak.
     pub ramp: Option<f64>,
     /// End of the run, s: until then the water may not move against the current.
     pub until: f64,
@@ -88,8 +90,9 @@ pub(crate) struct Orbit {
     pub head: f64,
 }
 
-/// The components of a spectrum without the short waves that the current stops, or almost, and as high together as all were, with the
-/// part of the energy that those held; all of them if that part is not small.
+/// Returns the components of a spectrum without the short waves that the current stops or almost stops, and the share of the
+/// energy in those short waves. The other components are raised to the height of all. Returns all components if that share is not
+/// small.
 fn without_stopped(components: Vec<WaveComponent>, water: &WaterAtFace) -> (Vec<WaveComponent>, f64) {
     let WaterAtFace { depth, current, g, .. } = *water;
     if current >= 0.0 {
@@ -276,7 +279,8 @@ impl IncidentWaves {
         self.trains.len()
     }
 
-    /// Part of the energy of a spectrum in waves that the current stops, and that therefore do not enter; the others have it in their place.
+    /// Share of the energy of a spectrum in waves that the current stops and that therefore do not enter; the other waves get
+    /// this energy.
     pub(crate) fn left_out(&self) -> f64 {
         self.left_out
     }
@@ -359,8 +363,8 @@ pub(crate) fn wave_number_on_current(omega: f64, depth: f64, current: f64, g: f6
     (excess(most) >= 0.0).then(|| bisect(0.0, most, &|k| excess(k) < 0.0))
 }
 
-/// The remedy for waves of frequency `omega` (rad/s) that a current of `speed` (m/s) against them stops: the greatest current against which
-/// they move, and the shortest period that moves against this one. `depth` in m, `g` in m/s².
+/// The remedy for waves of frequency `omega` (rad/s) that an opposing current of `speed` (m/s) stops: the greatest current
+/// against which these waves move, and the shortest period that moves against the present current. `depth` in m, `g` in m/s².
 pub(crate) fn against_current(omega: f64, depth: f64, speed: f64, g: f64) -> String {
     let moves = |omega: f64, speed: f64| wave_number_on_current(omega, depth, -speed, g).is_some();
     let limit = |mut good: f64, mut bad: f64, moves: &dyn Fn(f64) -> bool| {

@@ -42,6 +42,25 @@ fn a_rank_counts_what_it_receives() {
     assert_eq!(traffic, [16; 3], "two words of four bytes from each of two others");
 }
 
+/// Each rank gets the items of the next one, of which there are none, one, and several blocks.
+#[test]
+fn items_pass_to_the_rank_before() {
+    let lengths = [0, 1, 2 * BLOCK + 5];
+    let right = on_ranks(3, |ranks| {
+        let rank = ranks.rank();
+        let mut numbers: Vec<[u32; 2]> = (0..lengths[rank] as u32).map(|i| [rank as u32, i]).collect();
+        let own = numbers.len();
+        let (before, after) = (rank.checked_sub(1), Some(rank + 1).filter(|&rank| rank < 3));
+        numbers.resize(own + after.map_or(0, |after| lengths[after]), [9; 2]);
+        let passed = ((before, 0..own), (after, own..numbers.len()));
+        let give = |numbers: &Vec<[u32; 2]>, i: usize, words: &mut Vec<u32>| words.extend(numbers[i]);
+        let take = |numbers: &mut Vec<[u32; 2]>, i: usize, words: &[u32]| numbers[i].copy_from_slice(words);
+        ranks.pass_items(&mut numbers, passed, 2, give, take);
+        (0u32..).zip(&numbers[own..]).all(|(i, got)| *got == [rank as u32 + 1, i])
+    });
+    assert_eq!(right, [true; 3]);
+}
+
 /// The parts follow one another, cover everything, and differ by less than an item from equal ones.
 #[test]
 fn parts_have_equal_weight_within_an_item() {

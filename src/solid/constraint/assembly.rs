@@ -26,7 +26,7 @@ pub struct JointReading<const D: usize> {
     pub force: Vector<D>,
     /// Their torque on it about the joint, N m (N m/m in 2-D).
     pub torque: Bivector<D>,
-    /// Its coordinate from the start, m or rad (−π to π); 0 where it has none.
+    /// Its coordinate relative to the start, m or rad (−π to π); 0 if the joint has no coordinate.
     pub position: f64,
     /// Its rate, m/s or rad/s.
     pub rate: f64,
@@ -187,8 +187,8 @@ impl<const D: usize> Assembly<D> {
             && self.holds.is_empty()
     }
 
-    /// Puts motors, springs and forces on the engine's solids for the step from `t` (s) on, `dt` (s) long, in which they start as
-    /// `solids` says, with what is `around` them.
+    /// Applies motors, springs and forces to the engine's solids in the step of length `dt` (s) from time `t` (s) on. `solids`
+    /// are their kinematics at the start of the step, and `around` describes the water.
     pub(crate) fn apply_loads(
         &mut self,
         engine: &mut dyn Engine<D>,
@@ -260,8 +260,8 @@ impl<const D: usize> Assembly<D> {
         }
     }
 
-    /// Reads what they felt in the step, `dt` (s) long, from `before` to `after`. Where the engine does not tell all of
-    /// its impulses, `told` says what changed the momentum of each solid and no other load explains (N, N m).
+    /// Updates the readings of all constraints after the step of length `dt` (s) from `before` to `after`. If the engine does not
+    /// report all of its impulses, `told` has the rate of change of momentum of each solid that no other load explains (N, N m).
     pub(crate) fn update_reactions(
         &mut self,
         engine: &dyn Engine<D>,
@@ -334,8 +334,8 @@ impl<const D: usize> Assembly<D> {
 
     /// The longest step (s) that the springs and the stiffness of the motors allow where the solids are at time `t` (s).
     ///
-    /// ω² is at most the largest, over all solids, of Σ k A (A + B) over the springs of the solid, with A² and B² the ease of its own
-    /// and of the other end (Gershgorin's bound, solid by solid).
+    /// ω² is at most the largest sum Σ k A (A + B) of any solid, over the springs of this solid (Gershgorin's bound). k is the
+    /// stiffness of a spring, A² the inverse effective mass (1/kg) of its end on the solid, and B² that of its other end.
     pub(crate) fn step_limit(&self, engine: &dyn Engine<D>, solids: &[Kinematics<D>], t: f64) -> f64 {
         let mut squares = vec![0.0; solids.len()];
         let mut stiffen =
@@ -456,7 +456,7 @@ impl<const D: usize> Assembly<D> {
             && kept.phases.matches(&self.state.phases)
     }
 
-    /// Returns to a saved state, which [`Assembly::matches`] has let pass.
+    /// Restores a saved state that [`Assembly::matches`] has accepted.
     pub(crate) fn restore(&mut self, kept: AssemblyState<D>) {
         self.state = kept;
         self.restore_frames();

@@ -41,7 +41,7 @@ impl<const D: usize> Phases<D> {
 }
 
 impl<const D: usize> Assembly<D> {
-    /// Connects and releases the constraints whose time it is in the step that begins at time `t` (s), where the solids are.
+    /// Connects and releases the constraints that begin or end in the step from time `t` (s) on, with the solids at `solids`.
     pub(super) fn update_phases(&mut self, engine: &mut dyn Engine<D>, solids: &[Kinematics<D>], t: f64) {
         let phases = &mut self.state.phases;
         for (i, joint) in self.joints.iter_mut().enumerate() {
@@ -157,7 +157,7 @@ impl<const D: usize> Assembly<D> {
     }
 }
 
-/// Sets the phase of the step that begins at time `t` (s). Returns it if it is another one.
+/// Sets the phase in the step from time `t` (s) on. Returns the new phase if it differs from the old one.
 fn changed(phase: &mut Phase, lifetime: &Lifetime, t: f64) -> Option<Phase> {
     let next = phase.at(lifetime, t);
     (std::mem::replace(phase, next) != next).then_some(next)

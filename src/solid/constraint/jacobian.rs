@@ -1,7 +1,7 @@
 //! Constraint rows between two solids: directions of relative motion, and the loads along them.
 //!
-//! A row J maps the velocities of two solids to a rate, ẋ = J v, and an impulse λ along it to a load on each, λ Jᵀ on the second
-//! and its opposite on the first. With M⁻¹ of both solids, J M⁻¹ Jᵀ is the inverse effective mass, 1/kg or 1/(kg m²).
+//! A row J maps the velocities of two solids to a rate, ẋ = J v. An impulse λ along the row acts on the second solid with λ Jᵀ,
+//! and on the first with the opposite. With M⁻¹ of both solids, J M⁻¹ Jᵀ is the inverse effective mass, 1/kg or 1/(kg m²).
 
 use nalgebra::SMatrix;
 
@@ -75,7 +75,7 @@ impl<const D: usize> ConstraintJacobian<D> {
         second - first
     }
 
-    /// The load of `force` (N or N m) along it on the first and the second, about their centres.
+    /// The loads of a `force` (N or N m) along the row on the first and on the second solid, about their centres.
     pub(in crate::solid) fn loads(&self, force: f64) -> [Load<D>; 2] {
         let load = |k: usize, f: f64| Load { force: self.along * f, torque: self.about[k] * f };
         [load(0, -force), load(1, force)]

@@ -34,7 +34,8 @@ pub enum JointKind {
 /// A mode of motion that a generic joint leaves free.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FreeMode {
-    /// Its number: 0 to D − 1 along the axes of the joint's frame, from D on about them; in 2-D the rotation is 2.
+    /// Its number: 0 to D − 1 for translations along the axes of the joint's frame, from D on for rotations about them; in 2-D
+    /// the rotation is 2.
     pub mode: usize,
     /// Least and greatest value of its coordinate, m or rad; 0 is where it starts.
     pub limits: Option<[f64; 2]>,
@@ -73,8 +74,8 @@ pub struct JointSpec<const D: usize> {
     pub between: [Option<usize>; 2],
     /// The world point at which it sits at the start, m.
     pub at: Vector<D>,
-    /// Direction of a slider or a tow, or of the axis of a hinge in 3-D (a hinge in 2-D has none); any length but zero. Of a generic
-    /// joint the first axis of its frame; zero for the world's axes.
+    /// Direction of a slider or a tow, or axis of a hinge in 3-D (a hinge in 2-D has none); any length but zero. For a generic
+    /// joint: first axis of its frame, or zero for the axes of the world.
     pub axis: Vector<D>,
     /// The free modes of a generic joint; empty for any other kind.
     pub free_modes: Vec<FreeMode>,
@@ -89,8 +90,8 @@ pub struct JointSpec<const D: usize> {
 }
 
 impl<const D: usize> JointSpec<D> {
-    /// A joint of this kind at the world point `at` (m), along or about `axis`, without limits or motor. The second of `between`
-    /// moves against the first.
+    /// A joint of this kind at the world point `at` (m), along or about `axis`, without limits or motor. Its coordinate is the
+    /// motion of the second solid of `between` relative to the first.
     pub fn new(
         name: impl Into<String>,
         kind: JointKind,
@@ -112,7 +113,8 @@ impl<const D: usize> JointSpec<D> {
         }
     }
 
-    /// The same joint, generic, with one more mode left free: 0 to D − 1 along the axes of its frame, from D on about them.
+    /// The same joint as a generic joint with one more free mode: 0 to D − 1 for translations along the axes of its frame, from D
+    /// on for rotations about them.
     pub fn free_mode(mut self, mode: usize, limits: Option<[f64; 2]>) -> Self {
         self.kind = JointKind::Generic;
         self.free_modes.push(FreeMode { mode, limits });
@@ -137,8 +139,8 @@ impl<const D: usize> JointSpec<D> {
         self
     }
 
-    /// The same joint with this lifetime. One that begins later locks its solids as they stand then, with `at` and `axis` in the
-    /// second solid from the start on.
+    /// The same joint with this lifetime. A joint that begins later locks its solids in their poses at that time; until then `at`
+    /// and `axis` move with the second solid.
     pub fn lifetime(mut self, lifetime: Lifetime) -> Self {
         self.lifetime = lifetime;
         self
@@ -190,8 +192,8 @@ impl<const D: usize> Joint<D> {
         self.spec.coordinate_mode().map_or(0.0, |mode| self.coordinate(mode, ends))
     }
 
-    /// The coordinate of a mode, m or rad (−π to π): how far the second solid has gone along that axis of the frame in the first, or
-    /// turned about it, twice the angle of the quaternion's part.
+    /// The coordinate of a mode, m or rad (−π to π): displacement of the second solid along that axis of the frame in the first,
+    /// or rotation about it, which is twice the angle of that part of the quaternion.
     pub(in crate::solid) fn coordinate(&self, mode: usize, ends: &[Kinematics<D>; 2]) -> f64 {
         let [first, second] = self.sits(ends);
         if mode < D {
@@ -220,7 +222,8 @@ impl<const D: usize> Joint<D> {
         let [first, second] = self.sits(ends);
         match mode.checked_sub(D) {
             None => {
-                // The engine takes the first one, too, where the second is, but for what it holds of the way between them.
+                // The engine applies the load on the first solid at the second's point as well, except for the displacement along
+                // locked axes.
                 let off = first.local(&second.position);
                 let held = Vector::from_fn(|axis, _| if self.spec.is_locked(axis) { off[axis] } else { 0.0 });
                 let places = [second.position - first.rotation * held, second.position];
@@ -252,8 +255,8 @@ impl<const D: usize> Joint<D> {
         locked.map(row).collect()
     }
 
-    /// The rows of its locks, and after them that of its coordinate (of a generic joint those of its end stops) less what the locks do
-    /// of it; and how many locks there are.
+    /// Returns the rows of the locks, then the row of the coordinate (for a generic joint the rows of the end stops), made
+    /// independent of the locks; and the number of locks.
     pub(in crate::solid) fn jacobians(
         &self,
         ends: &[Kinematics<D>; 2],
@@ -274,7 +277,8 @@ impl<const D: usize> Joint<D> {
         set.or_else(|| self.spec.motor.as_ref().map(|motor| motor.command_at(t)))
     }
 
-    /// The force of its motor, N or N m, over a step of `dt` (s) in which what is known to act lets its rate gain `gain` (m/s², rad/s²).
+    /// The force (N or N m) of the motor over a step of `dt` (s). `gain` (m/s² or rad/s²) is the acceleration of the coordinate
+    /// by the known loads.
     pub(in crate::solid) fn motor_force(
         &self,
         drive: &MotorCommand,
@@ -324,12 +328,12 @@ impl<const D: usize> JointSpec<D> {
         }
     }
 
-    /// Whether its two solids can move against one another along the unit vector `along`, or mostly so.
+    /// Whether the two solids can move relative to each other along the unit vector `along`, or mostly so.
     pub(in crate::solid) fn frees_translation(&self, along: &Vector<D>) -> bool {
         self.freedom(0..D, along) > 0.5
     }
 
-    /// Whether its two solids can turn against one another about this axis (axial components, of length 1), or mostly so.
+    /// Whether the two solids can turn relative to each other about this axis (axial components, of length 1), or mostly so.
     pub(in crate::solid) fn frees_rotation(&self, axis: &[f64]) -> bool {
         if D == 2 { !self.is_locked(D) } else { self.freedom(D..2 * D, &Vector::from_fn(|i, _| axis[i])) > 0.5 }
     }

@@ -12,7 +12,7 @@ use crate::{
 /// Round-off of a time of the run, relative.
 const TIME_SLACK: f64 = 1e-12;
 
-/// When a constraint acts, and what it bears.
+/// The time in which a constraint acts, and the loads at which it breaks.
 ///
 /// ```
 /// use pontoon::solid::Lifetime;
@@ -109,7 +109,7 @@ impl Lifetime {
     }
 }
 
-/// Where a constraint stands in its lifetime.
+/// The phase of a constraint in its lifetime.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(in crate::solid) enum Phase {
     /// It does not act yet.
@@ -137,7 +137,7 @@ impl Phase {
     }
 }
 
-/// The phases of all constraints, and what changed in them: part of a checkpoint.
+/// The phases of all constraints, and their changes: part of a checkpoint.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(in crate::solid) struct Phases<const D: usize> {
     pub(in crate::solid) joints: Vec<Phase>,

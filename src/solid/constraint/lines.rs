@@ -1,11 +1,12 @@
 //! Lines between two points of solids or of the ground: springs, computed here, and ropes, solved by the engine.
 //!
-//! A spring of length l pulls with  T = k (l − l₀) + c l̇,  a mooring line (`tension_only`) never pushes. As an explicit force it
-//! bounds the step: a mode of frequency ω is stable while Δt ω < 2 and runs (Δt ω)²/24 too fast. The damping is taken at the rate at
-//! the step's end under itself alone, so that it bounds nothing.
+//! A spring of length l pulls with  T = k (l − l₀) + c l̇;  a mooring line (`tension_only`) never pushes. The elastic force is
+//! explicit and limits the time step: a mode of frequency ω is stable while Δt ω < 2, and its frequency is too high by the share
+//! (Δt ω)²/24. The damping acts at the rate that it alone would give at the end of the step, and limits nothing.
 //!
-//! Real water takes what swings in it as sound, of the critical damping ρ₀ c₀ A/(2 m ω). Particles carry none of ω h/c₀ > 2, and what
-//! they take from a body later than it goes would feed such a swing: while an end is wet it has 3 % of the critical damping.
+//! In real water a body that oscillates on a spring radiates sound, which damps it with ρ₀ c₀ A/(2 m ω) of the critical damping.
+//! Particles carry no sound with ω h/c₀ > 2, and their delayed load would increase such an oscillation. The spring therefore has
+//! at least 3 % of the critical damping while an end is wet.
 
 use serde::{Deserialize, Serialize};
 
@@ -210,14 +211,16 @@ impl<const D: usize> AttachedLine<D> {
 }
 
 impl SpringParameters {
-    /// The same with ends in water that sound takes `crossing` (s) to cross by a smoothing length; they give way by `g` (1/kg).
+    /// The same parameters with ends in water. `crossing` (s) is the time in which sound crosses a smoothing length, and `g`
+    /// (1/kg) is the inverse effective mass of the ends.
     pub(in crate::solid) fn damped_in_water(&self, crossing: f64, g: f64) -> Self {
         let swings = (self.stiffness * g).sqrt() * crossing > SOUNDLESS;
         let calmed = if swings { CALMED * 2.0 * (self.stiffness / g).sqrt() } else { 0.0 };
         Self { damping: self.damping.max(calmed), ..*self }
     }
 
-    /// The tension (N) at this length (m), which grows at `rate` (m/s), over a step `dt` (s) of ends that give way by `g` (1/kg).
+    /// The tension (N) at this `length` (m), which grows at `rate` (m/s), over a step `dt` (s). `g` (1/kg) is the inverse
+    /// effective mass of the ends.
     pub(in crate::solid) fn tension(&self, length: f64, rate: f64, g: f64, dt: f64, tension_only: bool) -> f64 {
         let stretch = length - self.rest_length;
         if tension_only && stretch <= 0.0 {

@@ -122,7 +122,8 @@ impl ContactSpec {
     }
 }
 
-/// Contacts of pairs, found by the numbers of both in either order; of several of the same pair the last counts.
+/// Contact properties of pairs, found by the numbers of both solids in either order. If a pair has several entries, the last one
+/// counts.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ContactPairs(BTreeMap<[usize; 2], ContactSpec>);
 
@@ -175,13 +176,13 @@ impl<const D: usize> Constraints<D> {
             && self.contacts.is_empty()
     }
 
-    /// Whether solids `a` and `b` may have contact: not if a joint between them or a pair excludes it.
+    /// Whether solids `a` and `b` may have contact: false if a joint between them or a [`ContactSpec`] excludes it.
     pub fn can_touch(&self, a: usize, b: usize) -> bool {
         let jointed = |joint: &JointSpec<D>| same(joint.between, [Some(a), Some(b)]) && !joint.contacts_enabled;
         self.contacts.find(a, b).is_none_or(|pair| pair.can_touch) && !self.joints.iter().any(jointed)
     }
 
-    /// The name of a constraint of solid number `solid` that is not over at time `t` (s), if it has one.
+    /// The name of a constraint of solid number `solid` that has not ended at time `t` (s), if there is one.
     pub(crate) fn constraint_on(&self, solid: usize, t: f64) -> Option<String> {
         let joints = self.joints.iter().map(|joint| (&joint.name, joint.between, &joint.lifetime));
         let ends = |ends: &[LineEnd<D>; 2]| ends.map(|end| end.solid);
@@ -202,7 +203,7 @@ impl<const D: usize> Constraints<D> {
     /// Checks all constraints between these solids.
     ///
     /// # Errors
-    /// `Scene`: names the tie, what is wrong with it, and what would be right.
+    /// `Scene`: names the constraint, what is wrong with it, and what would be right.
     pub(crate) fn check(&self, solids: &[SolidSpec<D>]) -> Result<()> {
         (0..self.joints.len()).try_for_each(|i| self.check_joint(i, solids))?;
         self.springs.iter().try_for_each(|spring| check_spring(spring, solids))?;
@@ -395,7 +396,7 @@ fn check_line<const D: usize>(who: &str, ends: &[LineEnd<D>; 2], solids: &[Solid
     }
 }
 
-/// Refuses ends that are not solids, that are the same, or of which none is free.
+/// Refuses ends that are not solids or are the same solid, and ends of which none is on a free solid.
 fn check_ends<const D: usize>(who: &str, ends: [Option<usize>; 2], solids: &[SolidSpec<D>]) -> Result<()> {
     if ends.iter().flatten().any(|&i| i >= solids.len()) {
         return Err(Error::scene(format!("{who} names a solid that is not there")));

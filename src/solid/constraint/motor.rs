@@ -2,15 +2,16 @@
 //!
 //!   F = F₀ + k (x* − x) + c (v* − ẋ)
 //!
-//! The stiffness bounds the step as a spring's does. The damping bounds none: it is taken at the rate at the step's end, on a pair as
-//! easy to move as its locks leave it, g = J M⁻¹ Jᵀ, with s = Δt c g,
+//! The stiffness limits the time step, as that of a spring does. The damping does not, because it acts at the rate at the end of
+//! the step. With g = J M⁻¹ Jᵀ, the inverse effective mass of the pair along the coordinate with the joint's locks, and s = Δt c
+//! g, the damping force is
 //!
 //!   c (v* − ẋ − w Δt ẍ)/(1 + s),   w = 1/(1 + (0.1/s)²),
 //!
-//! ẍ what water, weight, pushes and F₀ let the rate gain. Without that term the pair would give way by Δt ẍ beside v* however strong
-//! the brake is: what is light, by 0.2 m/s. With it the speed at which a brake yields to a load is right within a twentieth. What the
-//! locks of other joints, end stops and contacts do is not in ẍ, so w is small where the step resolves the damping anyway; and it is
-//! left out where there is a stiffness, which finds its place at rest under whatever acts.
+//! where ẍ is the acceleration of the coordinate by water, weight, pushes and F₀. Without the term w Δt ẍ the rate would miss v*
+//! by Δt ẍ, however strong the brake is: by 0.2 m/s for a light body. With it the speed at which a brake yields to a load is
+//! correct within 5 %. ẍ does not include the locks of other joints, end stops and contacts. Therefore w is small where the step
+//! resolves the damping. The term is omitted if there is a stiffness, which finds its equilibrium under any load.
 
 use std::f64::consts::TAU;
 
@@ -18,11 +19,11 @@ use serde::{Deserialize, Serialize};
 
 use crate::solid::TimeFunction;
 
-/// s = Δt c g at which half of what the rate gains in a step is foreseen, –.
+/// Value of s = Δt c g at which w is ½, –.
 const RESOLVED: f64 = 0.1;
 
-/// A motor, brake or power take-off. Forces are N (N m of a hinge; in 2-D per metre of width), positive if they drive the second
-/// solid the way in which the coordinate grows.
+/// A motor, brake or power take-off. Forces are in N (N m for a hinge; per metre of width in 2-D). A positive force drives the
+/// second solid in the direction in which the coordinate grows.
 ///
 /// ```
 /// use pontoon::solid::Motor;
@@ -137,7 +138,7 @@ pub struct MotorCommand {
 
 /// State of a joint's coordinate for which a motor computes its force.
 pub(in crate::solid) struct MotorInput {
-    /// Whether it is an angle: a difference is counted the short way round then.
+    /// Whether it is an angle: a difference is then taken along the shorter way round.
     pub(in crate::solid) angle: bool,
     /// Its value, m or rad.
     pub(in crate::solid) position: f64,

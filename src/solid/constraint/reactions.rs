@@ -1,8 +1,9 @@
 //! Reactions of locks, end stops and ropes along their rows, where the engine reports only part of them.
 //!
-//! With several solver iterations rapier reports only the last impulse; with one, position correction leaves 1e-6 unreported.
-//! The momentum of the solids gives the rest: with R its unexplained change, the reactions f satisfy Σ f Jᵀ = R. Starting from
-//! the last impulse times the number of iterations they are corrected row by row, f ← f + J M⁻¹ R/(J M⁻¹ Jᵀ), until R vanishes (Kaczmarz 1937).
+//! With several solver iterations rapier reports only the impulse of the last; with one, 1e-6 of the impulse, from position
+//! correction, is unreported. The momentum of the solids gives the rest: with R its unexplained change, the reactions f satisfy Σ
+//! f Jᵀ = R. The iteration starts from the last impulse times the number of iterations. It corrects row by row, f ← f + J M⁻¹
+//! R/(J M⁻¹ Jᵀ), until R vanishes (Kaczmarz 1937).
 
 use super::jacobian::{ConstraintJacobian, Mobility};
 use crate::{
@@ -29,7 +30,7 @@ impl<const D: usize> Reaction<D> {
         self.jacobian.loads(self.force)
     }
 
-    /// Takes `loads` from what is `left` of both.
+    /// Subtracts `loads` from the unexplained loads `left` on both solids.
     fn take(&self, loads: [Load<D>; 2], left: &mut [Load<D>]) {
         for (end, load) in self.between.iter().zip(loads) {
             if let Some(solid) = end {
@@ -38,7 +39,7 @@ impl<const D: usize> Reaction<D> {
         }
     }
 
-    /// The force along the row that what is `left` of both asks for.
+    /// The force along the row that the unexplained loads `left` on both solids require.
     fn lacks(&self, left: &[Load<D>]) -> f64 {
         let ends = [0, 1].map(|k| {
             let load = self.between[k].map_or_else(Load::zero, |solid| left[solid]);
@@ -56,7 +57,7 @@ impl<const D: usize> Reaction<D> {
     }
 }
 
-/// Mends the `pulls` so that they come to `told` of each solid.
+/// Corrects the `pulls` so that they add up to the load `told` on each solid.
 pub(in crate::solid) fn project<const D: usize>(pulls: &mut [Reaction<D>], told: &[Load<D>]) {
     let mut left = told.to_vec();
     pulls.iter().for_each(|pull| pull.take(pull.loads(), &mut left));

@@ -1,8 +1,9 @@
 //! A mooring line on the solids of a running system.
 //!
-//! During a step the ends on driven solids move to where the solids will be, those on free solids on at the velocity that they
-//! have. The mean force of the step acts on the free solid in that step, so that the impulses are exact. The two sides differ by
-//! the acceleration of the solid over one step, which the next step makes up for.
+//! During a step an end on a driven solid moves to its position at the end of the step; an end on a free solid moves at the
+//! velocity of its point at the start. The mean force of the step acts on the free solid in the same step, so that the impulses
+//! are exact. The end of the line and its point on the solid then differ by the acceleration of the solid over one step, which
+//! the next step corrects.
 
 use super::{
     forces::NodeSurroundings,
@@ -28,7 +29,7 @@ pub struct MooringReading<const D: usize> {
     pub nodes: Vec<Vector<D>>,
     /// Tension of each segment, N (N/m in 2-D).
     pub tensions: Vec<f64>,
-    /// Force on what holds each end, the mean over the last step, N (N/m in 2-D).
+    /// Force on the support of each end, as a mean over the last step, N (N/m in 2-D).
     pub end_forces: [Vector<D>; 2],
     /// Length of line that lies on fixed solids, m.
     pub on_bed: f64,
@@ -90,7 +91,8 @@ impl<const D: usize> Mooring<D> {
         }
     }
 
-    /// Lets the line act from now on, with its ends where the solids `now` are, and with their velocities along it.
+    /// Lets the line act from now on, straight between its ends on the solids `now`, with velocities interpolated between those
+    /// of the ends.
     pub(crate) fn begin(&mut self, now: &[Kinematics<D>]) {
         let ends = [0, 1].map(|k| self.end(k, now));
         let velocity = |k: usize| {
@@ -123,7 +125,8 @@ impl<const D: usize> Mooring<D> {
         self.solids[k].map_or(self.local_ends[k], |solid| solids[solid].pose.point(&self.local_ends[k]))
     }
 
-    /// World position (m) to which end `k` goes in a step `dt` (s) long from `now` on; `next` is the end of the step of driven solids.
+    /// World position (m) of end `k` after a step of length `dt` (s) from the solids `now`; `next` has the driven solids at its
+    /// end.
     fn end_after(&self, k: usize, now: &[Kinematics<D>], next: &[Option<Kinematics<D>>], dt: f64) -> Vector<D> {
         let at = self.end(k, now);
         let Some(solid) = self.solids[k] else { return at };
@@ -133,12 +136,13 @@ impl<const D: usize> Mooring<D> {
         }
     }
 
-    /// The places (m) of both ends after a step `dt` (s) long from the solids `now` on; `next` is where driven solids go.
+    /// World positions (m) of both ends after a step of length `dt` (s) from the solids `now`; `next` has the driven solids at
+    /// its end.
     pub(crate) fn ends_after(&self, now: &[Kinematics<D>], next: &[Option<Kinematics<D>>], dt: f64) -> [Vector<D>; 2] {
         [0, 1].map(|k| self.end_after(k, now, next, dt))
     }
 
-    /// The mean load of the last step on the solid at each end, about the centres of the solids `now` at its begin.
+    /// The mean load of the last step on the solid at each end, about the centres of the solids `now` at the start of the step.
     pub(crate) fn loads(&self, now: &[Kinematics<D>]) -> [(Option<usize>, Load<D>); 2] {
         [0, 1].map(|k| match self.solids[k] {
             Some(solid) => {
@@ -149,7 +153,8 @@ impl<const D: usize> Mooring<D> {
         })
     }
 
-    /// The impulse (N s) of drag and added mass on each node in the last step, of a line that acts and acts on the water.
+    /// The impulse (N s) of drag and added mass on each node in the last step; `None` unless the line is active and acts on the
+    /// water.
     pub(crate) fn water_impulses(&self) -> Option<&[Vector<D>]> {
         self.line.water_impulses.as_deref().filter(|_| self.line.state.acts)
     }
@@ -182,7 +187,7 @@ impl<const D: usize> Mooring<D> {
         swing(length).max(radiation.min(swing(length * self.line.segments() as f64)))
     }
 
-    /// Shape and tension, where `around` is what is around each node.
+    /// Shape and tension; `around` are the surroundings of each node.
     pub(crate) fn reading(&self, around: &[NodeSurroundings<D>]) -> MooringReading<D> {
         let (line, state) = (&self.line, &self.line.state);
         if !state.acts {
@@ -201,7 +206,7 @@ impl<const D: usize> Mooring<D> {
         }
     }
 
-    /// The force (N) on what holds end `k`; in a mooring point the pull of the last segment.
+    /// The force (N) of the line on the solid or the ground at end `k`; at a mooring point, the pull of the last segment.
     fn end_force(&self, k: usize) -> Vector<D> {
         if self.spec.points[k].is_none() {
             return self.line.state.end_forces[k];

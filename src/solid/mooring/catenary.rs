@@ -1,7 +1,7 @@
 //! The elastic catenary: the shape and the tension of a line at rest between two points, hanging or partly on a flat bed.
 //!
-//! With the horizontal tension H, the vertical tension V at the upper end, the weight w less buoyancy of a metre and the
-//! axial stiffness EA, a hanging line of length L spans (Irvine 1981)
+//! H is the horizontal tension, V the vertical tension at the upper end, w the weight less buoyancy per metre, and EA the axial
+//! stiffness. A hanging line of length L spans (Irvine 1981)
 //!
 //!   x = H/w (asinh(V/H) − asinh((V − w L)/H)) + H L/EA
 //!   z = H/w (√(1 + (V/H)²) − √(1 + ((V − w L)/H)²)) + (V L − ½ w L²)/EA

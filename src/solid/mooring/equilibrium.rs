@@ -1,12 +1,12 @@
 //! The equilibrium of a lumped-mass line between held ends.
 //!
 //! The potential energy of tension, weight and bed is convex in the places of the nodes, because no segment pushes.
-//! Newton's method with a search along each step finds its minimum from the elastic catenary. What the bed bears where the line
-//! leaves it depends on the tension too, which changes little in a step. Friction of the bed is not counted: the line lies as it
-//! was laid, without tension across it.
+//! Newton's method with a search along each step finds its minimum from the elastic catenary. The reaction of the bed where the
+//! line leaves it also depends on the tension, which changes little in a step. Friction of the bed is neglected: the line lies as
+//! it was laid, without tension across it.
 //!
-//! What is around the nodes of a line that sinks is read in a few rounds. A line that floats, or has floats, comes to lie at the
-//! surface: there the buoyancy of a node falls as it rises, and what is around the nodes is read in each iteration.
+//! For a line that sinks, the surroundings of the nodes are read in a few rounds. A line that floats, or has floats, comes to
+//! rest at the surface, where the buoyancy of a node falls as the node rises. Its surroundings are read in each iteration.
 
 use nalgebra::DVector;
 
@@ -27,16 +27,17 @@ const LIVE_ITERATIONS: usize = 500;
 /// Rounds in which the surroundings are read anew where the nodes have come to lie.
 const ROUNDS: usize = 4;
 
-/// Largest force on a node over its weight with which a line that may float has found its rest, –.
+/// Largest force on a node over its weight at which a line that may float counts as in equilibrium, –.
 const SETTLED: f64 = 1e-4;
 
-/// Factors on the damping of an iteration after one whose step was cut to less than [`CUT`] of it, and after another.
+/// Factors on the damping for the next iteration: after a step that was cut to less than the share [`CUT`], and after any other
+/// step.
 const DAMPING: [f64; 2] = [10.0, 0.3];
 
 /// Share of a step below which the next iteration is damped more.
 const CUT: f64 = 0.2;
 
-/// Depth to which a node may come below the bed that it had, in an iteration, over the length of a segment.
+/// Largest depth of a node below its previous bed after an iteration, over the length of a segment.
 const SINKING: f64 = 0.02;
 
 /// Half of the height over which the change of the wet share is measured, over the length of a segment.
@@ -46,8 +47,8 @@ const DIFFERENCE: f64 = 0.01;
 const TOLERANCE: f64 = 1e-9;
 
 impl<const D: usize> MooringLine<D> {
-    /// Brings the line to rest between its held ends. `around` says what is around a place (m), and `gravity` is in m/s². Returns
-    /// the largest force (N) that remains on a node over the weight of a node.
+    /// Finds the equilibrium of the line between its held ends. `around` returns the surroundings of a position (m), and
+    /// `gravity` is in m/s². Returns the largest residual force on a node over the weight of a node.
     pub(crate) fn find_rest(&mut self, around: &dyn Fn(&Vector<D>) -> NodeSurroundings<D>, gravity: &Vector<D>) -> f64 {
         let mut left = if self.may_float() {
             self.hang(around, gravity);
@@ -71,8 +72,8 @@ impl<const D: usize> MooringLine<D> {
         left
     }
 
-    /// Brings the line to rest from the elastic catenary, with what is around the nodes read anew in a few rounds. Returns the largest
-    /// force (N) that remains on a node, with what was around it in the last round, over the weight of a node.
+    /// Finds the equilibrium from the elastic catenary; the surroundings of the nodes are read anew in a few rounds. Returns the
+    /// largest residual force on a node, in the surroundings of the last round, over the weight of a node.
     fn find_rest_in_rounds(&mut self, around: &dyn Fn(&Vector<D>) -> NodeSurroundings<D>, gravity: &Vector<D>) -> f64 {
         if let Some(shape) = self.catenary(around, gravity) {
             self.place_on(shape);
@@ -85,7 +86,8 @@ impl<const D: usize> MooringLine<D> {
         left
     }
 
-    /// Brings the line to rest between its held ends, as [`MooringLine::find_rest`] does, and keeps the velocities of its nodes.
+    /// Places the line in equilibrium between its held ends, as [`MooringLine::find_rest`] does, but keeps the velocities of its
+    /// nodes.
     pub(crate) fn place_at_rest(&mut self, around: &dyn Fn(&Vector<D>) -> NodeSurroundings<D>, gravity: &Vector<D>) {
         let velocities = self.state.v.clone();
         self.find_rest(around, gravity);
@@ -103,7 +105,8 @@ impl<const D: usize> MooringLine<D> {
         self.material.mass * self.state.segment * gravity.norm().max(f64::MIN_POSITIVE)
     }
 
-    /// The elastic catenary between the ends, for the plane of both ends and of gravity, with the wet share and the bed of the lower.
+    /// The elastic catenary between the ends, in the plane of both ends and of gravity, with the wet share and the bed at the
+    /// lower end.
     pub(crate) fn catenary(
         &self,
         around: &dyn Fn(&Vector<D>) -> NodeSurroundings<D>,
@@ -119,7 +122,8 @@ impl<const D: usize> MooringLine<D> {
         self.catenary_of(net, &below, gravity)
     }
 
-    /// The elastic catenary between the ends with the mass less displaced water `net` (kg/m); `below` is what is around the lower end.
+    /// The elastic catenary between the ends with the mass less displaced water `net` (kg/m); `below` are the surroundings of the
+    /// lower end.
     fn catenary_of(
         &self,
         net: f64,
@@ -144,8 +148,8 @@ impl<const D: usize> MooringLine<D> {
         Some((span.solve(), [ahead, up], rises))
     }
 
-    /// Puts the nodes on the elastic catenary. A line that would rise above the water by it, or that has floats and sinks, hangs as if
-    /// it sank by itself: it rises from there.
+    /// Puts the nodes on the elastic catenary. If a line that may float would not be wet everywhere there, its nodes are put on
+    /// the catenary of a sinking line without floats instead, from which they rise.
     fn hang(&mut self, around: &dyn Fn(&Vector<D>) -> NodeSurroundings<D>, gravity: &Vector<D>) {
         let Some(shape) = self.catenary(around, gravity) else { return };
         self.place_on(shape);
@@ -199,8 +203,8 @@ impl<const D: usize> MooringLine<D> {
         forces
     }
 
-    /// The stiffness (N/m) of the nodes between the ends, plus `least` on its diagonal; `float` is what their buoyancy adds along
-    /// gravity.
+    /// The stiffness (N/m) of the nodes between the ends, plus `least` on its diagonal. `float` is the stiffness of their
+    /// buoyancy along gravity.
     fn stiffness(
         &self,
         around: &[NodeSurroundings<D>],
@@ -251,7 +255,7 @@ impl<const D: usize> MooringLine<D> {
         made
     }
 
-    /// What the buoyancy of each node loses as it rises, N/m, where it is partly wet.
+    /// Decrease of the buoyancy of each node as it rises, N/m, if the node is partly wet.
     fn float_stiffness(&self, around: &Around<'_, D>, near: &[NodeSurroundings<D>], gravity: &Vector<D>) -> Vec<f64> {
         let (Around::Live(around), Some(down)) = (around, gravity.try_normalize(f64::MIN_POSITIVE)) else {
             return Vec::new();
@@ -269,7 +273,7 @@ impl<const D: usize> MooringLine<D> {
         near.iter().enumerate().map(stiffness).collect()
     }
 
-    /// Finds the least potential energy. Returns the largest force that remains on a node over the weight of a node.
+    /// Minimises the potential energy. Returns the largest residual force on a node over the weight of a node.
     fn minimize(&mut self, around: &Around<'_, D>, gravity: &Vector<D>) -> f64 {
         let n = self.segments();
         if n < 2 {
@@ -318,7 +322,7 @@ impl<const D: usize> MooringLine<D> {
         largest(&forces)
     }
 
-    /// Whether a node has gone from `start` (m) through the bed that it had `before`: behind a thin wall there is none.
+    /// Whether a node has moved from `start` (m) through its bed `before` the step: behind a thin wall no bed would be found.
     fn sinks(&self, before: &[NodeSurroundings<D>], start: &[Vector<D>]) -> bool {
         let sinks = |((here, from), to): ((&NodeSurroundings<D>, &Vector<D>), &Vector<D>)| {
             let allowed = |bed: &BedPlane<D>| self.material.depth(bed, from).max(0.0) + SINKING * self.state.segment;

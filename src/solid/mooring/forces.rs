@@ -8,11 +8,12 @@
 //! - weight less buoyancy of the wet share φ: (m − φ ρ A) l₀ g
 //! - drag ½ ρ d l₀ φ (C_d |u_n| u_n + π C_dAx |u_t| u_t) of the velocity u of the water relative to the node
 //! - added mass φ ρ A l₀ (C_a (1 − t tᵀ) + C_aAx t tᵀ)
-//! - a bed: stiffness k c l₀ times the depth of the node in it, and damping b c l₀, with the contact width c; along it the same
-//!   stiffness from where the node came to lie, up to the Coulomb friction, beyond which the node slides
+//! - a bed with the contact width c: stiffness k c l₀ times the depth of the node in it, and damping b c l₀; along the bed
+//!   the same stiffness against displacement from the point of first contact, up to the Coulomb friction, at which it slides
 //! - where the line leaves the bed, [`touchdown`]
 //!
-//! The acceleration of the water is not in these forces: it is small beside the drag of a line much thinner than the waves are high.
+//! These forces neglect the acceleration of the water: its load is small beside the drag of a line much thinner than the waves
+//! are high.
 
 use std::{f64::consts::PI, sync::Arc};
 
@@ -106,7 +107,7 @@ impl LineMaterial {
     }
 }
 
-/// The force on a node and what resists its motion.
+/// The force on a node, and the resistance to its motion.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct NodeLoad<const D: usize> {
     /// Force at zero velocity of the node, N.
@@ -135,7 +136,7 @@ fn along<const D: usize>(t: &Vector<D>) -> Matrix<D> {
     t * t.transpose()
 }
 
-/// Height over which a held end comes to lie on a bed, of its half of a segment, –.
+/// Height above a bed over which the bed takes up the load of a held end, over the half segment of this end, –.
 const TOUCH: f64 = 0.02;
 
 /// A point mass on a node.
@@ -190,8 +191,8 @@ pub(super) fn touchdown(material: &LineMaterial, segment: f64, weight: f64, pull
     [0.5 * share * weight * segment * left * left, share * left * slope]
 }
 
-/// The load of weight, water and bed on a node at `x` (m) that moves at `v` (m/s), with the line's length `share` (m) and a point
-/// mass `body`; `t` is the tangent there and `gravity` in m/s². `hold` says how it is held.
+/// The load of weight, water and bed on a node at `x` (m) with the velocity `v` (m/s), the length `share` (m) of line and a point
+/// mass `body`. `t` is the tangent there, and `gravity` is in m/s². `hold` says what holds the node.
 pub(super) fn node_load<const D: usize>(
     material: &LineMaterial,
     (share, body): (f64, &NodeBody),
@@ -237,9 +238,9 @@ pub(super) fn node_load<const D: usize>(
     load
 }
 
-/// The force (N) with which `bed` bears a node with the line's length `share` (m), `depth` (m) in it, of which the share `wet` is in
-/// the water, and its stiffness, N/m. Its stiffness does not act on an end that something holds: there it bears the lying half of
-/// the segment.
+/// The force (N) with which `bed` supports a node with the length `share` (m) of line, `depth` (m) inside the bed, and the
+/// stiffness (N/m) of this support. `wet` is the share of the node in the water. A held end has no such stiffness: the bed bears
+/// the weight of the half segment that the pull does not lift.
 pub(super) fn bed_reaction<const D: usize>(
     material: &LineMaterial,
     share: f64,
@@ -264,8 +265,8 @@ pub(super) fn bed_reaction<const D: usize>(
     }
 }
 
-/// The force (N) along a bed on a node at `x` (m) with the line's length `share` (m). `grip` is the point (m) from which the bed holds
-/// it: where it came to lie, and what it drags along as it slides; `None` off the bed.
+/// The force (N) along a bed on a node at `x` (m) with the length `share` (m) of line. `grip` is the point (m) from which
+/// friction acts: the point of first contact, which a sliding node drags along; `None` off the bed.
 pub(super) fn friction<const D: usize>(
     material: &LineMaterial,
     share: f64,
@@ -280,7 +281,8 @@ pub(super) fn friction<const D: usize>(
     let held = grip.get_or_insert(*x);
     let mut way = x - *held;
     way -= bed.normal * bed.normal.dot(&way);
-    // Both stiffnesses are the same, so that the way at which a node begins to slide is a share of its depth.
+    // The stiffness is the same along and across the bed. A node therefore slides from a displacement on that is its depth times
+    // the friction coefficient.
     let longest = material.bed_friction * depth;
     let length = way.norm();
     if length > longest {

@@ -6,9 +6,9 @@
 //!
 //!   (M + h/2 C + h C_bed) Δv = h (f − (C + C_bed) v)
 //!
-//! So damping of any strength is stable, and elasticity needs h ω < 2 alone; h is 0.7/ω, with which a line without losses keeps its
-//! energy within 1 %. Axial damping couples neighbouring nodes
-//! along their segment, so that the block-tridiagonal matrix has couplings of rank one.
+//! Damping of any strength is therefore stable, and elasticity only requires h ω < 2. The step is h = 0.7/ω, with which a line
+//! without losses keeps its energy within 1 %. Axial damping couples neighbouring nodes along their segment, so that the
+//! block-tridiagonal matrix has couplings of rank one.
 
 use serde::{Deserialize, Serialize};
 
@@ -28,7 +28,7 @@ pub(crate) struct LineState<const D: usize> {
     pub(crate) x: Vec<Vector<D>>,
     /// Their velocities, m/s.
     pub(crate) v: Vec<Vector<D>>,
-    /// Mean force on what holds each end in the last step, N.
+    /// Mean force on the support of each end in the last step, N.
     pub(crate) end_forces: [Vector<D>; 2],
     /// Point from which a bed holds each node that lies on it, m.
     pub(crate) grips: Vec<Option<Vector<D>>>,
@@ -42,7 +42,7 @@ pub(crate) struct LineState<const D: usize> {
     pub(crate) acts: bool,
 }
 
-/// A line of equal segments. An end is held, and moves as it is told, or it is free, or joined to ends of other lines.
+/// A line of equal segments. Each end is held and moves as prescribed, or is free, or is joined to ends of other lines.
 #[derive(Clone)]
 pub(crate) struct MooringLine<const D: usize> {
     pub(super) material: LineMaterial,
@@ -69,10 +69,10 @@ pub(super) struct Workspace<const D: usize> {
     pub(super) coupling: Vec<(Vector<D>, f64)>,
     /// Change of the velocity of each node, m/s.
     pub(super) change: Vec<Vector<D>>,
-    /// Change of the velocity of each node by that of each end along its segment, –; of joined lines.
+    /// Change of the velocity of each node for a unit change of the velocity of each end along its segment, –; for joined lines.
     pub(super) responses: [Vec<Vector<D>>; 2],
-    /// Impulse (N s) of the water on each node that keeps its velocity, and what a change of the velocity takes from it, kg; empty
-    /// unless the line acts on the water.
+    /// Impulse (N s) of the water on each node at constant velocity, and its decrease for a unit change of the velocity, kg;
+    /// empty unless the line acts on the water.
     pub(super) from_water: Vec<(Vector<D>, Matrix<D>)>,
 }
 
@@ -149,8 +149,8 @@ impl<const D: usize> MooringLine<D> {
         INNER_STEP / self.material.highest_frequency(self.state.segment)
     }
 
-    /// Advances the line by `dt` (s), in which the held ends move evenly to the points `ends` (m). `around` is what is around each
-    /// node, and `gravity` is in m/s². Returns the mean force (N) on what holds each end; zero at a free end.
+    /// Advances the line by `dt` (s). The held ends move evenly to the points `ends` (m), `around` are the surroundings of each
+    /// node, and `gravity` is in m/s². Returns the mean force (N) on the support of each end; zero at a free end.
     pub(crate) fn advance(
         &mut self,
         ends: [Vector<D>; 2],
@@ -170,8 +170,8 @@ impl<const D: usize> MooringLine<D> {
         self.state.end_forces
     }
 
-    /// Sets the velocities of the held ends that move evenly to the points `ends` (m) in a step `dt` (s) long. Returns the impulses
-    /// (N s) on what holds them.
+    /// Sets the velocities of the held ends, which move evenly to the points `ends` (m) in a step of length `dt` (s). Returns the
+    /// impulses (N s) on the supports of the ends.
     pub(super) fn begin_step(
         &mut self,
         ends: [Vector<D>; 2],
@@ -198,7 +198,7 @@ impl<const D: usize> MooringLine<D> {
         impulses
     }
 
-    /// Ends a step `dt` (s) long with the held ends at the points `ends` (m) and these `impulses` (N s) on what holds them.
+    /// Ends a step of length `dt` (s) with the held ends at the points `ends` (m) and these `impulses` (N s) on their supports.
     pub(super) fn end_step(
         &mut self,
         ends: [Vector<D>; 2],
@@ -309,7 +309,7 @@ impl<const D: usize> MooringLine<D> {
         self.work = work;
     }
 
-    /// Changes the velocities by the forces of a step `h` (s) long; adds the impulses (N s) on what holds the ends.
+    /// Changes the velocities by the forces of a step of length `h` (s); adds the impulses (N s) on the supports of the ends.
     fn kick(&mut self, h: f64, around: &[NodeSurroundings<D>], gravity: &Vector<D>, impulses: &mut [Vector<D>; 2]) {
         self.assemble(h, around, gravity);
         let n = self.segments();
@@ -332,7 +332,7 @@ impl<const D: usize> MooringLine<D> {
         }
     }
 
-    /// Adds the impulses (N s) of the last change of the velocities on what holds the ends.
+    /// Adds the impulses (N s) of the last change of the velocities on the supports of the ends.
     pub(super) fn add_end_impulses(&self, impulses: &mut [Vector<D>; 2]) {
         let (n, Workspace { impulse, coupling, change, .. }) = (self.segments(), &self.work);
         if self.held[0] {
@@ -368,8 +368,8 @@ impl<const D: usize> MooringLine<D> {
     }
 }
 
-/// Replaces the blocks `matrix` of the nodes from `first` to `last` by what substitution needs. They stand on the diagonal, and
-/// −b q qᵀ of `coupling` beside it.
+/// Eliminates the nodes from `first` to `last`: replaces their diagonal blocks `matrix` by the inverses that [`substitute`]
+/// needs. The blocks beside the diagonal are −b q qᵀ of `coupling`.
 pub(super) fn eliminate<const D: usize>(
     matrix: &mut [Matrix<D>],
     coupling: &[(Vector<D>, f64)],

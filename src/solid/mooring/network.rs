@@ -1,9 +1,10 @@
 //! Mooring lines that meet in points: joints of lines, with clump weights and buoys.
 //!
-//! The ends of lines that meet in a point have one place and one velocity, and the point carries what they have in mass and load.
-//! In an inner step the nodes between the ends of each line are eliminated. With the velocities of its ends Δv₀ and Δvₙ a line
-//! resists as M Δv₀ − b q (q·Δv₁), where Δv₁ is linear in both. The changes of all points follow from one dense system, which is
-//! symmetric and positive definite, so that damping of any strength is stable as in a single line.
+//! The ends of lines that meet in a point have a common position and velocity, and the point carries their masses and loads. In
+//! an inner step the nodes between the ends of each line are eliminated. To change the velocity of its first end by Δv₀, a line
+//! needs the impulse M Δv₀ − b q (q·Δv₁); Δv₁ of the next node is linear in the changes Δv₀ and Δvₙ of both ends. The changes of
+//! all points follow from one dense system, which is symmetric and positive definite, so that damping of any strength is stable
+//! as in a single line.
 
 use std::ops::AddAssign;
 
@@ -22,7 +23,7 @@ const ITERATIONS: usize = 200;
 /// Largest force on a point at rest over the weight of a node, –.
 const TOLERANCE: f64 = 1e-6;
 
-/// Way of a point for the derivative of the forces on it, over the length of a segment.
+/// Displacement of a point for the derivative of the forces on it, over the length of the shortest segment.
 const DIFFERENCE: f64 = 1e-5;
 
 /// The ends of a line between which its nodes are eliminated.
@@ -70,7 +71,8 @@ impl<const D: usize> MooringLine<D> {
         CondensedEnds { matrix: [[block(0, 0), block(0, 1)], [block(1, 0), block(1, 1)]], impulse }
     }
 
-    /// Changes the velocities of all nodes by those of the ends (m/s); adds the impulses (N s) on what holds the ends.
+    /// Changes the velocities of all nodes for the changes `ends` (m/s) at the ends; adds the impulses (N s) on the supports of
+    /// the ends.
     fn expand(&mut self, ends: [Vector<D>; 2], impulses: &mut [Vector<D>; 2]) {
         let n = self.segments();
         let Workspace { coupling, change, responses, .. } = &mut self.work;
@@ -114,7 +116,7 @@ impl Junctions {
         self.lines.is_empty()
     }
 
-    /// Releases the ends in points, and lets the first line at each point carry its body of `bodies`.
+    /// Releases the ends in points. The first line at each point carries the point's body of `bodies`.
     pub(crate) fn attach<const D: usize>(&self, lines: &mut [&mut MooringLine<D>], bodies: &[NodeBody]) {
         for (point, body) in self.points.iter().zip(bodies) {
             for (first, &(i, k)) in point.iter().enumerate() {
@@ -180,8 +182,9 @@ impl Junctions {
         [0, 1].map(|k| self.points.iter().position(|point| point.contains(&(i, k))))
     }
 
-    /// Brings the `lines` that act to rest, those that meet together. Returns the largest force (N) that remains on a node or a point of
-    /// each, over the weight of a node. `around` says what is around a place (m), and `gravity` is in m/s².
+    /// Finds the equilibrium of the active `lines`, together for those that meet. Returns for each line the largest residual
+    /// force on a node or a point over the weight of a node. `around` returns the surroundings of a position (m), and `gravity`
+    /// is in m/s².
     pub(crate) fn bring_to_rest<const D: usize>(
         &self,
         lines: &mut [&mut MooringLine<D>],
@@ -197,7 +200,8 @@ impl Junctions {
         lines.iter_mut().enumerate().map(rest).collect()
     }
 
-    /// Brings the lines that meet to rest. Returns the largest force (N) that remains on a node or a point, over the weight of a node.
+    /// Finds the equilibrium of the lines that meet. Returns the largest residual force on a node or a point over the weight of a
+    /// node.
     fn find_rest<const D: usize>(
         &self,
         lines: &mut [&mut MooringLine<D>],
@@ -252,7 +256,8 @@ impl Junctions {
         left.max(last.amax() / weight)
     }
 
-    /// The forces (N) of the lines on the points at these `places` (m), at rest, and the largest that remains on a node over its weight.
+    /// The forces (N) of the lines in equilibrium on the points at these `places` (m), and the largest residual force on a node
+    /// over its weight.
     fn forces_on_points<const D: usize>(
         &self,
         lines: &mut [&mut MooringLine<D>],

@@ -16,7 +16,7 @@ const NORMAL_STEP: f64 = 1e-4;
 /// Depth below the surface at which a node is all wet, over the length of the shortest segment.
 const WET_DEPTH: f64 = 0.1;
 
-/// The force (N) on what holds each end of each line between `solids` where the ends start. What is below the surface is wet.
+/// The force (N) on the support of each end of each line between `solids` at the start. Nodes below the surface are wet.
 pub(crate) fn forces_at_rest<const D: usize>(
     (moorings, points): (&[MooringSpec<D>], &[MooringPointSpec<D>]),
     solids: &[&SolidSpec<D>],

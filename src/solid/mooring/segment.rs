@@ -7,13 +7,13 @@
 //!
 //! with the elastic strain ε_e, and the mean pull of the segment is T q + l₀² w_t w_n/(12 T), with the unit vector q along the chord
 //! and the parts w_t and w_n of the weight along and across it. Half of the weight at each node and this pull are the forces of the
-//! catenary on its ends up to the fourth order in l₀; a straight segment has the second order. A chord shorter than l₀ has the
-//! tension of what sags, and never pushes.
+//! catenary on its ends up to the fourth order in l₀; a straight segment is of second order. A segment whose chord is shorter
+//! than l₀ has the tension that follows from its sag, and never pushes.
 //!
 //! Bending stiffness EI holds the sag back as in a beam with clamped ends: T + 48 EI/l₀² takes the place of T in both terms.
 //!
-//! Of a segment that a bed bears nothing sags. Where the line leaves the bed within it, at the share 1 − β of its length, the
-//! shortening is 4β³ − 3β⁴ of that of the whole.
+//! A segment that lies on a bed does not sag. If the line leaves the bed within a segment, at the share 1 − β of its length, the
+//! shortening is 4β³ − 3β⁴ times that of a segment that hangs completely.
 
 use super::{
     forces::{LineMaterial, NodeSurroundings, elastic_law},
@@ -48,7 +48,7 @@ pub(super) struct SegmentPull<const D: usize> {
     pub(super) sag: f64,
 }
 
-/// The pull of segment `s` of `line` without damping. `around` is what is around each node, and `gravity` is in m/s².
+/// The pull of segment `s` of `line` without damping. `around` are the surroundings of each node, and `gravity` is in m/s².
 pub(super) fn segment_pull<const D: usize>(
     line: &MooringLine<D>,
     s: usize,
@@ -97,7 +97,7 @@ pub(super) fn segment_pulls<const D: usize>(
     (0..line.segments()).map(|s| segment_pull(line, s, around, gravity)).collect()
 }
 
-/// The heights of the ends of segment `s` of `line` of this `weight` (N/m) above a bed that bears it.
+/// The heights of the ends of segment `s` of `line` above the bed below it; `None` if no bed can bear its `weight` (N/m).
 fn rise_from_bed<const D: usize>(
     line: &MooringLine<D>,
     s: usize,
@@ -129,8 +129,8 @@ struct RiseFromBed<const D: usize> {
 }
 
 impl<const D: usize> RiseFromBed<D> {
-    /// The share of the shortening by sag of a segment that hangs whole, of one along `q` with the length `l0` (m) and this `tension`
-    /// (N).
+    /// The shortening by sag of a segment along `q` with the length `l0` (m) and this `tension` (N), over that of the same
+    /// segment if it hung completely, –.
     fn hanging_share(&self, tension: f64, q: &Vector<D>, l0: f64) -> f64 {
         let flat = tension * (q - self.normal * self.normal.dot(q)).norm();
         let [low, high] = self.heights.map(|z| distance_from_touchdown(z, flat / self.weight) / l0);
@@ -139,17 +139,19 @@ impl<const D: usize> RiseFromBed<D> {
     }
 }
 
-/// Length (m) of the line from where it leaves a bed to the height `z` (m), with the tension `flat` along the bed over the weight, m.
+/// Length (m) of the line from the point where it leaves a bed to the height `z` (m). `flat` (m) is the tension along the bed
+/// over the weight.
 pub(super) fn distance_from_touchdown(z: f64, flat: f64) -> f64 {
     (z * (z + 2.0 * flat)).sqrt()
 }
 
-/// What holds a segment of the length `l0` (m) straight beside its tension, N.
+/// The addition to the tension by bending that holds a segment of the length `l0` (m) straight, N.
 fn beam_hold(material: &LineMaterial, l0: f64) -> f64 {
     48.0 * material.bending / (l0 * l0)
 }
 
-/// Tension (N) at the strain of the chord and its slope dT/dε (N), with `sag` = (w_n l₀)² (N²) and what bending holds, `hold` (N).
+/// Tension (N) at the strain of the chord, and its slope dT/dε (N). `sag` is (w_n l₀)² (N²), and `hold` (N) is the addition by
+/// bending.
 fn catenary_law(material: &LineMaterial, strain: f64, sag: f64, hold: f64) -> [f64; 2] {
     if sag == 0.0 {
         return elastic_law(material, strain);
@@ -184,7 +186,7 @@ fn held_straight(stiffness: f64, strain: f64, sag: f64, hold: f64) -> f64 {
     held
 }
 
-/// T + `hold` (N) by a table, and the slope of the table there. It is at most that of the largest slope, `most` (N).
+/// T + `hold` (N) by a table, and the slope of the table there. `most` (N) is an upper bound: the value for the largest slope.
 fn held_straight_by_table(material: &LineMaterial, strain: f64, (sag, hold): (f64, f64), most: f64) -> (f64, f64) {
     let law = |held: f64| elastic_law(material, strain + sag / (24.0 * held * held));
     let (mut low, mut high, mut held) = (0.0, most, most);

@@ -57,8 +57,8 @@ pub struct LineType {
     pub added_mass: [f64; 2],
     /// Drag coefficients across the line (of the area d l) and along it (of the area π d l), –.
     pub drag: [f64; 2],
-    /// Diameter with which the line touches fixed solids, m. `None`, as in MoorDyn: its axis touches them, with the width d. The links of
-    /// a studless chain are 3.35 bars wide, 1.86 d.
+    /// Diameter with which the line touches fixed solids, m. `None`: the axis of the line touches them, with the width d, as in
+    /// MoorDyn. The links of a studless chain are 3.35 bars wide, 1.86 d.
     pub contact_diameter: Option<f64>,
     /// Stiffness of fixed solids against the line, Pa/m: force for each metre of depth and each square metre of contact.
     pub bed_stiffness: f64,
@@ -185,7 +185,8 @@ pub struct MooringSpec<const D: usize> {
     pub points: [Option<usize>; 2],
     /// Length without tension, m.
     pub length: f64,
-    /// Length (m) that a winch pays out, over the time of the run (s), in addition to `length`; all segments grow alike.
+    /// Length (m) that a winch pays out in addition to `length`, as a function of the time of the run (s); all segments grow
+    /// alike.
     pub paid_out: Option<TimeFunction>,
     /// Number of segments.
     pub segments: usize,
@@ -231,7 +232,7 @@ impl<const D: usize> MooringSpec<D> {
         self.points.iter().any(Option::is_some)
     }
 
-    /// The same line on a winch that pays out this length (m) over the time of the run, in addition to its own.
+    /// The same line on a winch that pays out this additional length (m) as a function of the time of the run (s).
     pub fn paid_out(self, length: impl Into<TimeFunction>) -> Self {
         Self { paid_out: Some(length.into()), ..self }
     }
@@ -437,7 +438,8 @@ pub(crate) fn junctions<const D: usize>(
 /// Most segments of a line.
 const MOST_SEGMENTS: usize = 1000;
 
-/// Largest mass of an end of a line over that of its body, –: the body carries it a step late, which is stable up to a third.
+/// Largest mass of an end of a line over the mass of its body, –. The body carries this mass one step late, which is stable up to
+/// a third.
 const MOST_END_MASS: f64 = 0.1;
 
 /// Largest strain at the start, –: that of nylon at its strength is about 0.3.

@@ -1,12 +1,12 @@
 //! A winch with a controller: it holds the tension of a line, or goes to a length.
 //!
-//! To hold the tension T₀ it pays out at the rate L̇ = g (T − T₀), at most the rate limit: an integral controller, so that no error
-//! remains at rest. Its own line answers with dT/dL = −EA/L; with the rate of the end of the step,
+//! To hold the tension T₀, the winch pays out at the rate L̇ = g (T − T₀), up to the rate limit. This is an integral controller,
+//! so that no error remains at rest. The tension of its own line changes by dT/dL = −EA/L. With the rate of the end of the step,
 //!
 //!   L̇ = g (T − T₀)/(1 + g EA Δt/L),
 //!
-//! it is stable with any gain (backward Euler). The line and its winch are a spring and a dashpot in series, which adds no energy to
-//! what they hold (Maxwell 1867).
+//! the winch is stable with any gain (backward Euler). The line and its winch are a spring and a dashpot in series, which add no
+//! energy to the bodies at the ends (Maxwell 1867).
 
 /// What a winch holds.
 #[derive(Clone, Copy, Debug, PartialEq)]

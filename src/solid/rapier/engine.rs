@@ -97,7 +97,7 @@ pub trait Engine<const D: usize>: Send + Sync {
 
     /// Returns the impulses (N s, N m s) of joint number `joint` on its second solid in the last step. The impulses of
     /// its locks come first, rotations before translations, and then that of its end stop. Each impulse acts along the
-    /// part of its row that is independent of the rows before: see `solid/rows.rs`.
+    /// part of its row that is independent of the rows before: see `solid/constraint/jacobian.rs`.
     fn joint_impulses(&self, joint: usize) -> Vec<f64>;
 
     /// Returns the impulse (N s) of rope number `rope` in the last step.

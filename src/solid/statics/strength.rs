@@ -32,8 +32,8 @@ impl<const D: usize> StaticSystem<'_, D> {
         lines.chain(joints).filter(|own| own.load > own.strength).collect()
     }
 
-    /// Returns the vertical force (N) of a joint at rest: what the bodies on one side of it lack to float by themselves. `None` if it
-    /// lets its ends rise against one another, or if another joint, a lock or the bottom has part of the force.
+    /// Returns the vertical force (N) of a joint at rest: the force that the bodies on one side of it need to float. `None` if
+    /// the joint lets its ends rise relative to each other, or if another joint, a lock or the bottom bears part of the force.
     fn vertical_force(&self, joint: &JointSpec<D>) -> Option<f64> {
         let number = |solid: usize| self.bodies.iter().position(|body| body.solid == solid);
         let ends = |joint: &JointSpec<D>| joint.between.map(|end| end.and_then(number));

@@ -42,7 +42,7 @@ pub(super) struct Drive {
     pub(super) largest: f64,
 }
 
-/// Returns the force (N) of a line at `at` towards its fixed end: of a spring by its length, of a rope as at rest.
+/// Returns the force (N) of a line at `at` towards its fixed end: for a spring by its length, for a rope as at rest.
 pub(super) fn tension_towards<const D: usize>(line: &Line<D>, at: &Vector<D>, end: &Vector<D>, rest: f64) -> Vector<D> {
     let along = end - at;
     let length = along.norm();

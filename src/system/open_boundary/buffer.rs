@@ -119,8 +119,8 @@ pub(in crate::system) fn start_buffers<const D: usize>(system: &mut System<D>) {
     system.fluid.permute(&order);
 }
 
-/// Whether a particle has passed a face by as much as it may move between two rebuilds of the lists. The rebuild within a step keeps the
-/// order of the water, and where all rebuilds fall within steps, no water would enter.
+/// Whether a particle has passed a face by more than it may move between two rebuilds of the lists. A rebuild within a step keeps
+/// the order of the water; if all rebuilds were within steps, no water would enter.
 pub(in crate::system) fn needs_exchange<const D: usize>(system: &System<D>) -> bool {
     let (faces, r) = (&system.fluid_domain.open_boundaries, &system.fluid.particles.r);
     let (water, far) = (system.particle_count(), system.neighbours.margin());

@@ -20,7 +20,7 @@ const FASTEST: f64 = 0.2;
 /// Speed through a face over the c₀ that a message proposes: the usual ratio in weakly compressible water @monaghan1994.
 const SOUND: f64 = 0.1;
 
-/// Greatest rate of a level over √(g depth), the speed of long waves: water follows by a wave as steep as that.
+/// Greatest rate of a level over √(g depth), the speed of long waves. The water follows by a wave whose slope is this ratio.
 const FASTEST_LEVEL: f64 = 0.1;
 
 /// Least height of a level that changes above the bed, dp: the kernel spans that many rows.
@@ -32,7 +32,7 @@ const LEVEL_SAMPLES: u32 = 2000;
 /// Number of parts of a run at whose ends the speed through a face is compared with that of sound.
 const SPEED_SAMPLES: u32 = 100;
 
-/// Refuses open boundary number `i` of a setup if it cannot be in a run until the time `until` (s).
+/// Refuses open boundary number `i` of a setup if it is invalid in a run until the time `until` (s).
 ///
 /// # Errors
 /// `Scene` if the face is not vertical, lies across a periodic side or a symmetry plane, has no water on one of its sides, is too near
@@ -180,7 +180,8 @@ fn check_other_faces<const D: usize>(setup: &Setup<D>, i: usize) -> Result<()> {
 }
 
 /// Refuses a level of `face` that changes in time and, until the time `until` (s), is near to the bed, reaches the top of the domain or
-/// a solid, or changes faster than the water can follow; one without gravity, and one beside waves that enter.
+/// a solid, or changes faster than the water can follow. Such a level is also refused without gravity, and together with waves
+/// that enter.
 fn check_level<const D: usize>(setup: &Setup<D>, face: &OpenBoundary<D>, until: f64) -> Result<()> {
     let (name, dp, g) = (&face.name, setup.model.dp, -setup.initial_gravity()[D - 1]);
     let Some(law) = face.level.as_ref().filter(|_| face.has_moving_level()) else { return Ok(()) };

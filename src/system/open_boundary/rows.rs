@@ -1,23 +1,26 @@
 //! The rows of a buffer whose level or velocity changes in time.
 //!
 //! A row is a line of particles normal to the face, dp apart, which move along it with one velocity. While water leaves, the rows
-//! give way to it. When the flow turns inwards and at least one column of that water lies in the buffer, the water there is replaced
-//! by rows up to the present level, one particle to each dpᴰ, the first of them dp from the water. While water enters, a
-//! particle that came from the water returns without a successor, a row whose far end has moved in by dp gets a new particle
-//! there, and a column gets a row on top, or loses it, as the level moves past the middle of that row.
+//! give way to it. When the flow turns inwards and at least one column of that water lies in the buffer, rows up to the present
+//! level replace this water. They have one particle to each dpᴰ, the first of them dp from the water. While water enters, a
+//! particle that came from the water returns without a successor. A row whose far end has moved in by dp gets a new particle
+//! there. A column gets a row on top when the level rises past the middle of that row, and loses its top row when the level falls
+//! below it.
 //!
-//! Water that has left is not in rows, and where the velocity differs from height to height its particles would pass each other at any
-//! distance, because nothing in a buffer repels them. Those nearer than a part of dp move apart at each rebuild of the lists.
+//! Water that has left is not in rows. Where the velocity differs from height to height, its particles could come arbitrarily
+//! near to each other, because nothing in a buffer repels them. Particles nearer than a part of dp therefore move apart at each
+//! rebuild of the lists.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::{BufferTag, OpenBoundary, buffer_length};
 use crate::{math::Vector, system::System};
 
-/// Height of the middle of a row above the level from which it is removed, over dp; a new one is placed up to the level.
+/// Height of the middle of a row above the level beyond which the row is removed, over dp. A new row is placed if its middle is
+/// not above the level.
 const REMOVED: f64 = 0.25;
 
-/// Height above the level from which water in the buffer of a face that holds the pressure is removed, over dp.
+/// Height above the level beyond which water in the buffer of a face that holds the pressure is removed, over dp.
 const WATER_REMOVED: f64 = 1.0;
 
 /// Least distance of a particle on top of a column from water in the buffer, over dp.
@@ -52,7 +55,7 @@ fn row<const D: usize>(face: &OpenBoundary<D>, (origin, dp): (&Vector<D>, f64), 
     (0..D).filter(|axis| *axis != face.axis).map(|axis| ((x[axis] - origin[axis]) / dp).round() as i64).collect()
 }
 
-/// A place (m) in each row, of rows `dp` (m) apart, of the particles at `r` (m), in the face.
+/// One position (m) in the face for each row of the particles at `r` (m), with rows `dp` (m) apart.
 pub(super) fn places<'a, const D: usize>(
     face: &OpenBoundary<D>,
     dp: f64,
@@ -74,8 +77,8 @@ fn row_of<const D: usize>(system: &System<D>, number: usize, x: &Vector<D>) -> R
     row(&system.fluid_domain.open_boundaries[number], (origin, system.model.dp), x)
 }
 
-/// Whether water that has left through face number `number` and returns is replaced in the buffer, as anything that enters. Where rows
-/// are kept and water enters, only the rows go on.
+/// Whether a new particle replaces water that has left through face number `number` and returns. A face that keeps rows continues
+/// only the rows while water enters.
 pub(super) fn replaces_water<const D: usize>(system: &System<D>, number: usize) -> bool {
     let face = &system.fluid_domain.open_boundaries[number];
     !face.keeps_rows() || prescribed_outward(system, number).is_some_and(|outward| outward >= 0.0)
@@ -89,7 +92,8 @@ fn prescribed_outward<const D: usize>(system: &System<D>, number: usize) -> Opti
     Some(buffer.rows[number].iter().filter_map(|x| face.outward_velocity(x, buffer.time)).sum())
 }
 
-/// Keeps the rows of face number `number` in its buffer of particles with tags and new particles; `inside` is the water.
+/// Updates the rows of face number `number`: the tagged particles of the buffer, and the newly created particles. `inside` is the
+/// water.
 pub(super) fn keep<const D: usize>(
     system: &System<D>,
     number: usize,
@@ -115,8 +119,9 @@ pub(super) fn keep<const D: usize>(
     }
 }
 
-/// The places (m) of water that has left through face number `number` and is too near to others in the buffer, by their indices: half
-/// of the missing distance further from each of such water, the whole of it from a row, but not out of the buffer or into a solid.
+/// Returns index and new position (m) of each particle of water that has left through face number `number` and is too near to
+/// another in the buffer. It moves away by half of the missing distance from other such water, and by the whole of it from a row,
+/// but not out of the buffer or into a solid.
 pub(super) fn spread<const D: usize>(system: &System<D>, number: usize) -> Vec<(usize, Vector<D>)> {
     let face = &system.fluid_domain.open_boundaries[number];
     let (buffer, water) = (&system.fluid.buffer, system.particle_count());
@@ -153,8 +158,8 @@ pub(super) fn spread<const D: usize>(system: &System<D>, number: usize) -> Vec<(
     own.iter().enumerate().filter_map(push).collect()
 }
 
-/// The places (m) of the rows of face number `number` at the present level: those at the start below it, and above
-/// those that ended at the surface then one for each dp up to it.
+/// The positions (m) of the rows of face number `number` at the present level: the initial rows below it and, above each column
+/// that ended at the surface at the start, one more row for each dp up to the level.
 fn rows_at_level<const D: usize>(system: &System<D>, number: usize) -> Vec<Vector<D>> {
     let (buffer, dp) = (&system.fluid.buffer, system.model.dp);
     let face = &system.fluid_domain.open_boundaries[number];
@@ -172,7 +177,8 @@ fn rows_at_level<const D: usize>(system: &System<D>, number: usize) -> Vec<Vecto
     rows
 }
 
-/// The highest place (m) at the start in each column of face number `number` that ended at the surface then, not under a solid.
+/// The highest initial position (m) in each column of face number `number` that ended at the surface at the start, not under a
+/// solid.
 fn tops_at_surface<const D: usize>(system: &System<D>, number: usize) -> BTreeMap<Row, Vector<D>> {
     let mut tops = BTreeMap::<Row, Vector<D>>::new();
     for x in &system.fluid.buffer.rows[number] {
@@ -188,8 +194,8 @@ fn tops_at_surface<const D: usize>(system: &System<D>, number: usize) -> BTreeMa
     tops
 }
 
-/// Whole `rows` of face number `number`, with the velocities of the particles `old` of the buffer at their heights. The first is dp from the
-/// water that is `inside`, in the mean of the rows.
+/// Makes particles for all of the `rows` of face number `number`, with the velocities of the buffer particles `old` at their
+/// heights. The first particle of a row is dp from the water `inside`, as a mean over the rows.
 fn new_rows<const D: usize>(
     system: &System<D>,
     number: usize,
@@ -222,8 +228,8 @@ fn new_rows<const D: usize>(
     created
 }
 
-/// The mean distance (m) from face number `number` to the nearest of the particles `inside` the water in each of the `rows`, over the rows that
-/// have one within dp; half of dp if none has.
+/// The mean distance (m) from face number `number` to the nearest particle of the water `inside` in each of the `rows`. Rows
+/// without a particle within dp do not count; without any such row it is half of dp.
 fn mean_distance<const D: usize>(system: &System<D>, number: usize, rows: &[Vector<D>], inside: &[u32]) -> f64 {
     let face = &system.fluid_domain.open_boundaries[number];
     let dp = system.model.dp;
@@ -278,8 +284,8 @@ fn complete<const D: usize>(
     }
 }
 
-/// Puts a row on top of each column that ends at the surface, where the level has risen past the middle of that row, and removes
-/// what the level has left below.
+/// Puts a row on top of each column that ends at the surface if the level has risen past the middle of that row, and removes
+/// particles too far above the level.
 fn follow_level<const D: usize>(
     system: &System<D>,
     number: usize,

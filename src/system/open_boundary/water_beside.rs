@@ -1,8 +1,8 @@
 //! The velocity of the water beside a face that prescribes none.
 //!
-//! A mean with the kernel would be that at the centroid of the particles, which near a wall lies further from the wall than the
-//! place itself: in Poiseuille flow 20 dp high it would be more than twice the velocity of the first row. The value of the
-//! linear function that fits the velocities best, weighted with the kernel, is exact in any linear shear.
+//! A kernel mean would be the velocity at the centroid of the particles, which near a wall lies further from the wall than the
+//! place itself. In Poiseuille flow 20 dp high it would be more than twice the velocity of the first row. The module instead fits
+//! a linear function to the velocities, with the kernel as weight; its value is exact in any linear shear.
 
 use super::System;
 use crate::math::{Matrix, Vector};
