@@ -80,6 +80,9 @@ struct Group {
     traffic: Mutex<Traffic>,
 }
 
+/// A rank, if there is one, and the items that it gets or gives.
+type RankItems = (Option<usize>, Range<usize>);
+
 impl Ranks {
     fn new(exchange: impl Exchange + 'static) -> Self {
         if exchange.count() < 2 {
@@ -276,7 +279,7 @@ impl Ranks {
     pub(crate) fn pass_items<C>(
         &self,
         data: &mut C,
-        ((to, out), (from, into)): ((Option<usize>, Range<usize>), (Option<usize>, Range<usize>)),
+        ((to, out), (from, into)): (RankItems, RankItems),
         width: usize,
         give: impl Fn(&C, usize, &mut Vec<u32>),
         take: impl Fn(&mut C, usize, &[u32]),

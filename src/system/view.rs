@@ -388,9 +388,7 @@ impl<const D: usize> System<D> {
         let (water, wet) = (self.fluid.particles.len(), self.boundary_near_fluid_count());
         let start = match self.model.scheme {
             TimeScheme::Verlet { .. } => 0,
-            TimeScheme::Symplectic => {
-                water * size_of::<(Vector<D>, Vector<D>, f64)>() + size_of_val(&self.boundary.particles.rho[..])
-            }
+            TimeScheme::Symplectic => water * size_of::<(Vector<D>, Vector<D>, f64)>() + wet * size_of::<f64>(),
         };
         let shifts = if self.model.shift().is_some() { water * size_of::<Vector<D>>() } else { 0 };
         start + shifts + wet * size_of::<WallExtrapolation<f64, D>>()
