@@ -19,8 +19,10 @@ pub(super) const SUPPORT_RADIUS_DP: f64 = 2.0 * H;
 const STEP: f64 = 0.15;
 /// The passes end if the longest displacement is below this limit, dp.
 const REST: f64 = 0.01;
-/// Number of points per parallel task.
+/// Least number of points per parallel task.
 const CHUNK: usize = 256;
+/// Tasks per thread where there are many points. Each task has one list, and the system gets back the memory of long ones alone.
+const TASKS: usize = 16;
 
 /// Parameters of the passes, by dimension.
 struct Pace {
@@ -69,6 +71,7 @@ pub(super) fn spread_points_on<const D: usize>(
     let pace = Pace::of(D);
     let end = |rank: usize| (movable.div_ceil(CHUNK) * rank / ranks.count() * CHUNK).min(movable);
     let own = end(ranks.rank())..end(ranks.rank() + 1);
+    let chunk = CHUNK.max(own.len() / (TASKS * rayon::current_num_threads()));
     let parts: Vec<Range<usize>> = (0..ranks.count()).map(|rank| D * end(rank)..D * end(rank + 1)).collect();
     let (mut next, mut room) = (points[own.clone()].to_vec(), vec![0.0; own.len()]);
     let (mut lists, mut travelled) = (Vec::new(), f64::INFINITY);
@@ -76,10 +79,10 @@ pub(super) fn spread_points_on<const D: usize>(
         if 2.0 * travelled >= pace.margin * dp {
             // The old lists go first: lists are most of the memory here.
             lists.clear();
-            List::append_all(&mut lists, points, own.clone(), (SUPPORT_RADIUS_DP + pace.margin) * dp);
+            List::append_all(&mut lists, points, (own.clone(), chunk), (SUPPORT_RADIUS_DP + pace.margin) * dp);
             travelled = 0.0;
         }
-        let chunks = lists.par_iter().zip(next.par_chunks_mut(CHUNK)).zip(room.par_chunks_mut(CHUNK)).enumerate();
+        let chunks = lists.par_iter().zip(next.par_chunks_mut(chunk)).zip(room.par_chunks_mut(chunk)).enumerate();
         let moves = chunks.map(|(c, ((list, next), room))| {
             let (mut weight, mut moved) = (Vec::new(), 0.0_f64);
             for (k, (x, room)) in next.iter_mut().zip(room).enumerate() {
@@ -89,7 +92,7 @@ pub(super) fn spread_points_on<const D: usize>(
                 *room -= (*x - at).norm();
                 if *room <= 0.0 {
                     // The factor is slightly below 1, because the sum of the moves has rounding errors.
-                    *room = 0.999 * confine(own.start + c * CHUNK + k, &at, x);
+                    *room = 0.999 * confine(own.start + c * chunk + k, &at, x);
                 }
                 moved = moved.max((*x - at).norm());
             }
@@ -136,8 +139,13 @@ struct List {
 }
 
 impl List {
-    /// Appends to `lists` the neighbour lists of `these` of the `points`, with all points within `reach` (m).
-    fn append_all<const D: usize>(lists: &mut Vec<Self>, points: &[Vector<D>], these: Range<usize>, reach: f64) {
+    /// Appends to `lists` the neighbour lists of `these` of the `points`, so many in a list, with all points within `reach` (m).
+    fn append_all<const D: usize>(
+        lists: &mut Vec<Self>,
+        points: &[Vector<D>],
+        (these, chunk): (Range<usize>, usize),
+        reach: f64,
+    ) {
         let cells = PointCells::new(points, reach);
         let list = |(row, index): &mut (Vec<f64>, Vec<u32>), points: &[Vector<D>]| {
             index.clear();
@@ -147,7 +155,7 @@ impl List {
             });
             Self { end: end.collect(), index: index.as_slice().into() }
         };
-        lists.par_extend(points[these].par_chunks(CHUNK).map_init(Default::default, list));
+        lists.par_extend(points[these].par_chunks(chunk).map_init(Default::default, list));
     }
 
     /// Returns the indices of the neighbours of the `k`-th point.
