@@ -17,7 +17,7 @@ pub struct Particles<const D: usize> {
     pub v: Vec<Vector<D>>,
     /// Density, kg/m³.
     pub rho: Vec<f64>,
-    /// Name of the particle for life, from 0; sorting moves it with the rest. Boundary particles have none on ranks that write no files.
+    /// Name of the particle for life, from 0; sorting moves it with the rest.
     pub id: Vec<u32>,
 }
 
@@ -44,12 +44,7 @@ impl<const D: usize> Particles<D> {
 
     /// The first `n` of them.
     pub(crate) fn first_n(&self, n: usize) -> ParticlesView<'_, D> {
-        ParticlesView {
-            r: &self.r[..n],
-            v: &self.v[..n],
-            rho: &self.rho[..n],
-            id: self.id.get(..n).unwrap_or_default(),
-        }
+        ParticlesView { r: &self.r[..n], v: &self.v[..n], rho: &self.rho[..n], id: &self.id[..n] }
     }
 
     /// Memory of the arrays, B.

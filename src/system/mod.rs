@@ -291,9 +291,6 @@ impl<const D: usize> System<D> {
         }
         // Most are of fixed solids: velocities that nothing writes take no memory.
         system.boundary.particles.v = zeros(system.boundary.particles.len());
-        if ranks.rank() > 0 {
-            system.boundary.particles.id = Vec::new();
-        }
         for i in 0..system.solids.len() {
             system.place_boundary(i);
         }
