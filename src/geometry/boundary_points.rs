@@ -20,7 +20,7 @@ impl<const D: usize> Shape<D> {
     /// Layer k lies (k + ½) dp inside the face. A box has round(size/dp) cells along each edge, so a box whose size is
     /// a multiple of dp reproduces the lattice. Round shapes have rings and shells, and outlines have parallel curves.
     /// Meshes have evenly spaced points on surfaces of constant depth; if two faces are too close, the innermost points
-    /// lack up to 0.4 dp of that depth. Walls of tanks and polylines have layers from both faces, and from the rim
+    /// lack up to a quarter dp of that depth. Walls of tanks and polylines have layers from both faces, and from the rim
     /// or the ends; walls thinner than twice `layers` dp are filled. Parts of
     /// polygons and meshes that are thinner than dp have a single layer in their middle. A tip between faces that are
     /// not nearly parallel has no particles where it is thinner than dp.

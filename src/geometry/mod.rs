@@ -10,7 +10,6 @@ mod check;
 mod distance;
 pub mod fill;
 mod fit;
-mod holes;
 pub(crate) mod hollow;
 pub(crate) mod mesh;
 mod moments;

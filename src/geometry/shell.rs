@@ -6,11 +6,11 @@
 //! between them. The module selects the wanted number of candidates as far apart as possible, and spreads the selected
 //! points until their spacing is even. Points for which a layer has no space move to the next layer outward. The layers
 //! together then have the solid's volume. Where opposite faces leave no space for all layers, the points of all layers
-//! finally spread together, and those around wide holes move towards the holes.
+//! finally spread together.
 
 use rayon::prelude::*;
 
-use super::{BoundaryPoint, Shape, boundary_points::MIN_SPACING, cells::spacing_flags, holes, packing};
+use super::{BoundaryPoint, Shape, boundary_points::MIN_SPACING, cells::spacing_flags, packing};
 use crate::math::Vector;
 
 /// Edge of the small cells, dp: eight candidates for each point (3-D).
@@ -18,7 +18,7 @@ const GRAIN: f64 = 0.5;
 /// Largest deviation of a point from its depth, dp.
 const OFF: f64 = 1e-4;
 /// Largest lack of depth of a point between two opposite faces, dp; the first layer allows no such lack.
-const SHORT: f64 = 0.4;
+const SHORT: f64 = 0.25;
 /// Distance over which the depth falls beyond the middle between two opposite faces, dp.
 const MIDWAY: f64 = 0.1;
 /// Two faces are opposite if their normals are more than 120 degrees apart: −cos 120°.
@@ -52,22 +52,20 @@ pub(super) fn points_by_distance<const D: usize>(shape: &Shape<D>, dp: f64, laye
         skin.push(points.into_iter().map(|r| BoundaryPoint { r, layer: k as u8 }).collect::<Vec<_>>());
     }
     skin.reverse();
-    levelled(shape, &found.cells, skin.concat(), dp, layers)
+    levelled(shape, skin.concat(), dp, layers)
 }
 
 /// Spreads the points of all layers together where opposite faces leave no space for all `layers`. There the innermost
 /// points, even among themselves, leave holes below the edges if the faces are no whole number of layers apart. The
-/// first layer keeps its depth; the others become no less deep than their layers. Opposite rows over one another would
-/// leave holes that let water through, so points move into these.
+/// first layer keeps its depth; the others become no less deep than their layers.
 fn levelled<const D: usize>(
     shape: &Shape<D>,
-    cells: &[Cell<D>],
     mut skin: Vec<BoundaryPoint<D>>,
     dp: f64,
     layers: usize,
 ) -> Vec<BoundaryPoint<D>> {
-    let is_between_faces = |x: &Vector<D>| at_depth(shape, *x, layers as f64 * dp, OFF * dp, dp).is_none();
-    let movable: Vec<bool> = skin.par_iter().map(|p| is_between_faces(&p.r)).collect();
+    let between_faces = |p: &BoundaryPoint<D>| at_depth(shape, p.r, layers as f64 * dp, OFF * dp, dp).is_none();
+    let movable: Vec<bool> = skin.par_iter().map(between_faces).collect();
     let (mut order, fixed): (Vec<usize>, Vec<usize>) = (0..skin.len()).partition(|&i| movable[i]);
     let many = order.len();
     if many == 0 {
@@ -75,21 +73,11 @@ fn levelled<const D: usize>(
     }
     order.extend(fixed);
     let mut points: Vec<Vector<D>> = order.iter().map(|&i| skin[i].r).collect();
-    let confine = |i: usize, from: &Vector<D>, x: &mut Vector<D>| {
+    packing::spread_points(&mut points, many, dp, |i, from, x| {
         let (depth, short) = place_of_layer(skin[order[i]].layer.into(), dp);
         *x = at_depth(shape, *x, depth, short, dp).filter(|x| is_settled(shape, x, depth, dp)).unwrap_or(*from);
-    };
-    packing::spread_points(&mut points, many, dp, |i, from, x| {
-        confine(i, from, x);
         0.0
     });
-    let (depth, short) = place_of_layer(0, dp);
-    let below_first_layer = |x: Vector<D>| match shape.signed_distance(&x) + depth <= OFF * dp {
-        true => Some(x),
-        false => at_depth(shape, x, depth, short, dp),
-    };
-    let places = cells.par_iter().filter_map(|(x, _)| below_first_layer(*x).filter(is_between_faces));
-    holes::close_holes(&mut points, many, &places.collect::<Vec<_>>(), dp, below_first_layer, confine);
     order.iter().zip(points).for_each(|(&i, r)| skin[i].r = r);
     skin
 }
@@ -108,8 +96,7 @@ fn is_settled<const D: usize>(shape: &Shape<D>, x: &Vector<D>, depth: f64, dp: f
 /// Returns the points of layer `k`: `wanted` points, or as many as the layer has space for.
 fn layer<const D: usize>(shape: &Shape<D>, cells: &[Cell<D>], k: usize, wanted: usize, dp: f64) -> Vec<Vector<D>> {
     let (depth, short) = place_of_layer(k, dp);
-    // Points midway between two faces come from cells that are less deep.
-    let near = cells.par_iter().filter(|(_, d)| (-GRAIN * dp..=GRAIN * dp + short).contains(&(d + depth)));
+    let near = cells.par_iter().filter(|(_, d)| (d + depth).abs() <= GRAIN * dp);
     let candidates: Vec<_> = near.filter_map(|(x, _)| at_depth(shape, *x, depth, short, dp)).collect();
     let mut points = chosen(&candidates, wanted, dp);
     let many = points.len();
