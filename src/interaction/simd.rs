@@ -289,10 +289,17 @@ impl<const D: usize> PairLoop<D> for SimdPairLoop<D> {
         self.gravity = input.properties.gravity;
         let acceleration2 = |slot: u32| (self.pair_sums_of(slot).acceleration + self.gravity).norm_squared();
         let slots = &clusters.fluid_slots;
-        let is_own = clusters.division.own_water().map(|(_, is_own)| is_own);
-        let own = clusters.division.own_range(slots.len()).into_par_iter().with_min_len(PARTICLES_PER_TASK);
-        let own = own.filter(|&i| is_own.is_none_or(|is_own| is_own[i]));
-        let a2 = own.map(|i| acceleration2(slots[i])).reduce(|| 0.0, f64::max);
+        let a2 = match clusters.division.own_water() {
+            None => {
+                let all = slots.par_iter().with_min_len(PARTICLES_PER_TASK);
+                all.map(|&slot| acceleration2(slot)).reduce(|| 0.0, f64::max)
+            }
+            Some((_, is_own)) => {
+                let own = clusters.division.own_range(slots.len());
+                let own = own.into_par_iter().with_min_len(PARTICLES_PER_TASK).filter(|&i| is_own[i]);
+                own.map(|i| acceleration2(slots[i])).reduce(|| 0.0, f64::max)
+            }
+        };
         let [low, high] = ranks::words_of(a2);
         let mut largest = (0.0, 0.0);
         for [low, high, closing] in clusters.division.ranks.gather_words([low, high, closing.to_bits()]) {
