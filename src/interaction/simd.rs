@@ -295,9 +295,8 @@ impl<const D: usize> PairLoop<D> for SimdPairLoop<D> {
                 all.map(|&slot| acceleration2(slot)).reduce(|| 0.0, f64::max)
             }
             Some((_, is_own)) => {
-                let own = clusters.division.own_range(slots.len());
-                let own = own.into_par_iter().with_min_len(PARTICLES_PER_TASK).filter(|&i| is_own[i]);
-                own.map(|i| acceleration2(slots[i])).reduce(|| 0.0, f64::max)
+                let own = clusters.division.own_range(slots.len()).into_par_iter().with_min_len(PARTICLES_PER_TASK);
+                own.filter(|&i| is_own[i]).map(|i| acceleration2(slots[i])).reduce(|| 0.0, f64::max)
             }
         };
         let [low, high] = ranks::words_of(a2);
