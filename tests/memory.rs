@@ -137,10 +137,15 @@ fn a_run_and_a_reader_of_its_frames_keep_the_time_of_each_frame_alone() {
     std::fs::write(&scene, PUDDLE).unwrap();
     let figures = ["0.3", "1.2"].map(|until| {
         let run = peak_in(&out, &scene, &owned(&[("until", until)]));
-        let before = NOW.load(Relaxed);
-        PEAK.store(before, Relaxed);
-        let frames = FrameSequence::open(&out).unwrap().unwrap().times().len() as f64;
-        [frames, run, (PEAK.load(Relaxed) - before) as f64]
+        // The least of several readings: at times something else allocates some kB meanwhile.
+        let readings = (0..5).map(|_| {
+            let before = NOW.load(Relaxed);
+            PEAK.store(before, Relaxed);
+            let frames = FrameSequence::open(&out).unwrap().unwrap().times().len() as f64;
+            (frames, (PEAK.load(Relaxed) - before) as f64)
+        });
+        let (frames, read) = readings.min_by(|(_, a), (_, b)| a.total_cmp(b)).unwrap();
+        [frames, run, read]
     });
     std::fs::remove_dir_all(&folder).unwrap();
     let [[few, run, read], [many, run_more, read_more]] = figures;
@@ -148,7 +153,6 @@ fn a_run_and_a_reader_of_its_frames_keep_the_time_of_each_frame_alone() {
     let [run, read] = [(run_more - run) / (many - few), (read_more - read) / (many - few)];
     println!("{run:.1} B a frame in a run of {many} frames, {read:.1} B in a reader");
     // A time has 8 B, of which the run keeps three lists: its own and those of two states for a rollback. A list that grows has twice
-    // its size, and half as much again while it is copied; reading a line takes up to 4 kB more in one reading than in another, which
-    // is 6 B a frame. An entry of the list of frames has 170 B.
-    assert!(run < 72.0 && read < 30.0, "{run} B a frame in the run, {read} B in the reader");
+    // its size, and half as much again while it is copied. An entry of the list of frames has 170 B.
+    assert!(run < 72.0 && read < 24.0, "{run} B a frame in the run, {read} B in the reader");
 }

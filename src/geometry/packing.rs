@@ -21,7 +21,8 @@ const STEP: f64 = 0.15;
 const REST: f64 = 0.01;
 /// Least number of points per parallel task.
 const CHUNK: usize = 256;
-/// Tasks per thread where there are many points. Each task has one list, and the system gets back the memory of long ones alone.
+/// Number of tasks per thread, if there are many points. Each task makes one neighbour list; the allocator returns the memory of long
+/// lists to the system, and that of short ones not.
 const TASKS: usize = 16;
 
 /// Parameters of the passes, by dimension.
@@ -139,7 +140,7 @@ struct List {
 }
 
 impl List {
-    /// Appends to `lists` the neighbour lists of `these` of the `points`, so many in a list, with all points within `reach` (m).
+    /// Appends to `lists` the neighbour lists of `these` of the `points`, `chunk` points in each list, with all points within `reach` (m).
     fn append_all<const D: usize>(
         lists: &mut Vec<Self>,
         points: &[Vector<D>],

@@ -2,8 +2,8 @@
 //! differs between choices.
 
 use super::{
-    PairSums, RequestedSums, accumulators::RequiredSums, reference, reference::ReferenceParticle, simd,
-    simd_layout::PackedParticles,
+    PairSums, RequestedSums, accumulators::RequiredSums, reference, reference::ReferenceParticle,
+    simd_layout::PackedParticles, simd_slab,
 };
 use crate::{
     math::simd::{LaneRow, Level},
@@ -131,6 +131,6 @@ impl<K: Kernel, T: Term<D>, W: Term<D>, const D: usize> PairTerms<D> for Compile
         slab: &Slab,
         sums: &mut [LaneRow],
     ) -> f32 {
-        simd::sum_slab(self, level, packed, requested, slab, sums)
+        simd_slab::sum_slab(self, level, packed, requested, slab, sums)
     }
 }

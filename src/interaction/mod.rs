@@ -12,6 +12,7 @@ mod pair_contribution;
 mod reference;
 mod simd;
 mod simd_layout;
+mod simd_slab;
 #[cfg(feature = "gpu")]
 mod trace;
 

@@ -14,12 +14,12 @@ use crate::{
 /// Particles of which the first rank gets the numbers at a time.
 const PIECE: usize = 1 << 13;
 
-/// Different numbers in ascending order, kept as ranges: a rank's water has few of these once it is sorted.
+/// Different indices in ascending order, stored as ranges: the water of a rank has few ranges once it is sorted.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Numbers(Vec<Range<u32>>);
+pub(crate) struct IndexRanges(Vec<Range<u32>>);
 
-impl Numbers {
-    /// These numbers, which ascend.
+impl IndexRanges {
+    /// Stores indices that are in ascending order.
     pub(crate) fn new(ascending: impl IntoIterator<Item = u32>) -> Self {
         let mut ranges: Vec<Range<u32>> = Vec::new();
         for i in ascending {
@@ -31,17 +31,17 @@ impl Numbers {
         Self(ranges)
     }
 
-    /// How many there are.
+    /// The number of indices.
     pub(crate) fn len(&self) -> usize {
         self.0.iter().map(ExactSizeIterator::len).sum()
     }
 
-    /// The numbers.
+    /// The indices in ascending order.
     pub(crate) fn iter(&self) -> impl Iterator<Item = u32> + Clone {
         self.0.iter().cloned().flatten()
     }
 
-    /// Those of them in `part`.
+    /// The indices in `part`.
     fn within(&self, part: &Range<usize>) -> impl Iterator<Item = u32> + Clone {
         let (start, end) = (part.start as u32, part.end as u32);
         let ranges = self.0[self.0.partition_point(|range| range.end <= start)..].iter();
@@ -49,7 +49,7 @@ impl Numbers {
         ranges.flat_map(move |range| range.start.max(start)..range.end.min(end))
     }
 
-    /// The least range that has them all.
+    /// The smallest range that contains all indices.
     fn around(&self) -> Range<usize> {
         match self.0.first().zip(self.0.last()) {
             Some((first, last)) => first.start as usize..last.end as usize,
@@ -69,7 +69,7 @@ pub struct Division {
     /// Whether ranks lack the present water of others, because each has advanced its own.
     pub(crate) is_apart: bool,
     /// Water particles of this rank.
-    own: Numbers,
+    own: IndexRanges,
     /// Whether the water particle is this rank's.
     is_own: Vec<bool>,
     /// Boundary particles near water of each rank, by their place among all of these.
@@ -91,12 +91,12 @@ impl Division {
     }
 
     /// The water particles that this rank advances, and whether it is this rank's for every particle; `None` if it advances all.
-    pub(crate) fn own_water(&self) -> Option<(&Numbers, &[bool])> {
+    pub(crate) fn own_water(&self) -> Option<(&IndexRanges, &[bool])> {
         self.by_owner.then_some((&self.own, &self.is_own[..]))
     }
 
     /// The water particles that this rank advances; none if it advances all.
-    pub(crate) fn own_numbers(&self) -> impl Iterator<Item = u32> + Clone {
+    pub(crate) fn own_indices(&self) -> impl Iterator<Item = u32> + Clone {
         self.own_water().into_iter().flat_map(|(own, _)| own.iter())
     }
 
@@ -115,7 +115,7 @@ impl Division {
     pub(crate) fn set_own_water(&mut self, own: Vec<u32>, count: usize) {
         self.is_own = vec![false; count];
         own.iter().for_each(|&i| self.is_own[i as usize] = true);
-        self.own = Numbers::new(own);
+        self.own = IndexRanges::new(own);
     }
 
     /// The rank that computes `slab`.
@@ -237,7 +237,7 @@ impl Division {
     /// appends those of a particle, `take` gets those of another rank's.
     pub(crate) fn share_water<C>(
         &self,
-        these: &Numbers,
+        these: &IndexRanges,
         data: &mut C,
         width: usize,
         give: impl Fn(&C, usize, &mut Vec<f64>),

@@ -15,7 +15,7 @@ mod search;
 pub use clusters::{Clusters, ListPart, PAD};
 pub(crate) use clusters::{Slab, fill_positions, occupied_lanes};
 pub(crate) use columns::Columns;
-pub(crate) use division::{Division, Numbers};
+pub(crate) use division::{Division, IndexRanges};
 pub(crate) use grid::CellGrid;
 pub use lists::CHUNK;
 pub(crate) use lists::{ParticleListChunk, ParticleLists};
@@ -138,7 +138,7 @@ impl<const D: usize> NeighbourLists<D> {
 
     /// The columns of the water of all ranks, of which this one has its own at the places `r` (m); shares the slabs out anew.
     pub(crate) fn share_out(&mut self, r: &[Vector<D>]) -> Columns<D> {
-        let own = self.own_numbers().map(|i| &r[i as usize]);
+        let own = self.own_indices().map(|i| &r[i as usize]);
         let bounds = Bounds::around(own.clone());
         let columns = self.columns(self.division().map_or(bounds, |division| division.union(&bounds)), r.len());
         let mut particles = vec![0; columns.slab_count()];
@@ -151,8 +151,8 @@ impl<const D: usize> NeighbourLists<D> {
     }
 
     /// The water particles that this rank advances; none if it advances all.
-    fn own_numbers(&self) -> impl Iterator<Item = u32> + Clone {
-        self.division().into_iter().flat_map(Division::own_numbers)
+    fn own_indices(&self) -> impl Iterator<Item = u32> + Clone {
+        self.division().into_iter().flat_map(Division::own_indices)
     }
 
     /// Search radius of the lists, m.
@@ -162,7 +162,7 @@ impl<const D: usize> NeighbourLists<D> {
 
     /// The order of this rank's water at `r` (m) in `columns`.
     pub(crate) fn own_order(&self, columns: &Columns<D>, r: &[Vector<D>]) -> Vec<u32> {
-        columns.sort(r, &self.own_numbers().collect::<Vec<_>>()).order
+        columns.sort(r, &self.own_indices().collect::<Vec<_>>()).order
     }
 
     /// Builds the lists for these positions of water and boundary particles.
@@ -184,7 +184,7 @@ impl<const D: usize> NeighbourLists<D> {
     /// `next` of the next rank's first slab.
     pub(crate) fn build_own(&mut self, columns: &Columns<D>, water: &[Vector<D>], next: &[u32], skin: &[Vector<D>]) {
         self.positions_at_build = zeros(water.len());
-        let mut which: Vec<u32> = self.own_numbers().collect();
+        let mut which: Vec<u32> = self.own_indices().collect();
         which.iter().for_each(|&i| self.positions_at_build[i as usize] = water[i as usize]);
         which.extend(next);
         self.build_sorted(columns, (water, &columns.sort(water, &which)), skin);
@@ -222,7 +222,7 @@ impl<const D: usize> NeighbourLists<D> {
     /// Restricts queries at a point to `these` particles of the `water` (m), which this rank knows. The order of the results is
     /// the same as in a query of all particles.
     pub(crate) fn know(&mut self, these: Vec<u32>, water: &[Vector<D>]) {
-        let bounds = Bounds::around(self.own_numbers().map(|i| &water[i as usize]));
+        let bounds = Bounds::around(self.own_indices().map(|i| &water[i as usize]));
         let bounds = self.division().map_or(bounds, |division| division.union(&bounds));
         let places: Vec<Vector<D>> = these.iter().map(|&i| water[i as usize]).collect();
         let grid = CellGrid::of_part(&places, (bounds, water.len()), self.list_radius());

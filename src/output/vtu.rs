@@ -28,6 +28,12 @@ const CONNECTIVITY: &str = "connectivity";
 /// First bytes of the element that precedes the appended arrays.
 const APPENDED: &[u8] = b"<AppendedData";
 
+/// Text between the description of the grid and its arrays.
+const START: &str = "<AppendedData encoding=\"raw\">\n_";
+
+/// Text after the arrays.
+const END: &[u8] = b"\n</AppendedData>\n</VTKFile>\n";
+
 /// The values of an array.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Values {
@@ -316,9 +322,7 @@ fn write_grid(
             "{beginning}{fields}</PointData>\n<Points>\n{points}</Points>\n<Cells>\n{cells}</Cells>\n</Piece>\n</UnstructuredGrid>\n"
         )
     };
-    const START: &str = "<AppendedData encoding=\"raw\">\n_";
-    const END: &[u8] = b"\n</AppendedData>\n</VTKFile>\n";
-    // The offsets are known after the arrays. Spaces take the place of what the text before them is shorter than with the largest ones.
+    // The offsets are known after the arrays: the description gets the space of the largest ones, and spaces fill the rest.
     let space = text(&vec![u64::MAX; arrays.len()]).len();
     let start = (space + START.len()) as u64;
     let mut outcome = file.seek(SeekFrom::Start(start)).map(drop);

@@ -13,7 +13,7 @@ pub(super) fn check_strength<const D: usize>(context: &PreflightContext<'_, D>, 
         let least = |load: &str| format!("breaks = {{ tension = {load} }} or more, or a length with less tension");
         findings.push(strength_finding::<D>(
             "breaks_at_start",
-            &what,
+            (&what, ""),
             [spring.start_tension(), spring.lifetime.strength],
             least,
         ));
@@ -25,18 +25,19 @@ pub(super) fn overload<const D: usize>(Overload { kind, name, load, strength }: 
     let what = format!("{kind} \"{name}\" breaks before the bodies are at rest");
     let key = if kind == "joint" { "force" } else { "tension" };
     let least = |load: &str| format!("breaks = {{ {key} = {load} }} or more, or less load on it");
-    strength_finding::<D>("breaks_at_rest", &what, [load, strength], least)
+    strength_finding::<D>("breaks_at_rest", (&what, " then"), [load, strength], least)
 }
 
-/// The finding that a load (N; N/m in 2-D) exceeds the strength of the element that carries it; `mend` gets the load, rounded up.
+/// The finding `what` that a load (N; N/m in 2-D), which acts `when`, exceeds the strength of the element that carries it; `mend` gets
+/// the load, rounded up.
 pub(super) fn strength_finding<const D: usize>(
     topic: &'static str,
-    what: &str,
+    (what, when): (&str, &str),
     [load, bears]: [f64; 2],
     mend: impl Fn(&str) -> String,
 ) -> Finding {
     let unit = if D == 2 { "N/m" } else { "N" };
-    let what = format!("{what}: it has {} {unit} and bears {} {unit}", three_digits(load), three_digits(bears));
+    let what = format!("{what}: it has {} {unit}{when} and bears {} {unit}", three_digits(load), three_digits(bears));
     Finding::warning(topic, what, mend(&two_digits_up(load)))
 }
 

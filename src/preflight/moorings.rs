@@ -106,7 +106,7 @@ pub(super) fn summaries<const D: usize>(
         if most > strength {
             let what = format!("mooring \"{}\" breaks at the start", own.name);
             let least = |load: &str| format!("breaks = {load} or more, or a length with less tension");
-            findings.push(strength_finding::<D>("breaks_at_start", &what, [most, strength], least));
+            findings.push(strength_finding::<D>("breaks_at_start", (&what, ""), [most, strength], least));
         }
     }
     let buried = readings.iter().zip(specs).filter_map(|(now, spec)| lies_in_solid(context, spec, &now.nodes));

@@ -80,7 +80,7 @@ struct Group {
     traffic: Mutex<Traffic>,
 }
 
-/// A rank, if there is one, and the items that it gets or gives.
+/// Another rank, if there is one, and the range of the items that pass to it or from it.
 type RankItems = (Option<usize>, Range<usize>);
 
 impl Ranks {
@@ -274,8 +274,8 @@ impl Ranks {
         group.count(start, bytes);
     }
 
-    /// Sends the items `out` to the rank `to` and receives as many as `into` names from the rank `from`, where there are such ranks; each
-    /// has `width` words. `give` appends those of an item, `take` gets those of another rank's. Both work on `data`.
+    /// Sends the items `out` of `data` to the rank `to` and receives the items `into` from the rank `from`, if these ranks exist, a block
+    /// at a time. An item has `width` words: `give` appends them, `take` stores those of a received item.
     pub(crate) fn pass_items<C>(
         &self,
         data: &mut C,

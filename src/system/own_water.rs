@@ -9,7 +9,7 @@ use super::{ExitPath, Fluid, RemovedParticle, StepCheck, System};
 use crate::{
     math::{Matrix, Vector},
     model::TimeScheme,
-    neighbours::{Columns, Division, NeighbourLists, Numbers},
+    neighbours::{Columns, Division, IndexRanges, NeighbourLists},
     particles::{PARTICLES_PER_TASK, Particles, zeros},
     ranks::{self, Ranks},
     solid::Role,
@@ -112,7 +112,7 @@ pub(crate) fn gather_places<const D: usize>(system: &mut System<D>) {
         system.pair_loop.free_buffers();
         system.rates.current = false;
     }
-    let (is_first, own) = (division.ranks.rank() == 0, Numbers::new(division.own_numbers()));
+    let (is_first, own) = (division.ranks.rank() == 0, IndexRanges::new(division.own_indices()));
     let give = |water: &&mut Particles<D>, i: usize, numbers: &mut Vec<f64>| {
         numbers.extend(water.r[i].iter().chain(water.v[i].iter()));
     };
@@ -175,7 +175,7 @@ pub(super) fn share_first<const D: usize>(system: &mut System<D>, own: Option<us
     let Some(division) = divided(&system.neighbours) else { return own };
     let named = division.ranks.gather_words([own.map_or(u32::MAX, |i| i as u32)]);
     let first = named.into_iter().map(|[i]| i).min().filter(|&i| i < u32::MAX)?;
-    let these = Numbers::new(own.filter(|&i| i == first as usize).map(|i| i as u32));
+    let these = IndexRanges::new(own.filter(|&i| i == first as usize).map(|i| i as u32));
     let give = |water: &&mut Particles<D>, i: usize, numbers: &mut Vec<f64>| water.give(i, numbers);
     let take = |water: &mut &mut Particles<D>, i: usize, numbers: &[f64]| water.take(i, numbers);
     division.share_water(&these, &mut (&mut system.fluid.particles), Particles::<D>::NUMBERS, give, take);
@@ -300,7 +300,7 @@ pub(super) fn share_out<const D: usize>(
     let (rank, now) = (division.ranks.rank(), &system.fluid.particles);
     let owner = |r: &Vector<D>| division.owner_of(columns.slab_at(r));
     let is_kept = |&i: &u32| owner(&now.r[i as usize]) == rank;
-    let (mut own, leaving): (Vec<u32>, Vec<u32>) = division.own_numbers().partition(is_kept);
+    let (mut own, leaving): (Vec<u32>, Vec<u32>) = division.own_indices().partition(is_kept);
     let mut arrived = Vec::new();
     let numbers = Particles::<D>::NUMBERS;
     let Fluid { particles, gradient_correction, .. } = &mut system.fluid;
@@ -324,7 +324,7 @@ pub(super) fn share_out<const D: usize>(
             arrived.push(i as u32);
         }
     };
-    division.share_water(&Numbers::new(leaving), &mut (particles, start, corrections), width, give, take);
+    division.share_water(&IndexRanges::new(leaving), &mut (particles, start, corrections), width, give, take);
     own.extend(arrived);
     own.sort_unstable();
     if let Some(division) = system.neighbours.division_mut() {
@@ -414,7 +414,7 @@ pub(super) fn take_next_slab<const D: usize>(system: &mut System<D>, columns: &C
     let Some(division) = division(&system.neighbours) else { return Vec::new() };
     let ([before, after], slabs) = (division.adjacent(), division.own_slabs());
     let r = &mut system.fluid.particles.r;
-    let first = division.own_numbers();
+    let first = division.own_indices();
     let first = first.filter(|&i| before.is_some() && columns.slab_at(&r[i as usize]) == slabs.start);
     let words =
         |i: u32| std::iter::once(i).chain(r[i as usize].iter().flat_map(|&x| ranks::words_of(x)).collect::<Vec<_>>());
@@ -435,7 +435,7 @@ pub(super) fn know_adjacent_slabs<const D: usize>(system: &mut System<D>) {
     let System { neighbours, fluid: Fluid { particles: Particles { r, rho, .. }, .. }, .. } = system;
     let Some(division) = division(neighbours).filter(|division| division.is_apart) else { return };
     let ([before, after], slabs) = (division.adjacent(), division.own_slabs());
-    let mut known: Vec<u32> = division.own_numbers().collect();
+    let mut known: Vec<u32> = division.own_indices().collect();
     let width = 1 + 2 * (D + 1);
     for (to, from, slab) in [(before, after, slabs.start), (after, before, slabs.end.saturating_sub(1))] {
         let mut out = Vec::new();

@@ -6,14 +6,14 @@ use std::borrow::Cow;
 use bytemuck::Pod;
 use serde::{Deserialize, Deserializer, Serialize, Serializer, ser::SerializeSeq as _};
 
-use crate::neighbours::{Division, Numbers};
+use crate::neighbours::{Division, IndexRanges};
 
 /// A quantity of the water in the order of the particles.
 pub(super) enum WaterColumn<'a, T: Clone> {
     /// Of all particles, or of those that were written.
     Read(Cow<'a, [T]>),
     /// Of this rank's particles alone, which are these of all, if it has any.
-    Own(&'a [T], Option<&'a Numbers>),
+    Own(&'a [T], Option<&'a IndexRanges>),
     /// Of all particles, of which each rank has its own. All ranks write it at the same time: the first all of it, the others nothing.
     Shared(&'a [T], &'a Division),
 }
@@ -41,7 +41,7 @@ impl<T: Pod + Serialize> Serialize for WaterColumn<'_, T> {
         match self {
             Self::Read(all) => all.serialize(serializer),
             Self::Own(all, own) => {
-                let mut sequence = serializer.serialize_seq(Some(own.map_or(0, Numbers::len)))?;
+                let mut sequence = serializer.serialize_seq(Some(own.map_or(0, IndexRanges::len)))?;
                 let mut own = own.iter().flat_map(|own| own.iter());
                 own.try_for_each(|i| sequence.serialize_element(&all[i as usize]))?;
                 sequence.end()

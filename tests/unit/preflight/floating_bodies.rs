@@ -236,7 +236,7 @@ fn a_rope_that_breaks_before_the_bodies_are_at_rest_is_told() {
     };
     let found = assembly(190.0);
     let told = &finding(&found, "breaks_at_rest").what;
-    assert!(told.starts_with("rope \"line\"") && told.contains("it has 196 N/m and bears 190 N/m"), "{told}");
+    assert!(told.starts_with("rope \"line\"") && told.contains("it has 196 N/m then and bears 190 N/m"), "{told}");
     let found = assembly(200.0);
     assert!(!found.findings.iter().any(|finding| finding.topic == "breaks_at_rest"));
 }
