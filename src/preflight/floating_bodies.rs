@@ -518,7 +518,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         let reach = model.support_radius();
         if body.thinnest_m < reach * (1.0 - 1e-6) {
             let what = format!(
-                "\"{name}\" is {} m thin, {} dp, and the kernel reaches {} dp: water sees through it{}",
+                "\"{name}\" is {} m thin, {} dp, and the kernel reaches {} dp: water on its two sides interacts{}",
                 three_digits(body.thinnest_m),
                 three_digits(body.thinnest_dp),
                 three_digits(self.support_radius_dp()),
