@@ -232,6 +232,20 @@ impl<const D: usize> Accounting<D> {
         self.budget.damping -= energy;
     }
 
+    /// Adds the work of the faces of thin parts: the `energy` (J) that the water received, and that of the `impulses` (N s, N m s)
+    /// on the solids.
+    pub(crate) fn add_repelled(&mut self, system: &System<D>, energy: f64, impulses: &[Load<D>]) {
+        self.budget.walls += energy;
+        for (i, ((solid, impulse), work)) in system.solids().iter().zip(impulses).zip(&mut self.work).enumerate() {
+            let received = impulse.power(&solid.kinematics);
+            *work += received;
+            self.budget.walls += received * system.solid_multiplicity(i);
+            if let Role::Driven(_) = solid.spec.role {
+                self.budget.driven -= received * system.solid_multiplicity(i);
+            }
+        }
+    }
+
     /// Adds the energy (J) of an impulse that was returned to the water.
     pub(crate) fn add_returned(&mut self, energy: f64) {
         self.budget.coupling += energy;

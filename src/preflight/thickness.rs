@@ -19,9 +19,6 @@ const PLACES_SEEN: usize = 1000;
 /// Share of the face that does not count as the thinnest part although it is thinner, such as tips and edges.
 const TIPS: f64 = 0.1;
 
-/// Thickness (dp) below which 3-D walls may leak; `docs/measurements/thin-tank.toml` leaks at 1 to 1.5 and 2.2 to 2.5 dp.
-const LEAKING: f64 = 2.5;
-
 /// The distance (m) from `face` straight through the solid to the opposite face, at most `most` (m). `distance` is the signed
 /// distance of the solid.
 fn chord<const D: usize>(face: &SurfaceSample<D>, dp: f64, most: f64, distance: impl Fn(&Vector<D>) -> f64) -> f64 {
@@ -76,10 +73,9 @@ impl<const D: usize> PreflightContext<'_, D> {
                 continue;
             };
             if thick < reach * (1.0 - 1e-6) {
-                let leak = if D == 3 && thick < LEAKING * dp { ", and may leak" } else { "" };
                 let what = format!(
                     "\"{}\" is {} m thick at {}, {} dp, and the kernel reaches {} dp: water on its two sides interacts, \
-                     or meets too few boundary particles{leak}",
+                     or meets too few boundary particles",
                     solid.spec.name,
                     three_digits(thick),
                     coordinates(&at),

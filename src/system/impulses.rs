@@ -78,7 +78,7 @@ pub(crate) fn spread_impulses<const D: usize>(
 
 /// Changes the velocities (m/s) of these water particles, which are sorted by number, and of their images. Each particle stands
 /// for the mass `mass` (kg).
-fn change_velocities<const D: usize>(
+pub(super) fn change_velocities<const D: usize>(
     system: &mut System<D>,
     mut changes: Vec<(usize, Vector<D>)>,
     mass: f64,

@@ -20,7 +20,7 @@ use crate::{
     model::{Model, TimeScheme},
     particles::PARTICLES_PER_TASK,
     sph::boundary::relaxation,
-    system::{MomentumTransfer, Reordering, System},
+    system::{MomentumTransfer, Reordering, System, repel_from_thin_faces},
 };
 
 /// The chosen scheme with its state.
@@ -85,6 +85,11 @@ impl<const D: usize> Stepper<D> {
             Self::Verlet(verlet) => verlet.step(system, over, accounting.as_deref_mut()),
             Self::Symplectic => Symplectic.step(system, over, accounting.as_deref_mut()),
         };
+        if let Some((transfer, impulses)) = repel_from_thin_faces(system, over.dt, weight) {
+            let accounting = accounting.as_deref_mut();
+            accounting.into_iter().for_each(|accounting| accounting.add_repelled(system, transfer.energy, &impulses));
+            self.add_transfers(&[transfer]);
+        }
         let before = if let Self::Verlet(verlet) = self { Some(verlet.previous_velocities_mut()) } else { None };
         let measured = accounting.as_ref().is_some_and(|accounting| accounting.has_energy_budget());
         let absorbed = sponge::damp_velocities(system, over.dt, before, measured);

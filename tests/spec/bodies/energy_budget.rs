@@ -179,6 +179,16 @@ fn the_energy_budget_closes() {
     }
 }
 
+/// A plate of 0.4 dp that is driven through the water, a tray with walls of 0.6 dp that falls into it, and a tank of 1.2 dp. The bound is
+/// that of thick parts.
+#[test]
+fn the_energy_budget_closes_beside_thin_parts_in_3d() {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/spec/run/restart/thin.toml");
+    let sim = Simulation::new(Scene::read(&file, &[]).unwrap().build::<3>().unwrap().setup).unwrap();
+    let (off, turnover) = residual(sim, 400);
+    assert!(off < 0.01 * turnover, "{off} J of {turnover} J");
+}
+
 #[test]
 fn added_and_removed_solids_and_water_enter_the_energy_budget() {
     let mut sim = simulation("");

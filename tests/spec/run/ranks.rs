@@ -22,10 +22,11 @@ use crate::{
 };
 
 /// The scenes with all components that have state, and three times (s) that part them.
-const SCENES: [(&str, f64, f64); 7] = [
+const SCENES: [(&str, f64, f64); 8] = [
     ("sea", 0.15, 0.3),
     ("ties", 0.15, 0.4),
     ("three", 0.1, 0.18),
+    ("thin", 0.1, 0.18),
     ("vortices", 0.1, 0.25),
     ("spill", 0.2, 0.4),
     ("moorings", 0.15, 0.35),

@@ -99,6 +99,12 @@ fn a_three_dimensional_run_with_corrected_gradients_survives_a_restart() -> Resu
 }
 
 #[test]
+fn water_beside_thin_parts_survives_a_restart() -> Result<()> {
+    survives_restart("thin", [0.1, 0.18], Simulation::<3>::enable_energy_budget)?;
+    Ok(())
+}
+
+#[test]
 fn periodic_water_with_particle_shifting_survives_a_restart() -> Result<()> {
     let (_, sim) = survives_restart::<2>("vortices", [0.1, 0.25], |_| ())?;
     assert_eq!(sim.system().fluid().len(), 400, "periodic images are not part of the water");

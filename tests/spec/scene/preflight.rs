@@ -416,19 +416,6 @@ fn a_current_too_slow_for_its_surface_is_noted() {
     assert_eq!([held(0.3), held(0.4), towed(0.6), towed(0.8)], [true, false, true, false]);
 }
 
-/// 3-D tanks of 1.4 and 2.33 dp lose water, those of 2.5 dp and thicker keep it (`docs/measurements/thin-tank.toml`).
-#[test]
-fn a_thin_wall_is_told_to_leak_in_3d_below_two_and_a_half_dp() {
-    let home = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let told = |thickness: &str| {
-        let sets = [("solid.tank.shape.tank.thickness".to_string(), thickness.to_string())];
-        let scene = Scene::read(&home.join("docs/measurements/thin-tank.toml"), &sets).unwrap();
-        let findings = preflight_report(&scene).findings;
-        findings.iter().find(|finding| finding.topic == "thin_wall").map(|finding| finding.what.contains("may leak"))
-    };
-    assert_eq!(["0.07", "0.1165", "0.126", "0.15"].map(told), [Some(true), Some(true), Some(false), None]);
-}
-
 /// Waves that enter through a face: their length and speeds are those of linear waves on the current, with which and against which
 /// ω = k U + √(g k tanh kd).
 #[test]
