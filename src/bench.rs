@@ -1,4 +1,4 @@
-//! Standard benchmark cases: the cost of a step, the distribution of its time, and the cost added by each law, body and
+//! Standard benchmark cases: the cost of a step, the distribution of its time, and the cost added by each term, body and
 //! probe.
 //!
 //! The case is a dam break in a closed box, two long, one across and 1.2 high with water 0.8 long and 0.6 deep, with
@@ -361,7 +361,7 @@ impl<const D: usize> TimedCase for PreparedCase<D> {
     }
 }
 
-/// Returns the cases that each add a law or another option of a scene to the standard case, which is the first entry.
+/// Returns the cases that each add a term or another option of a scene to the standard case, which is the first entry.
 pub fn term_cases(dimension: usize, water: usize) -> Vec<BenchCase> {
     let base = BenchCase::standard(dimension, water);
     let mut works = vec![

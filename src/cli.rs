@@ -68,7 +68,7 @@ Examples:
   pontoon run my-bay.toml --until 2 --dp 0.02       a scene file, shorter and coarser
   pontoon run raft --set model.viscosity=none       one key of the scene changed
   pontoon run raft --set solid.box.free.density=500
-Ctrl-C stops after the present step with a checkpoint; `pontoon resume` goes on from there to
+Ctrl-C stops after the present step with a checkpoint; `pontoon resume` continues from there to
 the same bits. The number of threads changes the speed, never the result.
 Exit codes: 0 all well; 1 the computation could not go on; 2 something in the command, the scene
 or a file is wrong; 3 a check misses its bound; 130 interrupted.")]
@@ -95,7 +95,7 @@ Examples:
   pontoon study flume-box --vary model.viscosity=laminar,none --repeat 5
 Every spacing is run with every combination of values, one run after the other, each with all
 threads, without frames. Results are in DIR/study.html, .csv and .json, whole after every run; the
-runs in DIR/runs. A run that has finished is not run again; after Ctrl-C the same command goes on.
+runs in DIR/runs. A run that has finished is not run again; after Ctrl-C the same command continues.
 With --repeat each run is made several times from starts that differ by a millionth of dp; mean,
 standard deviation, least and greatest error say what of a difference between laws is chance.
 With --png the runs keep frames at the times of --time, and are drawn at the end: a column for each
@@ -113,7 +113,7 @@ Examples:
   pontoon validate flume-box flume-box-b --repeat 5
                                       which is better, and what of it is chance
 Results are in DIR/validation.html and .csv, whole after every run; the runs in DIR/runs. A run that
-has finished is not run again; after Ctrl-C the same command goes on.
+has finished is not run again; after Ctrl-C the same command continues.
 Exit codes: 0 all bounds are kept; 1 a run failed; 2 something in the command or a file is wrong;
 3 a bound is missed; 130 interrupted.")]
     Validate(validate::ValidateArgs),
@@ -169,7 +169,7 @@ Coupled points are on the solid of --solid, free points become [[mooring_point]]
 Examples:
   pontoon watch runs/raft
   pontoon watch runs/raft --series box.heave_m --once
-q or Ctrl-C leaves; the run goes on. In a pipe it prints once.")]
+q or Ctrl-C closes the view; the run continues. In a pipe it prints once.")]
     Watch(watch::WatchArgs),
     /// Print the JSON schema of scenes, for editors
     #[command(after_help = "\
@@ -201,7 +201,7 @@ irregular waves over frequency, as in rao.csv, is the last table, or with --rao 
     Stats(statistics::StatsArgs),
     /// List the scenes that come with the program
     Scenes,
-    /// Time standard works on this machine: particle-steps per second, where a step goes, memory
+    /// Time standard cases on this machine: particle-steps per second, where a step goes, memory
     #[command(
         after_help = "Examples:\n  pontoon bench\n  pontoon bench --terms\n  pontoon bench --size 20000,2000000 --json"
     )]

@@ -1,4 +1,4 @@
-//! `pontoon bench`: which works are timed, and the tables.
+//! `pontoon bench`: which cases are timed, and the tables.
 
 use crate::{
     Result,
@@ -12,22 +12,22 @@ use serde::Serialize;
 
 use super::console_text::table;
 
-/// Water particles up to which the oracle is timed beside the fast sweep.
+/// Water particles up to which the reference is timed beside the fast sweep.
 const MAX_REFERENCE_PARTICLES: usize = 200_000;
 
 /// What is timed.
 #[derive(Args)]
 pub struct BenchArgs {
-    /// Water particles of each work, separated by commas
+    /// Water particles of each case, separated by commas
     #[arg(long, value_name = "N,..", value_delimiter = ',', default_value = "50000")]
     size: Vec<usize>,
     /// Threads besides 1 [default: one for each processor]
     #[arg(long, value_name = "N", value_parser = super::thread_count)]
     threads: Option<usize>,
-    /// What each law, a body and dry walls add, instead of the standard works
+    /// What each term of the equations, a body and dry walls add, instead of the standard cases
     #[arg(long)]
     terms: bool,
-    /// Time the works in developed flow, after the water has hit the far wall: takes minutes
+    /// Time the cases in developed flow, after the water has hit the far wall: takes minutes
     #[arg(long)]
     developed: bool,
     /// List the devices that can compute the water (feature gpu)
@@ -36,7 +36,7 @@ pub struct BenchArgs {
     /// Time whole steps on this device: a number of --devices, gpu, or part of a name (feature gpu)
     #[arg(long, value_name = "DEVICE")]
     device: Option<String>,
-    /// Fail if the fast sweep is not so many times the oracle's speed
+    /// Fail if the speed of the fast sweep over that of the reference is below this
     #[arg(long, value_name = "RATIO", hide = true)]
     floor: Option<f64>,
     /// Print JSON instead of tables
@@ -45,7 +45,7 @@ pub struct BenchArgs {
     /// Only make so many steps of a small work, for a tool that counts instructions
     #[arg(long, value_name = "STEPS", hide = true)]
     fixed: Option<usize>,
-    /// Which of the works of --terms that is
+    /// Which of the cases of --terms that is
     #[arg(long, value_name = "NAME", hide = true, default_value = "wendland")]
     work: String,
 }
@@ -56,11 +56,11 @@ struct BenchReport {
     version: &'static str,
     machine: Machine,
     standard: Vec<BenchTiming>,
-    oracle: Vec<BenchTiming>,
+    reference: Vec<BenchTiming>,
     terms: Vec<BenchTiming>,
-    /// Time of the oracle's pairs over that of the fast sweep's, of each work.
-    fast_over_oracle: Vec<f64>,
-    /// Viscosity of the shipped default in the water of the works.
+    /// Time of a pair by the reference over that by the fast sweep, of each case.
+    fast_over_reference: Vec<f64>,
+    /// Viscosity of the shipped default in the water of the cases.
     default_viscosity: Vec<DefaultViscosity>,
 }
 
@@ -82,9 +82,9 @@ pub fn bench(args: &BenchArgs) -> Result<String> {
         version: env!("CARGO_PKG_VERSION"),
         machine,
         standard: Vec::new(),
-        oracle: Vec::new(),
+        reference: Vec::new(),
         terms: Vec::new(),
-        fast_over_oracle: Vec::new(),
+        fast_over_reference: Vec::new(),
         default_viscosity: Vec::new(),
     };
     for &water in &args.size {
@@ -113,25 +113,27 @@ pub fn bench(args: &BenchArgs) -> Result<String> {
             for work in works {
                 // One after the other, so that the peak of memory is that of one.
                 tables.standard.extend(bench::time(std::slice::from_ref(&work), &counts, 3)?);
-                // The oracle takes a minute and more for a larger one, and tells nothing new.
+                // The reference takes a minute and more for a larger case, with the same result.
                 if !args.developed && water <= MAX_REFERENCE_PARTICLES {
                     let sets = [&work.overrides[..], &[("model.sweep", "reference")]].concat();
-                    tables.oracle.extend(bench::time(&[work.with_overrides(&work.name, &sets)], &[1], 2)?);
+                    tables.reference.extend(bench::time(&[work.with_overrides(&work.name, &sets)], &[1], 2)?);
                 }
             }
         }
     }
-    for oracle in &tables.oracle {
+    for reference in &tables.reference {
         let same = |t: &&BenchTiming| {
-            (t.threads, t.dimension, t.water, &t.work) == (1, oracle.dimension, oracle.water, &oracle.work)
+            (t.threads, t.dimension, t.water, &t.work) == (1, reference.dimension, reference.water, &reference.work)
         };
-        tables.fast_over_oracle.extend(tables.standard.iter().find(same).map(|t| oracle.pair_ns / t.pair_ns));
+        tables.fast_over_reference.extend(tables.standard.iter().find(same).map(|t| reference.pair_ns / t.pair_ns));
     }
-    if let Some(low) = tables.fast_over_oracle.iter().find(|&&r| r < args.floor.unwrap_or(0.0)) {
+    if let Some(low) = tables.fast_over_reference.iter().find(|&&r| r < args.floor.unwrap_or(0.0)) {
         let help = "something in the sweep has become slower: compare `perf` of both versions";
-        return Err(
-            Error::new(ErrorKind::Usage, format!("the fast sweep is only {low:.1} times the oracle's")).help(help)
-        );
+        return Err(Error::new(
+            ErrorKind::Usage,
+            format!("the fast sweep is only {low:.1} times as fast as the reference"),
+        )
+        .help(help));
     }
     if args.json {
         let text = serde_json::to_string_pretty(&tables);
@@ -210,23 +212,24 @@ fn on_devices(_: &BenchArgs) -> Result<String> {
 
 fn text(tables: &BenchReport) -> String {
     let Machine { processor, cpus, instructions, .. } = &tables.machine;
-    let instructions = instructions.as_deref().unwrap_or("no lanes: the oracle throughout");
+    let instructions = instructions.as_deref().unwrap_or("no vector instructions: the reference computes everything");
     let mut text = format!("pontoon {}, {processor}, {cpus} processors, {instructions}\n", tables.version);
     if !tables.standard.is_empty() {
         text += "\nA dam break, Verlet, artificial viscosity, diffusion, h = √3 dp:\n";
         text += &table(&rows(&tables.standard));
     }
-    if !tables.oracle.is_empty() {
-        text += "\nThe same by the oracle, in double precision, and its time per pair over the fast sweep's:\n";
-        let mut rows = rows(&tables.oracle);
+    if !tables.reference.is_empty() {
+        text +=
+            "\nThe same by the reference, in double precision, and its time per pair over that of the fast sweep:\n";
+        let mut rows = rows(&tables.reference);
         rows[0].push("ratio".into());
-        for (row, ratio) in rows[1..].iter_mut().zip(&tables.fast_over_oracle) {
+        for (row, ratio) in rows[1..].iter_mut().zip(&tables.fast_over_reference) {
             row.push(format!("{ratio:.1}"));
         }
         text += &table(&rows);
     }
     if !tables.terms.is_empty() {
-        text += "\nWhat each adds, processor time per particle and step over that of the standard work:\n";
+        text += "\nProcessor time per particle and step with each addition, over that of the standard case:\n";
         text += &table(&term_rows(&tables.terms));
     }
     text += "\nEffective kinematic viscosity of the shipped default in this water, at a shear of 1/s:\n";

@@ -88,7 +88,7 @@ struct LogArgs {
     /// How progress, warnings and errors are said on standard error
     #[arg(long, value_name = "FORMAT", default_value = "text")]
     log: LogFormat,
-    /// Serve the page of the run while it goes on, to this machine alone; --live=PORT at this port [default: a free one]
+    /// Serve the page of the run during the run, to this machine alone; --live=PORT at this port [default: a free one]
     #[arg(long, value_name = "PORT", num_args = 0..=1, require_equals = true, default_missing_value = "0")]
     live: Option<u16>,
 }

@@ -75,7 +75,7 @@ pub fn stress(args: StressArgs) -> Result<u8> {
         pictures.first().map_or(String::new(), |p| p.display().to_string())
     ));
     Ok(if stop.load(Ordering::Relaxed) {
-        print_error("interrupted: the same command goes on\n");
+        print_error("interrupted: the same command continues\n");
         130
     } else if ledger.entries.iter().any(|entry| wrong(&entry)) {
         3

@@ -143,7 +143,7 @@ fn planned_table(jobs: &[Job], ran: &[JobResult], planned: &[TimeEstimate]) -> S
         let standing = match &ran.state {
             JobState::Finished => "has been run",
             JobState::Failed(_) => "failed before",
-            JobState::Interrupted => "goes on",
+            JobState::Interrupted => "continues",
             JobState::Planned if planned.measured => "",
             JobState::Planned => "at the usual speed",
         };
@@ -254,7 +254,7 @@ fn draw_runs(jobs: &[Job], ran: &[JobResult], mut shot: PictureOptions, png: &Pa
 /// The exit code of a list of runs.
 pub fn list_exit_code(done: &JobListResult) -> u8 {
     if done.interrupted {
-        print_error("interrupted: the same command goes on\n");
+        print_error("interrupted: the same command continues\n");
         130
     } else if done.ran.iter().any(|r| matches!(r.state, JobState::Failed(_))) {
         1

@@ -8,6 +8,7 @@ use std::{
 use crate::{
     error::{Error, ErrorKind, Result},
     output::checkpoint,
+    run::statistics::{RAO_FILE, SPECTRA_FILE},
     scene::{Scene, files},
 };
 
@@ -63,14 +64,17 @@ pub(crate) fn create_run_folder(file: &Path, out: Option<&Path>) -> Result<PathB
     }
 }
 
-/// Removes the report of an earlier failure and the part of a checkpoint from the `folder` of a run that goes on.
+/// Removes the report of an earlier failure, the part of a checkpoint, and the spectra and RAOs of an earlier end from the `folder` of a
+/// run that is resumed. Its own end may have none.
 ///
 /// # Errors
 /// `File` if one cannot be removed.
-pub(crate) fn remove_failure_report(folder: &Path) -> Result<()> {
-    [FAILURE, checkpoint::PART].iter().map(|name| folder.join(name)).try_for_each(|path| match fs::remove_file(&path) {
-        Err(why) if why.kind() != std::io::ErrorKind::NotFound => Err(Error::write(&path, "removed", &why)),
-        _ => Ok(()),
+pub(crate) fn remove_ends(folder: &Path) -> Result<()> {
+    [FAILURE, checkpoint::PART, SPECTRA_FILE, RAO_FILE].iter().map(|name| folder.join(name)).try_for_each(|path| {
+        match fs::remove_file(&path) {
+            Err(why) if why.kind() != std::io::ErrorKind::NotFound => Err(Error::write(&path, "removed", &why)),
+            _ => Ok(()),
+        }
     })
 }
 
