@@ -121,8 +121,8 @@ pub(crate) fn complex_amplitudes(series: &[&TimeSeries]) -> Option<(f64, Vec<Com
     Some((step, parts.into_iter().map(|mut of| of.swap_remove(0)).collect()))
 }
 
-/// Returns the interval between frequencies (Hz), and for each series the transforms of its windowed segments. The
-/// segments lie in the time that all series cover: `cut` equal segments, and those that overlap two of them by half.
+/// Returns the interval between frequencies (Hz), and for each series the transforms of its windowed segments. The time
+/// that all series cover is divided into `cut` equal segments. Further segments overlap two neighbours each by half.
 pub(super) fn segment_transforms(series: &[&TimeSeries], cut: usize) -> Option<(f64, Vec<Vec<ComplexAmplitudes>>)> {
     let spans = series.iter().map(|s| s.span());
     let (from, until) = spans.fold((f64::NEG_INFINITY, f64::INFINITY), |(a, b), (x, y)| (a.max(x), b.min(y)));

@@ -329,7 +329,7 @@ fn angular<const D: usize>(six: &Six) -> Bivector<D> {
     Bivector::from_axial(&six.as_slice()[D..D + Bivector::<D>::COMPONENTS])
 }
 
-/// Returns ω_b (1/s), the highest natural frequency of a fully submerged body on the compressibility of the water. ω_b
+/// Returns ω_b (1/s), the highest natural frequency of a fully submerged body with compressible water as its spring. ω_b
 /// is the larger of the highest translational and the highest rotational frequency. Every boundary particle of the
 /// outer layer is a spring of stiffness ρ₀ c₀² dpᴰ⁻² along its normal: a column of water dp long on a face dpᴰ⁻¹.
 pub fn stiffest_frequency<const D: usize>(shape: &Shape<D>, body: &FreeBody<D>, medium: &FluidProperties<D>) -> f64 {

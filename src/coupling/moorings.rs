@@ -277,7 +277,7 @@ impl<const D: usize> Moorings<D> {
     }
 }
 
-/// Returns the share of a kernel's weight behind a plane: ∫ (1 − s²)³ ds from `t` to 1 over the same integral from −1 to 1, –.
+/// Returns the share (–) of a kernel's weight behind a plane: ∫ (1 − s²)³ ds from `t` to 1 over the same integral from −1 to 1.
 /// `t` is the distance of the kernel's centre from the plane over the kernel's radius.
 fn share_behind(t: f64) -> f64 {
     let t = t.clamp(-1.0, 1.0);

@@ -71,8 +71,8 @@ pub struct VolumeProperties<const D: usize> {
     pub volume: f64,
     /// Centroid in the shape's frame, m.
     pub centroid: Vector<D>,
-    /// ∫ (x − centroid)(x − centroid)ᵀ dV, m⁵ (m⁴ in 2-D). The inertia about the centroid of a body of
-    /// density ρ is ρ tr J in 2-D and ρ (tr J · 1 − J) in 3-D.
+    /// J = ∫ (x − centroid)(x − centroid)ᵀ dV, m⁵ (m⁴ in 2-D). A body of density ρ has the inertia ρ tr J in 2-D
+    /// and ρ (tr J · 1 − J) in 3-D about its centroid.
     pub second_moment: Matrix<D>,
 }
 

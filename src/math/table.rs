@@ -163,8 +163,8 @@ impl TableReader {
         self.columns_and_damage().0
     }
 
-    /// As [`TableReader::all_columns`], with the lines of the rows that it leaves out, or in which it leaves out a cell that is no
-    /// number. The last row does not count: a stopped run may have cut it.
+    /// As [`TableReader::all_columns`], and the numbers of the lines where it leaves out a row or a cell that is no number. These
+    /// exclude the last row: a stopped run may have cut it.
     pub(crate) fn columns_and_damage(&self) -> (Vec<Vec<f64>>, Vec<usize>) {
         let mut columns = vec![Vec::new(); self.layout.count];
         let number = |cell: &str| cell::number(cell, self.layout.decimal);

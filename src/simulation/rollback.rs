@@ -18,10 +18,10 @@ use crate::ranks::Ranks;
 /// Steps between two stored states. Storing a state takes about as long as a step, so this costs less than 1 %.
 const EVERY: u64 = 500;
 
-/// Steps that a state must be older than the alarm; a younger one may be ill already.
+/// Steps that a state must be older than the alarm; a younger one may already be wrong.
 const AGE: u64 = 100;
 
-/// Times that a run is rescued; a run that needs more is not computed but nursed.
+/// Largest number of rollbacks of a run; at the next alarm the run stops.
 const MOST: usize = 3;
 
 /// Number of files made so far: ranks on one machine share a folder, and ranks in one process a process number.

@@ -1,9 +1,9 @@
-//! Prescribed motions: a slide along a direction or a rotation about a hinge, by a table or a formula; or several of them, each
-//! in the frame moved by those before it, as stacked actuators.
+//! Prescribed motions: a slide along a direction or a rotation about a hinge. A law (table, formula or wave) gives its value.
+//! Of several, each acts in the frame that the previous ones moved.
 //!
 //! Positions and velocities both come from the law itself, never from differences of poses, so that a slow
-//! start is as exact as a fast motion. At time t the pose of a driven solid is its start pose, moved by the law's value at t; a
-//! table that starts at a non-zero value starts there.
+//! start is as exact as a fast motion. At time t the pose of a driven solid is its start pose, moved by the law's value at t. A
+//! non-zero first value displaces the solid from the start.
 
 use crate::{
     error::{Error, Result},

@@ -8,8 +8,8 @@ const INCH: f64 = 0.0254;
 /// Metres of a px.
 pub(super) const PIXEL: f64 = INCH / 96.0;
 
-/// Returns the lengths (m) of a unit of the drawing along x and y, or `None` if the drawing does not give its size. A
-/// drawing gives its size if its width or height has a unit. Without a viewBox, its unit is the px, 1/96 inch.
+/// Returns the length (m) of one drawing unit along x and along y, or `None` if the drawing does not give its size. A
+/// drawing gives its size if its width or height has a unit. Without a viewBox, the drawing unit is 1 px, 1/96 inch.
 ///
 /// # Errors
 /// The reason why width, height or viewBox is wrong.
