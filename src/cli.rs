@@ -50,7 +50,7 @@ Try:
   pontoon scenes                      what is there to run
   pontoon run raft                    several floats, a paddle, a tank
   pontoon run raft --dp 0.01          the same, finer
-  pontoon inspect raft                what it costs, what looks wrong, every value in force
+  pontoon inspect raft                what it costs, what looks wrong, every effective value
 Results go to runs/<scene>: open report.html first; frames.pvd is for ParaView, series/*.csv for
 anything."
 )]
@@ -76,7 +76,7 @@ or a file is wrong; 3 a check misses its bound; 130 interrupted.")]
     /// Go on with an interrupted run, to the same bits as an unbroken one
     #[command(after_help = "Example:\n  pontoon resume runs/raft")]
     Resume(run::ResumeArgs),
-    /// Tell what a scene would cost and what looks wrong with it, and print every value in force
+    /// Tell what a scene would cost and what looks wrong with it, and print every effective value
     #[command(after_help = "\
 Examples:
   pontoon inspect raft --dp 0.01

@@ -68,7 +68,7 @@ impl NativeScene {
         self.origin.named(self.scene.plan())
     }
 
-    /// Returns a hash of the values in force without those of outputs, end and guard, which do not change states.
+    /// Returns a hash of the effective values without those of outputs, end and guard, which do not change states.
     ///
     /// # Errors
     /// As [`Scene::resolve`].
@@ -161,7 +161,7 @@ impl NativeScene {
         self.scene.to_toml().or_raise(py)
     }
 
-    /// Returns key, value as TOML, and source of each value in force.
+    /// Returns key, value as TOML, and source of each effective value.
     fn values(&self, py: Python<'_>) -> PyResult<Vec<(String, String, String)>> {
         let values = self.origin.named(self.scene.resolve()).or_raise(py)?;
         Ok(values.into_iter().map(|value| (value.key, value.value, value.source.to_string())).collect())

@@ -122,7 +122,7 @@ pub(crate) fn complex_amplitudes(series: &[&TimeSeries]) -> Option<(f64, Vec<Com
 }
 
 /// Returns the interval between frequencies (Hz), and for each series the transforms of its windowed segments. The time
-/// that all series cover is divided into `cut` equal segments. Further segments overlap two neighbours each by half.
+/// that all series cover is divided into `cut` equal segments. One more is centred on each inner boundary.
 pub(super) fn segment_transforms(series: &[&TimeSeries], cut: usize) -> Option<(f64, Vec<Vec<ComplexAmplitudes>>)> {
     let spans = series.iter().map(|s| s.span());
     let (from, until) = spans.fold((f64::NEG_INFINITY, f64::INFINITY), |(a, b), (x, y)| (a.max(x), b.min(y)));

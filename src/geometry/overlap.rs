@@ -42,8 +42,8 @@ impl<const D: usize> Shape<D> {
     }
 }
 
-/// Returns a position (m) deeper than `deeper` (m, positive) inside both posed shapes, and its depth (m). The search
-/// halves boxes as long as they may contain such a position, and returns `None` if it finds no such position.
+/// Returns a position (m) inside both posed shapes, deeper than `deeper` (m, positive), and its depth (m). The search
+/// halves the common bounding box repeatedly, omits parts without such a position, and returns `None` if it finds none.
 pub(crate) fn find_overlap<const D: usize>(
     (one, here): (&Shape<D>, &Pose<D>),
     (other, there): (&Shape<D>, &Pose<D>),

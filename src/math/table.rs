@@ -1,7 +1,7 @@
 //! Tables of numbers in text files: rows of cells, usually below a row of names.
 //!
-//! Separators are commas, semicolons, tabs or blanks; decimal signs are points or commas. The reader finds these, and the rows of
-//! names and units, if only one interpretation of the file is possible. It describes the layout in its remarks.
+//! Separators are commas, semicolons, tabs or blanks; decimal signs are points or commas. The reader detects these and
+//! the rows of names and units. It refuses a file with several interpretations. It describes the layout in its remarks.
 
 mod cell;
 mod column_name;

@@ -1,9 +1,9 @@
 //! Energies of the water and of the free bodies.
 //!
-//! Water: kinetic Σ ½ m v²; potential −Σ m g·r since the start; compression Σ m e(ρ) with
+//! Water: kinetic Σ ½ m v²; potential −Σ m g·r; compression Σ m e(ρ) with
 //! e = ∫ P/ρ² dρ from ρ₀ to ρ.
-//! Bodies: ½ M V² + ½ Ω·I Ω; −M g·R₀ since the start.
-//! With symmetry planes all sums include the images.
+//! Bodies: ½ M V² + ½ Ω·I Ω; potential −M g·R₀.
+//! Potential energies start at zero. With symmetry planes all sums include the images.
 
 use serde::{Deserialize, Serialize};
 

@@ -203,7 +203,7 @@ pub(crate) fn scene_and_values(run: &RunData) -> String {
     values.extend(m.values.iter().map(|v| vec![v.key.clone(), v.value.clone(), v.source.clone()]));
     format!(
         "<div class=\"wide\"><table>{rows}</table></div>\n<details><summary>The scene as written</summary><pre tabindex=\"0\">{}</pre></details>\n\
-         <details><summary>All {} values in force, and who said them</summary>{}</details>\n",
+         <details><summary>All {} effective values and their sources</summary>{}</details>\n",
         escape(&run.scene_text),
         m.values.len(),
         scrolling_table(&values)
@@ -276,7 +276,7 @@ pub(crate) fn differences(runs: &[RunData]) -> String {
         }
     }
     if rows.len() == 1 {
-        return "<p>All values in force are the same.</p>\n".into();
+        return "<p>All effective values are the same.</p>\n".into();
     }
     scrolling_table(&rows)
 }

@@ -120,7 +120,7 @@ pub struct InspectReport {
     pub solids: Vec<SolidSummary>,
     /// The files of the probes, followed by the contact lists.
     pub series: Vec<SeriesColumns>,
-    /// Every value in force and its source.
+    /// Every effective value and its source.
     pub values: Vec<ValueInForce>,
 }
 

@@ -30,8 +30,8 @@ fn scene_name(file: &Path) -> String {
     own.and_then(Path::file_stem).map_or_else(|| "run".into(), |n| n.to_string_lossy().into_owned())
 }
 
-/// Makes the folder of a new run: `out`, which must be new or empty, or else `runs/<scene>`,
-/// `runs/<scene>-2`, … whichever is free.
+/// Makes the folder of a run: `out`, which must be new or empty; without `out`, the first free of
+/// `runs/<scene>`, `runs/<scene>-2`, …
 ///
 /// # Errors
 /// `Usage` if `out` holds something; `File` if the folder cannot be made.
@@ -79,7 +79,7 @@ pub(crate) fn remove_ends(folder: &Path) -> Result<()> {
 }
 
 /// Copies the scene in `file` into the run's `folder`, or writes `text` in its place. Also copies the tables beside it that are
-/// named in `words`, the TOML of the scene in force, so that the run can be resumed wherever its folder is moved.
+/// named in `words`, the TOML of the effective scene, so that the run can be resumed wherever its folder is moved.
 ///
 /// # Errors
 /// `File` if something cannot be read or written.

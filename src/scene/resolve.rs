@@ -1,4 +1,4 @@
-//! Checks a scene, fills in its defaults and lists every value in force with its source.
+//! Checks a scene, fills in its defaults and lists every effective value with its source.
 
 use std::{cell::RefCell, fmt};
 
@@ -21,7 +21,7 @@ use crate::{
     probe::GaugeSurface,
 };
 
-/// A value in force and its source.
+/// An effective value and its source.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ResolvedValue {
     /// The key, as in `solid.box.free.density`.
@@ -235,7 +235,7 @@ impl Scene {
         Ok((scene, defaults))
     }
 
-    /// Returns every value in force and its source, in the order of `docs/reference/scene.md`.
+    /// Returns every effective value and its source, in the order of `docs/reference/scene.md`.
     ///
     /// # Errors
     /// `Scene` if the scene is wrong, or a file with a shape is missing or wrong.

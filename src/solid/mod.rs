@@ -109,7 +109,7 @@ pub enum Role<const D: usize> {
     Free(FreeBody<D>),
 }
 
-/// Mass and start of a free body: [`FreeBody::from_density`], [`FreeBody::from_mass`] or [`FreeBody::new`].
+/// A free body's mass and velocity, from [`FreeBody::from_density`], [`FreeBody::from_mass`] or [`FreeBody::new`].
 ///
 /// ```
 /// use pontoon::prelude::*;

@@ -298,7 +298,7 @@ impl Wavemaker {
         Ok(self.wave("components", height, 1, train, self.tones(components)?))
     }
 
-    /// Returns the motion that reproduces `elevation` (m over s) at `distance` (m) from the paddle, to first order. The
+    /// Returns the motion that reproduces the record `elevation` (m) at `distance` (m) from the paddle, to first order. The
     /// waves arrive `delay` (s) later than in the record. The motion omits the frequencies outside the middle 99 % of
     /// the record's energy.
     ///

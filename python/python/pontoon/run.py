@@ -275,7 +275,7 @@ class Run:
 
     @property
     def manifest(self) -> dict[str, Any]:
-        """The content of `manifest.json`: particles, steps, wall time, checks, warnings, every value in force."""
+        """The content of `manifest.json`: particles, steps, wall time, checks, warnings, every effective value."""
         return self._manifest
 
     @property

@@ -152,12 +152,12 @@ class Scene:
         return changed
 
     def __getitem__(self, key: str) -> Any:
-        """Returns the value in force of a key, as `scene["solid.buoy.free.density"]`, be it a default.
+        """Returns the effective value of a key, as `scene["solid.buoy.free.density"]`, be it a default.
 
         Entries of lists are found by name or number: `scene["joint.hinge.kind"]`, `scene["joint.0.kind"]`.
 
         Raises:
-            UnknownNameError: no value with this key is in force. It is a KeyError too.
+            UnknownNameError: there is no effective value with this key. It is a KeyError too.
         """
         values = {known: value for known, value, _ in self._native.values()}
         section, _, rest = key.partition(".")
@@ -168,7 +168,7 @@ class Scene:
             if found and key not in values and _parsed(value) == name:
                 key = f"{section}.{found[1]}.{rest}"
         if key not in values:
-            raise unknown("value in force with the key", key, values, code="unknown-key")
+            raise unknown("effective value with the key", key, values, code="unknown-key")
         return _parsed(values[key])
 
     def copy(self) -> Scene:
@@ -176,7 +176,7 @@ class Scene:
         return Scene(self._native)
 
     def values(self) -> dict[str, tuple[Any, str]]:
-        """Returns every value in force with its source: a line of the scene, a change, or a default with its reason."""
+        """Returns every effective value with its source: a line of the scene, a change, or a default with its reason."""
         return {key: (_parsed(value), source) for key, value, source in self._native.values()}
 
     @property
