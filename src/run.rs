@@ -90,8 +90,7 @@ pub struct Progress {
     pub steps: u64,
     /// Wall time so far, s, including the time before an interruption.
     pub wall: f64,
-    /// Water particles and boundary particles near water, times force passes, divided by the wall time of stepping,
-    /// 1/s.
+    /// (Water particles + boundary particles near water) × force passes ÷ wall time of stepping, 1/s.
     pub rate: f64,
     /// The energy drift, if a probe measures it.
     pub energy: Option<EnergyDrift>,
@@ -195,11 +194,11 @@ pub fn run(path: &Path, options: &RunOptions, watch: &mut dyn RunObserver) -> Re
     run_on(&Ranks::default(), path, options, watch).and_then(of_first_rank)
 }
 
-/// Runs the scene at `path` on several `ranks`, each of which calls this function with the same arguments. The first rank writes the
-/// files and reports to its `watch`; the others return `None`.
+/// Runs the scene at `path` on several `ranks`, each of which calls this function with the same arguments. The first rank writes
+/// the files and reports to its `watch`; the others return `None`.
 ///
 /// # Errors
-/// As [`run`], of the first rank; of another rank, if its step failed and that of the first did not.
+/// On the first rank, those of [`run`]; on another, that of its step, if the first rank's did not fail.
 pub fn run_on(
     ranks: &Ranks,
     path: &Path,
@@ -231,8 +230,8 @@ pub fn run_text(text: &str, folder: &Path, options: &RunOptions, watch: &mut dyn
     with_threads(options.threads, || by_dimension(&scene, origin, &Ranks::default(), watch)).and_then(of_first_rank)
 }
 
-/// Writes the scene `text` to `folder/scene/scene.toml`, with those files beside it in `from` that `scene`, which was parsed
-/// from it, names. Returns the path of the scene.
+/// Writes the scene `text` to `folder/scene/scene.toml`. Copies beside it the files in `from` that `scene`, parsed from `text`,
+/// names. Returns the path of the scene.
 ///
 /// # Errors
 /// `File` if a file cannot be read or written.
@@ -241,10 +240,10 @@ pub fn copy_text_scene(text: &str, from: &Path, scene: &Scene, folder: &Path) ->
     Ok(folder.join(run_folder::SCENE))
 }
 
-/// Continues the interrupted run in `folder`; the results are bitwise identical to an uninterrupted run. The run
-/// continues from its last checkpoint. If that checkpoint is missing or damaged, it continues from the previous
-/// checkpoint, and the manifest records a warning. `guards` holds keys of the scene's `[guard]` and their new values: a
-/// run that a guard stopped can continue with another guard.
+/// Continues the interrupted run in `folder`; the results are bitwise identical to an uninterrupted run. The run continues from
+/// its last checkpoint or, if that is missing or damaged, from the previous one; the manifest then records a warning. `guards`
+/// holds keys of the scene's `[guard]`, or `model.device`, and their new values: a run that a guard stopped can continue with
+/// another guard.
 ///
 /// # Errors
 /// `Restart` if the run has finished or is still in progress, holds no complete checkpoint, or its scene has changed
@@ -258,8 +257,8 @@ pub fn resume(
     resume_on(&Ranks::default(), folder, guards, threads, watch).and_then(of_first_rank)
 }
 
-/// Continues the interrupted run in `folder` on several `ranks`, as [`run_on`] runs a scene. The number of ranks may be another than
-/// before.
+/// Continues the interrupted run in `folder` on several `ranks`, as [`run_on`] runs a scene. The number of ranks may have
+/// changed.
 ///
 /// # Errors
 /// As [`resume`] and [`run_on`].
@@ -310,8 +309,8 @@ pub(crate) fn of_first_rank(outcome: Option<RunOutcome>) -> Result<RunOutcome> {
 
 /// The origin of a run.
 enum RunOrigin<'a> {
-    /// A scene file, for the folder `out` or a folder that the program chooses. If `text` is given, it is the content of
-    /// the file, which need not exist.
+    /// A scene file. The run's folder is `out`, or the program chooses it. If `text` is given, it replaces the content of the
+    /// file, which need not exist.
     Fresh { file: &'a Path, text: Option<&'a str>, out: Option<&'a Path>, overrides: &'a [(String, String)] },
     /// A checkpoint in the run's folder.
     Resumed { folder: &'a Path, checkpoint: Box<Checkpoint>, warning: Option<String>, lock: Option<Lock> },

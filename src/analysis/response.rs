@@ -1,5 +1,5 @@
 //! Response to a regular wave: the fundamental of a motion relative to that of the wave. Each fundamental has its own period, and
-//! a mean and a drift beside it.
+//! the fit also contains a mean and a drift.
 
 use std::f64::consts::TAU;
 
@@ -8,7 +8,7 @@ use nalgebra::{Matrix4, Vector4};
 use super::{AlignedMetrics, ErrorMetrics, alignment::least_by_golden_section};
 use crate::{math::time_series::TimeSeries, plan::ResponseReference};
 
-/// Range of the fitted period about the stated one, relative to it: a body that drifts with a fifth of the wave's speed
+/// Range of the fitted period about the stated period, relative to this: a body that drifts with a fifth of the wave's speed
 /// meets a period 25 % longer.
 const RANGE: f64 = 0.25;
 

@@ -67,7 +67,7 @@ pub(crate) fn zero_crossing_waves(series: &TimeSeries) -> Option<ZeroCrossingWav
     all.sort_by(|a, b| b.0.total_cmp(&a.0));
     let mean =
         |waves: &[(f64, f64)], of: fn(&(f64, f64)) -> f64| waves.iter().map(of).sum::<f64>() / waves.len() as f64;
-    // The highest third has the number of waves rounded to the nearest integer; of two waves it has one wave.
+    // The highest third is a third of the number of waves, rounded to the nearest integer: one of two waves.
     let highest = &all[..(all.len() + 1) / 3];
     Some(ZeroCrossingWaves {
         count: all.len(),

@@ -1,22 +1,22 @@
 //! Acoustic added mass: the inertia of the water that acoustic waves accelerate together with a light body.
 //!
 //! A boundary particle of the outer layer near water acts as a spring of stiffness k = ρ₀ c₀² dpᴰ⁻² along its normal n: a column
-//! of water dp long on a face dpᴰ⁻¹. All of them give the stiffness K = Σ k J Jᵀ with J = (n, arm ∧ n). A body of mass matrix M
-//! oscillates on it with ω_b² = max eig(M⁻¹K) and radiates sound. Particles carry no sound above 1.14 c₀/h (Wendland kernel), so
-//! a body with a higher ω_b cannot radiate: each time step adds the share λ/4, λ = Δt² ω_b², to the energy of that mode, and the
-//! oscillation does not decay, or it grows. Such a body gets the inertia of the water that sound reaches in T = h/c₀, Z = θ T² K,
-//! θ = 1/Λ − 1/(T ω_b)², Λ = 1.3:
+//! of water dp long on a face dpᴰ⁻¹. Together these springs have the stiffness K = Σ k J Jᵀ with J = (n, arm ∧ n). On them, a
+//! body of mass matrix M oscillates with ω_b² = max eig(M⁻¹K) and radiates sound. Particles carry no sound above 1.14 c₀/h
+//! (Wendland kernel), so a body with a higher ω_b cannot radiate: each time step adds the share λ/4, λ = Δt² ω_b², to the energy
+//! of that mode, and the oscillation persists or grows. Such a body gets the inertia Z = θ T² K of the water that sound reaches
+//! in T = h/c₀, with θ = 1/Λ − 1/(T ω_b)² and Λ = 1.3:
 //!
 //!   (M + Z) Δv = Δt (W + C) + s S,      S ← S + Δt (W + C) − M Δv,      s = 1 − exp(−Δt/τ),  τ = 10 h/c₀
 //!
 //! W is the load of water, weight and pushes. C is the load of contacts and joints, as a mean over τ. S is the pending impulse,
-//! which the body receives within τ. Z therefore has no effect on slow motions, M Δv = Δt (W + C); at a frequency ω the error is
+//! which the body receives within τ. Slow motions are therefore free of Z: M Δv = Δt (W + C). At a frequency ω the error is
 //! ω τ Z/M, which falls with h². Momentum is conserved: the body has received, or will receive, each impulse of the water. A body
-//! with (T ω_b)² < Λ is unchanged.
+//! with (T ω_b)² ≤ Λ is unchanged.
 //!
-//! When Z grows by ΔZ, the newly reached water moves at v_w before, and with the body afterwards. This inelastic collision gives
-//! the body M Δv = −M (M + Z)⁻¹ ΔZ (v − v_w) at once, and the water next to it the opposite impulse. Without this exchange a
-//! light body would strike water with the inertia M + Z instead of M, and would gain energy.
+//! When Z grows by ΔZ, water of velocity v_w begins to move with the body. This inelastic collision gives the body the impulse
+//! M Δv = −M (M + Z)⁻¹ ΔZ (v − v_w) at once, and the water next to it the opposite impulse. Without this exchange a light body
+//! would strike water with the inertia M + Z instead of M, and would gain energy.
 
 use nalgebra::{SMatrix, SVector};
 use serde::{Deserialize, Serialize};
@@ -218,8 +218,8 @@ impl<const D: usize> AcousticAddedMass<D> {
         self.state.contacts += (contacts - self.state.contacts) * applied_share(system, dt);
     }
 
-    /// Returns the stiffness K (N/m, N and N m) of the wet springs without the locked motions, and the trace (N/m) of its
-    /// translational part with the locked motions.
+    /// Returns the stiffness K (N/m, N and N m) of the wet springs, with zeros for the locked motions, and the trace (N/m) of its
+    /// translational part before that.
     fn springs(&self, system: &System<D>, body: &FreeBody<D>) -> (Square, f64) {
         let mut sum = Square::zeros();
         self.for_each_wet(system, |part, _, _, along| sum += along * along.transpose() * part);

@@ -92,7 +92,7 @@ impl<const D: usize> Bodies<D> {
         self.constraints.step_limit(engine, &now, t).min(moorings)
     }
 
-    /// Returns the kinematics of each solid at time `t` (s), the time of the engine, or an empty list unless `wanted`.
+    /// Returns the kinematics of each solid at the engine's time `t` (s) if `wanted`, or else an empty list.
     fn kinematics(&self, system: &System<D>, t: f64, wanted: bool) -> Vec<Kinematics<D>> {
         if !wanted {
             return Vec::new();
@@ -194,9 +194,9 @@ impl<const D: usize> Bodies<D> {
         self.engine.as_mut()
     }
 
-    /// Moves the solids over the whole step, under the loads of the last force pass and the weights times `weight`. The
-    /// factor `weight` does not apply to a body that no water touches. Calls `hook` after the water has moved and
-    /// before the bodies move. Returns the impulses that bodies and mooring lines gave to the water.
+    /// Moves the solids over the whole step, under the loads of the last force pass and the weights, both times `weight`. The
+    /// factor `weight` does not apply to a body that no water touches. Calls `hook` after the water has moved and before the
+    /// bodies move. Returns the impulses that bodies and mooring lines gave to the water.
     pub(crate) fn advance(
         &mut self,
         system: &mut System<D>,
@@ -287,14 +287,14 @@ impl<const D: usize> BodyStep<'_, D> {
         }
     }
 
-    /// Returns the contact forces of each pair: after [`BodyStep::advance_bodies`] of this step, before that call of
-    /// the last step.
+    /// Returns the contact forces of each pair: those of this step after [`BodyStep::advance_bodies`], otherwise those of the
+    /// last step.
     pub fn contacts(&self) -> Vec<ContactForce<D>> {
         self.bodies.engine().map(|engine| engine.contacts()).unwrap_or_default()
     }
 
-    /// Advances the free bodies by the step, unless an earlier call has advanced them. The simulation calls this
-    /// function after the hook if the hook does not.
+    /// Advances the free bodies by the step, unless an earlier call has advanced them. If the hook does not call this function,
+    /// the simulation does so afterwards.
     ///
     /// # Errors
     /// `Usage` if the bodies are external; `Fault` if a body leaves the valid range.
@@ -475,8 +475,8 @@ const AT_SIDE: &str = "Too long a solid is not repeated. Let it reach 2.5 kernel
 const AT_FACE: &str = "The water beyond a face is prescribed and carries no body. Hold it with a mooring or  free.locked,  move the \
                        face further away, or end the run earlier:  until.";
 
-/// Returns the fault of the first solid whose position in `solids`, at the end of a step, is not allowed: at its image across a
-/// symmetry plane, at a periodic side, or in the buffer of an open boundary.
+/// Returns the fault of the first of `solids` that, at the end of a step, touches its image across a symmetry plane or reaches a
+/// periodic side or the buffer of an open boundary.
 fn out_of_place<const D: usize>(system: &System<D>, solids: &[Kinematics<D>]) -> Option<EngineFault<D>> {
     let fault = |(solid, now): (usize, &Kinematics<D>)| {
         let (reason, cause) = if system.meets_its_image(solid, &now.pose) {

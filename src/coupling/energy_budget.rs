@@ -100,8 +100,8 @@ pub(crate) struct Accounting<const D: usize> {
 pub(crate) type AccountingState<const D: usize> = Accounting<D>;
 
 impl<const D: usize> Accounting<D> {
-    /// Creates the accounting for the solids of `system`, with the energy budget if `energy`. It makes a power
-    /// breakdown every `interval` steps, or no power breakdown if `interval` is `None`.
+    /// Creates the accounting for the solids of `system`, with the energy budget if `energy` is true, and a power breakdown every
+    /// `interval` steps, or none if `interval` is `None`.
     pub(crate) fn new(system: &System<D>, energy: bool, interval: Option<u32>) -> Self
     where
         Dim<D>: HasPairLoop<D>,
@@ -232,8 +232,8 @@ impl<const D: usize> Accounting<D> {
         self.budget.damping -= energy;
     }
 
-    /// Adds the work of the faces of thin parts: the `energy` (J) that the water received, and that of the `impulses` (N s, N m s)
-    /// on the solids.
+    /// Adds the work of the faces of thin parts: `energy` (J) on the water, and that of the `impulses` (N s, N m s) on the
+    /// solids.
     pub(crate) fn add_repelled(&mut self, system: &System<D>, energy: f64, impulses: &[Load<D>]) {
         self.budget.walls += energy;
         for (i, ((solid, impulse), work)) in system.solids().iter().zip(impulses).zip(&mut self.work).enumerate() {
@@ -251,8 +251,8 @@ impl<const D: usize> Accounting<D> {
         self.budget.coupling += energy;
     }
 
-    /// Adds to the breakdown of solid number `i` the load of the ballast that the solid took on, and the change of
-    /// momentum by it. `body` is the solid's mass after the change. Locks bear the remainder along locked motions.
+    /// Adds the load of the `ballast` that solid number `i` took on, and the resulting `change` of momentum, to the
+    /// breakdown of the solid. `body` is its mass after the change. Locks bear the remainder along locked motions.
     pub(super) fn add_ballast(&mut self, i: usize, body: &FreeBody<D>, ballast: Load<D>, change: Load<D>) {
         let breakdown = &mut self.breakdown[i];
         breakdown.ballast += ballast;

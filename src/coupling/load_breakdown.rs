@@ -35,13 +35,12 @@ pub struct LoadBreakdown<const D: usize> {
     pub forces: Load<D>,
     /// Loads that a program adds with `push`.
     pub pushes: Load<D>,
-    /// Momentum that ballast brought at the end of the step, over the length of the step; negative where ballast left.
+    /// Momentum that ballast brought at the end of the step, divided by the step; negative where ballast left.
     pub ballast: Load<D>,
     /// Reaction of locked motions: by definition the negative sum of the other loads along these motions.
     pub locks: Load<D>,
-    /// Rate of change of momentum and angular momentum, including that of ballast. A 3-D body in a joint, on a rope or partly
-    /// locked is special: its rate of change of angular momentum is the expression that the engine integrates, I(R₀) ΔΩ/Δt + Ω ∧
-    /// I Ω.
+    /// Rate of change of momentum and angular momentum, including that of ballast. For a 3-D body in a joint, on a rope or partly
+    /// locked, the rate of angular momentum is the expression that the engine integrates, I(R₀) ΔΩ/Δt + Ω ∧ I Ω.
     pub change: Load<D>,
 }
 
@@ -98,8 +97,8 @@ impl<const D: usize> LoadBreakdown<D> {
         self.change - self.sum()
     }
 
-    /// Assigns the residual to the joints or to the ropes, according to the larger force. Joints and ropes rotate
-    /// between the iterations of a step, but the directions of their reported forces do not.
+    /// Assigns the residual to the joints or the ropes, whichever have the larger force. Joints and ropes rotate between the
+    /// iterations of a step, but the directions of their reported forces do not.
     pub(super) fn assign_residual_to_constraints(&mut self) {
         let rest = self.residual();
         let constraints =

@@ -1,9 +1,9 @@
 //! The masses of free solids with ballast: after each step they get their values at the new time.
 //!
-//! Mass arrives and leaves with the velocity of its point of the body, so that the points of the body keep their
-//! velocities. A mass Δm at x brings the momentum Δm v(x). The centre of mass moves within the body by s, its velocity changes by
-//! Ω s, and the angular momentum about it becomes I' Ω. A locked translation of the centre of mass stays at rest; the lock bears
-//! the necessary load.
+//! Mass arrives and leaves with the velocity of its point of the body, so that the points of the body keep their velocities. A
+//! mass Δm at x brings the momentum Δm v(x). The centre of mass moves within the body by s, its velocity changes by Ω s, and the
+//! angular momentum about it becomes I' Ω. Along a locked translation, the centre of mass stays at rest, and the lock bears the
+//! necessary load.
 
 use super::{Bodies, body_step::fault_error, load_breakdown::momentum};
 use crate::{

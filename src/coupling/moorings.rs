@@ -25,8 +25,8 @@ pub(crate) struct Moorings<const D: usize> {
     junctions: Junctions,
     /// Fixed solids with the boxes (m) in which they are near.
     fixed: Vec<(usize, Bounds<D>)>,
-    /// Distance (m) within which a fixed solid is near: at least the length of the longest segment, so that both ends of a
-    /// segment that leaves a bed find this bed.
+    /// Distance (m) within which a node finds a fixed solid. It is at least the length of the longest segment, so that both ends
+    /// of a segment that leaves a bed find this bed.
     bed_reach: f64,
     /// Load on each solid in the last step; empty without lines.
     loads: Vec<Load<D>>,
@@ -38,7 +38,7 @@ pub(crate) struct Moorings<const D: usize> {
 pub(crate) type Change = (String, ConstraintChange);
 
 impl<const D: usize> Moorings<D> {
-    /// Makes the lines of `system`, at rest between their ends on solids that start as `start`.
+    /// Makes the lines of `system`, at rest between their ends, with the solids at `start`.
     ///
     /// # Errors
     /// `Scene` if no equilibrium of a line is found.
@@ -132,7 +132,7 @@ impl<const D: usize> Moorings<D> {
     }
 
     /// The boxes (m) in which the lines read the water in a step from time `t` (s) on. `None` if a line begins in this step,
-    /// because it may read water anywhere.
+    /// because that line may read water anywhere.
     #[cfg(feature = "gpu")]
     pub(crate) fn water_ranges(&self, t: f64, reach: f64) -> Option<Vec<Bounds<D>>> {
         let begins = |mooring: &Mooring<D>| !mooring.line.state.acts && mooring.lifetime().contains(t);
@@ -146,8 +146,8 @@ impl<const D: usize> Moorings<D> {
         self.lines.iter().map(|mooring| mooring.lifetime().next_limit(t)).fold(f64::INFINITY, f64::min)
     }
 
-    /// Advances all lines over a step. `now` has the solids at its start, and `next` the driven solids at its end. Returns the
-    /// lines that began, ended or broke.
+    /// Advances all lines over a step. `now` has the solids at the start, `next` the driven solids at the end. Returns the lines
+    /// that began, ended or broke.
     pub(super) fn advance(
         &mut self,
         system: &System<D>,
@@ -194,7 +194,7 @@ impl<const D: usize> Moorings<D> {
         changes
     }
 
-    /// Begins a line, at rest between its ends, or ends it, if its lifetime requires this at time `t` (s). Returns this change.
+    /// Begins a line, in equilibrium, or ends it, if its lifetime requires this at time `t` (s). Returns this change.
     fn update_lifetime(
         &self,
         system: &System<D>,

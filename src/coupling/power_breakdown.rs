@@ -10,9 +10,9 @@
 //!   walls      Σ m (v·(a′ − g) + P/ρ² ρ̇′) + Σ (F′·V + T′·Ω)
 //!   work       −Σ (F·V + T·Ω)             of the solids on the water
 //!
-//! where a prime marks the pass with the pressure alone: Ė = viscous + diffusion + walls + work. `walls` is the power of the
-//! boundary particles and their repulsion. The sum of viscous, diffusion and walls needs no second pass. With corrected gradients
-//! the pressure does not exchange energy exactly. The difference `gradient` follows from a third pass with uncorrected gradients.
+//! A prime marks the pass with the pressure alone. Ė = viscous + diffusion + walls + work. `walls` is the power of the boundary
+//! particles and their repulsion. The sum of viscous, diffusion and walls needs no second pass. With corrected gradients the
+//! pressure does not exchange energy exactly. The difference `gradient` follows from a third pass with uncorrected gradients.
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};

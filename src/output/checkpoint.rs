@@ -92,7 +92,7 @@ pub struct Checkpoint {
 }
 
 impl Checkpoint {
-    /// Returns the checkpoint data before the first step of the `scene`, with the changed keys `sets` and the `files` that it names.
+    /// Returns the checkpoint data before the first step of the `scene`, with the changed keys `sets` and the scene's `files`.
     pub(crate) fn initial(scene: &str, sets: &[(String, String)], files: Vec<(String, u64)>) -> Self {
         Self {
             version: env!("CARGO_PKG_VERSION").into(),
@@ -111,8 +111,8 @@ impl Checkpoint {
     }
 
     /// Writes the checkpoint to `folder` as [`LAST`], with the bytes of the simulation that `state` writes. The former last
-    /// checkpoint becomes [`PREVIOUS`] if `good` is true. Otherwise it is replaced, because an invalid checkpoint must not
-    /// replace a valid checkpoint.
+    /// checkpoint becomes [`PREVIOUS`] if `good` is true. Otherwise the new one replaces it, because an invalid checkpoint must
+    /// not replace a valid one.
     ///
     /// # Errors
     /// `File` if the checkpoint cannot be written; the former checkpoints remain.
@@ -123,7 +123,7 @@ impl Checkpoint {
         state: impl FnOnce(&mut dyn Write) -> io::Result<()>,
     ) -> Result<()> {
         let (last, previous) = (folder.join(LAST), folder.join(PREVIOUS));
-        // The file is on the disk under its temporary name before the others are renamed: from here on, two complete
+        // The file is on the disk under its temporary name before the other files are renamed: from here on, two complete
         // checkpoints exist.
         write_partial(&last, |file| self.pack(file, state).and_then(|()| file.sync_all()))?;
         if good {

@@ -221,12 +221,12 @@ impl FrameWriter {
     }
 }
 
-/// Writes the `file` of the water in a frame with these `fields`, in the box with the corners `crop` (m) if there is one; returns its
-/// size, B. Where each rank has its own water, all must call this, and the first has the particles: it gets a piece of the water of the
-/// others at a time.
+/// Writes the `file` of the water in a frame with these `fields`, in the box with the corners `crop` (m) if there is one; returns
+/// its size, B. Where each rank has its own water, all ranks must call this. The first rank writes all particles; it gets those
+/// of the others piece by piece.
 ///
 /// # Errors
-/// Errors of the file, after the others have given theirs.
+/// Errors of the file, after the other ranks have sent their water.
 pub(crate) fn write_water<const D: usize>(
     file: &mut (impl Write + Seek),
     system: &System<D>,
@@ -262,7 +262,7 @@ impl<'a, const D: usize> Shown<'a, D> {
         }
     }
 
-    /// Gives the values in `all` of the particles in the frame to `use_piece`, a piece at a time.
+    /// Gives the values in `all` of the particles in the frame to `use_piece`, piece by piece.
     fn give<T: Pod>(&self, all: &[T], mut use_piece: impl FnMut(&[T])) {
         let mut rest = self.shown.as_deref();
         let mut chosen = Vec::new();
@@ -282,8 +282,8 @@ impl<'a, const D: usize> Shown<'a, D> {
         }
     }
 
-    /// Writes the `file` of the particles with these `fields` and, if they are of solids, the number of the `owner` of each; returns its
-    /// size, B.
+    /// Writes the `file` of the particles with these `fields` and, for particles of solids, the number of the `owner` of each.
+    /// Returns its size, B.
     fn write(
         &self,
         file: &mut (impl Write + Seek),

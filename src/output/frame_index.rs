@@ -1,4 +1,4 @@
-//! The list of the frames of a run for ParaView, a .pvd file. It is never in memory as a whole, because a run may have very many
+//! The list of the frames of a run for ParaView, a .pvd file. The whole list is never in memory, because a run may have very many
 //! frames.
 
 use std::{
@@ -49,7 +49,7 @@ impl FrameIndex {
         self.replace(old, times, first)
     }
 
-    /// Replaces the list by a copy of the `old` one, if there is one, with the frames from number `first` on.
+    /// Replaces the list by a copy of the `old` list, if any, followed by the frames from number `first` on.
     fn replace(&mut self, old: Option<File>, times: &[f64], first: usize) -> Result<()> {
         let mut length = 0;
         write_partial(&self.path, |file| {
@@ -66,8 +66,8 @@ impl FrameIndex {
     }
 }
 
-/// Writes the entries of frames from number `first` on at these `times` (s), and the end of the list; before the first frame also its
-/// beginning. Returns the number of bytes without the end.
+/// Writes the entries of frames from number `first` on at these `times` (s), and the end of the list. If `first` is 0, also
+/// writes its beginning. Returns the number of bytes without the end.
 pub(super) fn write_entries(
     out: &mut dyn Write,
     first: usize,
@@ -94,7 +94,7 @@ pub(super) fn write_entries(
 /// Adds the times (s) in the list at `path` to `times`, from byte `from` on. Returns where the last entry begins.
 ///
 /// # Errors
-/// `File` if the list cannot be read or is none of this program.
+/// `File` if the list cannot be read or is not one of this program.
 pub(super) fn read_times(path: &Path, from: u64, times: &mut Vec<f64>) -> Result<u64> {
     let refused = |why| Error::read(path, &why);
     let mut file = File::open(path).map_err(refused)?;

@@ -54,7 +54,7 @@ impl FrameSequence {
         Ok((!times.is_empty()).then(|| Self { folder: folder.to_owned(), times, last_entry }))
     }
 
-    /// Reads what was added to the list since it was read, or all of it if it is another one.
+    /// Reads the entries added since the last reading, or the whole list if it is another one.
     ///
     /// # Errors
     /// As [`FrameSequence::open`].
@@ -103,8 +103,8 @@ impl FrameSequence {
         read_points(&self.path("solids", number))
     }
 
-    /// Reads the nodes (m) of the mooring lines in frame `number`, one list for each line that acts and two for a line that has
-    /// broken; none if the frame has no lines.
+    /// Reads the nodes (m) of the mooring lines in frame `number`: one list for each line that acts, two for a line that has
+    /// broken. Returns no list if the frame has no lines.
     ///
     /// # Errors
     /// `File` if the frame cannot be read.

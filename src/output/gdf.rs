@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
-/// Returns the text of a file with these triangles (m), each as a quadrilateral whose last two corners coincide. `title` is its first
-/// line, `gravity` in m/s². There are no planes of symmetry.
+/// Returns the text of a file with these triangles (m), each as a quadrilateral whose last two corners coincide. The first line
+/// is `title`; `gravity` is in m/s². There are no planes of symmetry.
 pub(crate) fn gdf_text(title: &str, gravity: f64, panels: &[[[f64; 3]; 3]]) -> String {
     let title = title.replace(['\n', '\r'], " ");
     let mut text = format!("{title}\n1.0 {gravity:?}\n0 0\n{}\n", panels.len());

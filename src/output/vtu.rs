@@ -92,7 +92,7 @@ impl DataArray {
 }
 
 impl<'a> ArrayPieces<'a> {
-    /// The array `name` of `count` values of the type of `kind`, with `components` per point or cell: `give` gives the pieces in order.
+    /// An array of `count` values of the type of `kind`, with `components` per point or cell. `give` gives the pieces in order.
     pub(crate) fn new(
         (name, components): (&str, usize),
         (kind, count): (Values, usize),
@@ -103,7 +103,7 @@ impl<'a> ArrayPieces<'a> {
 
     /// The beginning of the XML element, to which the offset of the values is appended.
     fn element(&self) -> String {
-        // The format's default is a single component; meshio makes a column of an array that states it.
+        // The format's default is one component; meshio turns an array that states this number into a column.
         let components = match self.components {
             1 => String::new(),
             components => format!(" NumberOfComponents=\"{components}\""),
@@ -230,8 +230,8 @@ impl<W: Write> Blocks<W> {
     }
 }
 
-/// Writes a header and the compressed blocks of `array`; returns their size, B. All values are taken, also after an error. The header has 64-bit entries: number of
-/// blocks, bytes per block, bytes of an incomplete last block or 0, and compressed bytes of each block.
+/// Writes a header and the compressed blocks of `array`; returns their size, B. Takes all values, even after an error. Header of
+/// 64-bit entries: number of blocks, bytes per block, bytes of an incomplete last block or 0, and compressed bytes of each block.
 fn append_blocks(array: ArrayPieces<'_>, file: &mut (impl Write + Seek)) -> io::Result<u64> {
     let bytes = array.count * array.kind.size();
     let header = [bytes.div_ceil(BLOCK), BLOCK, bytes % BLOCK];
@@ -268,11 +268,11 @@ pub(crate) fn write(points: Vec<f32>, cells: Cells, fields: Vec<DataArray>) -> i
     Ok(file.into_inner())
 }
 
-/// Writes the `file` of a grid with a vertex at each of the `points`, three coordinates each (m), and fields of the points, a block of
-/// an array at a time; returns its size, B.
+/// Writes the `file` of a grid with a vertex at each of the `points`, three coordinates each (m), and fields of the points, block
+/// by block. Returns its size, B.
 ///
 /// # Errors
-/// Errors of the file, after all values have been taken: other ranks give theirs in any case.
+/// Errors of the file. All values are taken first, because the other ranks send theirs in any case.
 pub(crate) fn write_vertices<'a>(
     file: &mut (impl Write + Seek),
     count: usize,
@@ -285,8 +285,8 @@ pub(crate) fn write_vertices<'a>(
     write_grid(file, points, (connectivity, 1, VERTEX), fields)
 }
 
-/// Writes the `file` of a grid: `points`, the points of each cell and their number, the type of the cells, and fields of the points;
-/// returns its size, B.
+/// Writes the `file` of a grid: `points`, the points of each cell and their number, the type of the cells, and fields of the
+/// points. Returns its size, B.
 fn write_grid(
     file: &mut (impl Write + Seek),
     points: ArrayPieces<'_>,
@@ -322,7 +322,7 @@ fn write_grid(
             "{beginning}{fields}</PointData>\n<Points>\n{points}</Points>\n<Cells>\n{cells}</Cells>\n</Piece>\n</UnstructuredGrid>\n"
         )
     };
-    // The offsets are known after the arrays: the description gets the space of the largest ones, and spaces fill the rest.
+    // The offsets are known only after the arrays: blanks pad the description to its length with the largest offsets.
     let space = text(&vec![u64::MAX; arrays.len()]).len();
     let start = (space + START.len()) as u64;
     let mut outcome = file.seek(SeekFrom::Start(start)).map(drop);

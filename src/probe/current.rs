@@ -41,7 +41,7 @@ impl ProbeDefinition for CurrentPlan {
     }
 }
 
-/// Measures the discharge along the axis of the current, and the acceleration by the body force that holds it.
+/// Measures the discharge along the axis of the current, and the acceleration by the body force that maintains it.
 pub struct CurrentProbe {
     axis: usize,
 }

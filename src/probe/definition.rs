@@ -47,8 +47,7 @@ pub(crate) trait ProbeDefinition: Sized {
         None
     }
 
-    /// Returns the columns that a statistic evaluates if it names the probe without a column. Each column has its place
-    /// (m), if any.
+    /// Returns the columns that a statistic evaluates if it names only the probe. Each column has its place (m), if any.
     fn series(&self, _dimension: usize) -> Vec<(String, Option<Vec<f64>>)> {
         Vec::new()
     }

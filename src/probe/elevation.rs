@@ -145,9 +145,9 @@ impl ProbeDefinition for ElevationPlan {
 /// Number of surfaces below the highest surface that [`GaugeSurface::All`] measures.
 const LOWER_SURFACES: usize = 3;
 
-/// Measures the level of the water (m) at a horizontal place, and its change η (m) since the creation of the probe.
-/// A gauge on a solid goes with the point of the solid; η is relative to that point then.
-/// Both are NaN at a dry place. Spray that fills less than half the kernel's weight does not count.
+/// Measures the level of the water (m) at a horizontal place, and its change η (m) since the creation of the probe. A gauge on a
+/// solid moves with a point of it, and η is relative to this point. Both values are NaN at a dry place. Spray that fills less
+/// than half the kernel's weight does not count.
 pub struct ElevationProbe<const D: usize> {
     at: MountedPoint<D>,
     surface: GaugeSurface,
@@ -172,8 +172,8 @@ impl<const D: usize> ElevationProbe<D> {
         Self::mounted(system, at, surface, None)
     }
 
-    /// Creates the gauge of the highest surface at `at` (m; D − 1 coordinates) in the frame of the solid called `solid`, with which
-    /// it goes: the level is that of the world, η is relative to the point of the solid.
+    /// Creates the gauge of the highest surface at `at` (m; D − 1 coordinates) in the frame of the solid called `solid`, which
+    /// carries the gauge. The level is a height in the world; η is relative to the gauge's point of the solid.
     ///
     /// # Errors
     /// The errors of [`ElevationProbe::new`]; `Scene` if there is no such solid.
@@ -188,7 +188,7 @@ impl<const D: usize> ElevationProbe<D> {
         Ok(gauge)
     }
 
-    /// The height (m) of the point of the solid that the gauge goes with; 0 for a gauge of the world.
+    /// The height (m) of the gauge's point of the solid; 0 for a gauge of the world.
     fn height(&self, system: &System<D>) -> f64 {
         if self.at.is_mounted() { self.at.position(system)[D - 1] } else { 0.0 }
     }

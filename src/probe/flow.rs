@@ -2,8 +2,8 @@
 //!
 //!   q = Σ V_b v_b·n w(s_b),   w(s) = (1 − |s|/a)/a  for |s| < a = 2 dp
 //!
-//! The sum is over the particles whose projection lies on the section; s is their distance from it. The weights of rows
-//! dp apart, times dp, sum to 1 for every position of the section between the rows.
+//! The sum is over the particles whose projection lies on the section; s is their distance from it. For rows of particles dp
+//! apart, the weights times dp sum to 1 wherever the section lies between them.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

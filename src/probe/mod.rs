@@ -400,8 +400,8 @@ impl ProbeConfig {
         contact_force::verify_list(self, key, scene)
     }
 
-    /// Returns the file stems of `probes`. A stem is the name, the default name, or the key, with a number from the
-    /// second probe of that key on.
+    /// Returns the file stems of `probes`. A stem is the name, the default name, or the key. From the second unnamed probe
+    /// with the same key on, the key has a number.
     pub(crate) fn names(probes: &[Self]) -> Vec<String> {
         let mut nameless = BTreeMap::<&str, usize>::new();
         let name = |probe: &Self| {

@@ -40,9 +40,9 @@ impl ProbeDefinition for MooringPlan {
 }
 
 /// Measures the tension (N; N/m in 2-D) of a mooring line at its first end (the fairlead), at its second end (the anchor), in the
-/// segments a quarter, half and three quarters of its length from the first end, and the largest tension. It also measures the
-/// length (m) on fixed solids, and the angle (deg) of the second end above the horizontal. The tension at an end is the mean
-/// force over the last step on the solid or point that holds it.
+/// segments at a quarter, half and three quarters of its length from the first end, and the largest tension. Also measures the
+/// length (m) that lies on fixed solids, and the angle (deg) of the second end above the horizontal. The tension at an end is the
+/// mean force over the last step on the solid or point that holds it.
 pub struct MooringProbe {
     line: usize,
 }

@@ -1,9 +1,9 @@
 //! Position, angles and velocity of a solid.
 //!
-//! Surge, sway and heave are the displacements of its centre from the start along x, y (3-D) and up. The centre of mass of a
-//! solid with ballast moves within the solid; for such a solid, the centre is the point of the solid at which the centre of mass
-//! is at the start. In 2-D pitch is the angle of the solid's frame, counter-clockwise; in 3-D the frame is turned by roll about
-//! x, then pitch about y, then yaw about z (right-handed, world axes): R = R_z R_y R_x.
+//! Surge, sway and heave are displacements of the solid's centre from the start along x, y (3-D) and up. In a solid with ballast
+//! the centre of mass moves; the centre is then the point of the solid at which the centre of mass is at the start. In 2-D pitch
+//! is the angle of the solid's frame, counter-clockwise. In 3-D the frame is turned by roll about x, then pitch about y, then yaw
+//! about z (right-handed, world axes): R = R_z R_y R_x.
 
 use serde::{Deserialize, Serialize};
 

@@ -1,4 +1,4 @@
-//! Points at which probes measure: of the world, or of a solid that they go with.
+//! Points at which probes measure: fixed in the world, or moving with a solid.
 
 use super::{find_solid, point};
 use crate::{
@@ -43,7 +43,7 @@ impl<const D: usize> MountedPoint<D> {
         self.solid.map_or(self.at, on_solid)
     }
 
-    /// Its velocity, m/s, and the rotation of its axes; those of the world if it does not go with a solid.
+    /// The velocity (m/s) of the point and the rotation of its axes: zero and the identity for a point of the world.
     pub(super) fn velocity_and_axes(&self, system: &System<D>) -> (Vector<D>, Matrix<D>) {
         let Some(solid) = self.solid else { return (Vector::zeros(), Matrix::identity()) };
         let now = &system.solids()[solid].kinematics;

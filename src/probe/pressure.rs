@@ -1,5 +1,5 @@
-//! Pressure of the water at a point: P(x) = Σ V_b [P_b (ρ₀/ρ_b)² + ρ₀ g·(x − r_b)] W / Σ V_b W, with the pressure that acts in the
-//! pair force ([`System::lattice_pressure`]). The term ρ₀ g·(x − r_b) is hydrostatic, so the point may lie on a wall.
+//! Pressure of the water at a point: P(x) = Σ V_b [P_b (ρ₀/ρ_b)² + ρ₀ g·(x − r_b)] W / Σ V_b W. P_b is the pressure that acts in
+//! the pair force ([`System::lattice_pressure`]). The term ρ₀ g·(x − r_b) is hydrostatic, so the point may lie on a wall.
 
 use serde::{Deserialize, Serialize};
 
@@ -45,7 +45,7 @@ impl ProbeDefinition for PressurePlan {
     }
 }
 
-/// Measures the pressure (Pa, relative to the air) at a point, which may go with a solid. The pressure is 0 while the point is dry.
+/// Measures the pressure (Pa, relative to the air) at a point, which may move with a solid. The pressure at a dry point is 0.
 pub struct PressureProbe<const D: usize> {
     at: MountedPoint<D>,
 }
@@ -59,7 +59,7 @@ impl<const D: usize> PressureProbe<D> {
         Ok(Self { at: MountedPoint::in_world(at, D)? })
     }
 
-    /// Creates the probe at the point `at` (m; `D` coordinates) in the frame of the solid called `solid`, with which it goes.
+    /// Creates the probe at `at` (m; `D` coordinates) in the frame of the solid called `solid`. The point moves with the solid.
     ///
     /// # Errors
     /// The errors of [`PressureProbe::new`]; `Scene` if there is no such solid.

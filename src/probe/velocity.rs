@@ -45,8 +45,8 @@ impl ProbeDefinition for VelocityPlan {
     }
 }
 
-/// Measures the velocity (m/s) of the water at a point. The velocity is NaN while the point is dry. At a point of a solid it is
-/// relative to the point, along the axes of the solid.
+/// Measures the velocity (m/s) of the water at a point; NaN while the point is dry. At a point of a solid, the velocity is
+/// relative to this point and along the solid's axes.
 pub struct VelocityProbe<const D: usize> {
     at: MountedPoint<D>,
 }
@@ -60,7 +60,7 @@ impl<const D: usize> VelocityProbe<D> {
         Ok(Self { at: MountedPoint::in_world(at, D)? })
     }
 
-    /// Creates the probe at the point `at` (m; `D` coordinates) in the frame of the solid called `solid`, with which it goes.
+    /// Creates the probe at `at` (m; `D` coordinates) in the frame of the solid called `solid`. The point moves with the solid.
     ///
     /// # Errors
     /// The errors of [`VelocityProbe::new`]; `Scene` if there is no such solid.

@@ -18,10 +18,10 @@ use crate::{
     solid::Solid,
 };
 
-/// Checks that no device is asked for on several `ranks`.
+/// Refuses a device for a run on several `ranks`.
 ///
 /// # Errors
-/// `Usage` if one is.
+/// `Usage` if the scene names one.
 pub(super) fn check_ranks(scene: &Scene, ranks: &Ranks) -> Result<()> {
     match scene.device_name() {
         Some(name) if ranks.count() > 1 => {
@@ -76,7 +76,7 @@ pub(super) fn place_on_device<const D: usize>(
         .help("build it with the feature gpu:  cargo build --release --features gpu;  or leave --device (model.device) out"))
 }
 
-/// Advances by a step, or on a device until an output is due, but not past `until` (s). Then fetches the data that the outputs
+/// Takes a step or, on a device, steps until an output is due, but not past `until` (s). Fetches the data that the due outputs
 /// read. The ranks that `leader` leads take the step too.
 pub(super) fn step<const D: usize>(
     sim: &mut Simulation<D>,

@@ -51,7 +51,7 @@ pub(super) struct DriftMonitor {
 }
 
 impl DriftMonitor {
-    /// The first budget of `plan`, else the first probe of the energy, of a run in so many dimensions.
+    /// The monitor of the first budget of `plan`, or else of its first energy probe, in `dimension` dimensions.
     pub(crate) fn from_plan(plan: &Plan, dimension: usize) -> Option<Self> {
         let find = |reading| plan.probes.iter().position(|probe| probe.kind.energy_reading() == Some(reading));
         let unit = if dimension == 2 { "J/m" } else { "J" };

@@ -1,5 +1,4 @@
-//! Inspection of a scene without a run: the facts and findings of the pre-flight, a short timing and every value in
-//! force.
+//! Inspection of a scene without a run: the facts and findings of the pre-flight, a short timing and every effective value.
 
 use std::{path::Path, time::Instant};
 
@@ -185,8 +184,8 @@ pub struct StepTiming {
     pub run_s: f64,
 }
 
-/// Reads, resolves and builds the scene at `path` with the options `asked`, and returns its inspection. It writes
-/// nothing, and creates no particles if there would be more than [`LARGE`].
+/// Reads, resolves and builds the scene at `path` with the options `asked`, and returns its inspection. Writes no file, and
+/// creates no particles if the scene has more than [`LARGE`].
 ///
 /// # Errors
 /// The errors that [`run`](super::run) would return before its first step.
@@ -194,10 +193,10 @@ pub fn inspect(path: &Path, asked: &InspectOptions) -> Result<Inspection> {
     inspect_scene(&Scene::read(&run_folder::scene_file(path), &asked.overrides)?, asked)
 }
 
-/// As [`inspect`], of a scene that has been read, without the overrides of `asked`.
+/// Inspects a `scene` as [`inspect`] does. Ignores the overrides of `asked`.
 ///
 /// # Errors
-/// As [`inspect`].
+/// Those of [`inspect`].
 pub fn inspect_scene(scene: &Scene, asked: &InspectOptions) -> Result<Inspection> {
     with_threads(asked.threads, || match scene.dimension {
         #[cfg(feature = "dim2")]
@@ -246,8 +245,7 @@ where
     Ok(Inspection::Report(Box::new(report)))
 }
 
-/// Times steps for up to a second. The first step is excluded because it begins with cold caches, unless it takes all
-/// the time.
+/// Times steps for up to a second. The result excludes the first step, which begins with cold caches, unless it is the only one.
 fn time_steps<const D: usize>(sim: &mut Simulation<D>, preflight: &mut Preflight) -> Option<StepTiming> {
     let begun = Instant::now();
     let mut times = Vec::new();

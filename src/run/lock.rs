@@ -1,5 +1,5 @@
-//! One program at a time in a run's folder: the system locks `run.lock` while the run is in progress, so that a killed run leaves
-//! the file but no lock.
+//! A lock lets only one program write in a run's folder. The system releases the lock of a killed run; the file `run.lock`
+//! remains.
 
 use std::{
     fs::{self, File, OpenOptions, TryLockError},
@@ -27,7 +27,7 @@ impl Lock {
     /// Takes the right to write in `folder`.
     ///
     /// # Errors
-    /// `Restart` if a run goes on there: names its process; `File` if the lock cannot be made.
+    /// `Restart`, with the process, if a run goes on; `File` if the file cannot be written.
     pub(crate) fn acquire(folder: &Path) -> Result<Self> {
         let path = folder.join(LOCK);
         let refused = |why: std::io::Error| Error::write(&path, "written", &why);

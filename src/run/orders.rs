@@ -1,4 +1,4 @@
-//! A run on several ranks. The first rank leads it: it writes the files and tells the others what to do next. The others have the
+//! A run on several ranks. The first rank writes the files and tells the other ranks what to do next. The other ranks have the
 //! same simulation and take the same steps.
 
 use std::{fs, io, path::Path};
@@ -72,10 +72,10 @@ impl Message {
     }
 }
 
-/// Exchanges messages; returns the order.
+/// Exchanges the ranks' messages; returns the order.
 ///
 /// # Errors
-/// `Fault` if a rank failed, or is at another time than the first: all ranks get this error.
+/// `Fault` on all ranks if a rank failed, or is at another time than the first.
 fn exchange(ranks: &Ranks, own: &Message) -> Result<Order> {
     let all: Vec<Message> = ranks.gather_words(own.words()).into_iter().map(Message::from_words).collect();
     let first = all[0];
@@ -152,8 +152,7 @@ pub(super) fn water_at_setup(plan: &Plan) -> WaterAtSetup {
     if plan.probes.is_empty() { WaterAtSetup::Places } else { WaterAtSetup::First }
 }
 
-/// Takes the steps of a run that the first of the `ranks` leads, from the start of `scene` or from `checkpoint`, until the first
-/// rank ends it.
+/// Follows the first of the `ranks` through a run, from the start of `scene` or from `checkpoint`, until that rank ends the run.
 ///
 /// # Errors
 /// The error of a step that failed on this rank only.

@@ -1,7 +1,7 @@
 //! The outputs that a run writes while it proceeds, and their times: tables of the probes, frames, checkpoints.
 //!
-//! An output is due at the multiples of its interval. The run writes it at the first step at or past its due time, so
-//! that an output never changes a time step. A table records the true time.
+//! An output is due at multiples of its interval. The run writes it after the first step that reaches its due time, so that no
+//! output changes a time step. A table records the time after that step.
 
 use std::{
     fs,
@@ -123,9 +123,8 @@ pub(crate) struct Outputs<const D: usize> {
 }
 
 impl<const D: usize> Outputs<D> {
-    /// Opens the outputs that `plan` asks for, in the run's `folder`. If `from` is present, the outputs continue from its
-    /// positions, which are those of the checkpoint. `probes` are those of `probe_factory::probes_from_plan`, in the plan's
-    /// order.
+    /// Opens the outputs of `plan` in the run's `folder`. If `from` is present, the outputs continue from these positions of a
+    /// checkpoint. `probes` are the result of `probe_factory::probes_from_plan`, in the plan's order.
     ///
     /// # Errors
     /// `File` if a file cannot be written; `Restart` if the existing files do not match the checkpoint.
@@ -183,7 +182,7 @@ impl<const D: usize> Outputs<D> {
         Ok(Self { probes: watched, contact_lists: contacts, frames, checkpoint })
     }
 
-    /// Returns the earliest time (s) at which an output is due: the past, if one reads every step.
+    /// Returns the earliest time (s) at which an output is due; a past time if an output reads every step.
     #[cfg(feature = "gpu")]
     pub(crate) fn next_due(&self) -> f64 {
         let at = |due: &OutputSchedule| due.next as f64 * due.every;
@@ -313,8 +312,8 @@ impl<const D: usize> Outputs<D> {
         }
     }
 
-    /// Removes all rows and frames written after the positions `extent`. The due time of the next checkpoint is
-    /// unchanged, so that no checkpoint is due before the run has passed the alarm.
+    /// Removes all rows and frames after the positions `extent`. Keeps the due time of the next checkpoint, so that no
+    /// checkpoint is due before the run has passed the time of the alarm.
     ///
     /// # Errors
     /// `File` if the disk reports an error.

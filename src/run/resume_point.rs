@@ -1,5 +1,5 @@
-//! Selects the checkpoint in a run's folder from which the run continues: the last one, or the one before if the last is
-//! unusable. Defines which keys of its scene may change then. Writes nothing.
+//! Selects the checkpoint from which a run continues: the last in the run's folder, or the previous one if the last is unusable.
+//! Defines which keys of the scene may change then. Writes no file.
 
 use std::{fs, path::Path};
 
@@ -24,7 +24,7 @@ pub(crate) struct ResumePoint {
 }
 
 impl ResumePoint {
-    /// Continues the run in `folder` with other guards, which stop a run but do not change its equations, or on another device.
+    /// Replaces guards, which stop a run but do not change its equations, or the device, by `sets` for the run in `folder`.
     ///
     /// # Errors
     /// `Usage` for any other key; `Scene` for an invalid value.
@@ -55,7 +55,7 @@ fn may_change(key: &str) -> bool {
 /// The newest usable checkpoint in `folder`.
 ///
 /// # Errors
-/// The error of the last checkpoint, if the one before is unusable too.
+/// The error of the last checkpoint, if the previous one is unusable too.
 pub(crate) fn latest_resume_point(folder: &Path) -> Result<ResumePoint> {
     let last = match load_matching(folder, checkpoint::LAST) {
         Ok((checkpoint, scene)) => return Ok(ResumePoint { checkpoint, scene, warning: None }),

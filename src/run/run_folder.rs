@@ -23,18 +23,18 @@ pub(crate) fn scene_file(path: &Path) -> PathBuf {
     if path.is_dir() { path.join("scene.toml") } else { path.to_owned() }
 }
 
-/// A short name for the scene in `file`: its folder's, or its own if it is not called `scene.toml`.
+/// A short name for the scene in `file`: its own name, or that of its folder if it is `scene.toml`.
 fn scene_name(file: &Path) -> String {
     let whole = fs::canonicalize(file).unwrap_or_else(|_| file.to_owned());
     let own = if whole.file_name().is_some_and(|n| n == "scene.toml") { whole.parent() } else { Some(whole.as_path()) };
     own.and_then(Path::file_stem).map_or_else(|| "run".into(), |n| n.to_string_lossy().into_owned())
 }
 
-/// Makes the folder of a run: `out`, which must be new or empty; without `out`, the first free of
-/// `runs/<scene>`, `runs/<scene>-2`, …
+/// Makes the folder of a run: `out`, which must be new or empty. Without `out`: the first free one of `runs/<scene>`,
+/// `runs/<scene>-2`, …
 ///
 /// # Errors
-/// `Usage` if `out` holds something; `File` if the folder cannot be made.
+/// `Usage` if `out` is not empty; `File` if the folder cannot be made.
 pub(crate) fn create_run_folder(file: &Path, out: Option<&Path>) -> Result<PathBuf> {
     let refused =
         |path: &Path, why: std::io::Error| Error::write(path, "made", &why).help("choose another folder with --out");
@@ -64,8 +64,8 @@ pub(crate) fn create_run_folder(file: &Path, out: Option<&Path>) -> Result<PathB
     }
 }
 
-/// Removes the report of an earlier failure, the part of a checkpoint, and the spectra and RAOs of an earlier end from the `folder` of a
-/// run that is resumed. Its own end may have none.
+/// Removes the failure report, the partial checkpoint, and the spectra and RAOs of an earlier end from the `folder` of a resumed
+/// run. The resumed run may write none of these.
 ///
 /// # Errors
 /// `File` if one cannot be removed.
@@ -78,8 +78,8 @@ pub(crate) fn remove_ends(folder: &Path) -> Result<()> {
     })
 }
 
-/// Copies the scene in `file` into the run's `folder`, or writes `text` in its place. Also copies the tables beside it that are
-/// named in `words`, the TOML of the effective scene, so that the run can be resumed wherever its folder is moved.
+/// Copies the scene in `file`, or its replacement `text`, into the run's `folder`. Also copies the files beside it that `words`,
+/// the TOML of the effective scene, names. The run can then be resumed wherever its folder is moved.
 ///
 /// # Errors
 /// `File` if something cannot be read or written.

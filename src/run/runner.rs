@@ -141,8 +141,8 @@ where
 }
 
 impl<const D: usize> Runner<D> {
-    /// Steps to the end, or until `watch` requests a stop, and returns the outcome. `renamed` holds the former names in
-    /// the scene.
+    /// Steps to the end, or until `watch` requests a stop, and returns the outcome. `renamed` lists the former names that the
+    /// scene uses.
     pub(crate) fn run(mut self, renamed: &[RenamedName], watch: &mut dyn RunObserver) -> Result<RunOutcome> {
         self.update_manifest();
         self.manifest.write(&self.folder)?;
@@ -243,8 +243,8 @@ impl<const D: usize> Runner<D> {
         Ok(going)
     }
 
-    /// Handles a rollback of the simulation, if there are more than the `known` ones: reports it to the observer and in the
-    /// manifest, and removes the outputs that were written after the time to which the simulation returned.
+    /// Handles a rollback of the simulation beyond the `known` ones. Reports it to the observer and in the manifest. Removes the
+    /// outputs that were written after the time to which the simulation returned.
     fn follow_rollback(&mut self, known: usize, watch: &mut dyn RunObserver) -> Result<()> {
         let Some(how) = self.sim.rollbacks().get(known).cloned() else {
             return Ok(());
@@ -257,8 +257,8 @@ impl<const D: usize> Runner<D> {
         let Some((_, extent)) = self.rollback_positions.iter().rfind(|(time, _)| *time == how.back_to).cloned() else {
             return Ok(());
         };
-        // Both checkpoints are written first: the existing ones may be later than this state and require rows that are about to
-        // be removed. The state precedes the alarm: a run that resumes from it meets the alarm again, or has another guard.
+        // Both checkpoints are replaced first: the existing ones may be later than this state and need rows that are removed
+        // next. The state precedes the alarm: a resumed run meets the alarm again, unless its guard has changed.
         self.last_checkpoint_valid = false;
         self.outputs.sync()?;
         self.write_checkpoint(known, extent.clone())?;
@@ -283,8 +283,8 @@ impl<const D: usize> Runner<D> {
         self.write_checkpoint(self.sim.rollbacks().len(), self.outputs.positions())
     }
 
-    /// Writes the checkpoint with the present state of the simulation, but with its first `rollbacks` rollbacks only, and with
-    /// the positions `outputs`.
+    /// Writes a checkpoint with the present state of the simulation, only the first `rollbacks` of its rollbacks, and the
+    /// positions `outputs`.
     fn write_checkpoint(&mut self, rollbacks: usize, outputs: OutputPositions) -> Result<()> {
         let (time, wall, cpu) = (self.sim.time(), self.wall_seconds(), self.cpu_seconds());
         let now = Checkpoint { time, wall_seconds: wall, cpu_seconds: cpu, outputs, ..self.checkpoint.clone() };

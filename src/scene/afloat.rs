@@ -66,7 +66,7 @@ pub(super) fn placed_solids<const D: usize>(
     Ok(placed)
 }
 
-/// Adds the warning that bodies start at the equilibrium under a gravity that does not point downwards.
+/// Adds the warning for bodies that start at their equilibrium, if gravity does not point downwards.
 fn note_gravity(ctx: &Context) {
     let Some(gravity) = ctx.gravity.as_ref().filter(|gravity| gravity.strongest > 0.0) else { return };
     let strength = gravity.initial.iter().map(|g| g * g).sum::<f64>().sqrt();
@@ -198,8 +198,8 @@ fn keeps_out<const D: usize>(spec: &SolidSpec<D>, hollow: &Hollow<D>) -> bool {
 }
 
 impl<const D: usize> PlacedSolids<D> {
-    /// Returns the rise (m) of solid number `i` to its equilibrium as a body of `mass` (kg), in water of density `rho0`
-    /// (kg/m³) at `level` (m). Its hollows are dry if they stay so in that place and no body of water fills them.
+    /// Returns the rise (m) of solid number `i` to its equilibrium as a body of `mass` (kg), in water of density `rho0` (kg/m³)
+    /// at `level` (m). A hollow is dry if it stays dry in that place and no body of water fills it.
     fn rise_to_equilibrium(&self, i: usize, mass: f64, rho0: f64, level: f64, water: &[WaterBody<D>]) -> Result<f64> {
         let spec = &self.specs[i];
         let hollows = self.enclosures[i].as_ref().map_or(&[][..], |enclosure| &enclosure.hollows);
@@ -252,8 +252,8 @@ impl<const D: usize> PlacedSolids<D> {
         rho0 * self.hull_at(i, pose, level, water).submerged_volume(pose, level).0
     }
 
-    /// Returns the common rise (m) from the places `rises` (m) at which these bodies displace the mass `more` (kg) in
-    /// addition; `None` if they cannot.
+    /// Returns the common rise (m) of these bodies from the places `rises` (m) at which they displace the additional mass `more`
+    /// (kg); `None` if they cannot.
     fn common_rise(
         &self,
         bodies: &[usize],

@@ -122,10 +122,10 @@ impl Scene {
         self.build_on(&Ranks::default())
     }
 
-    /// As [`Scene::build`], with the work of the filling shared among the `ranks`; each rank gets the whole result.
+    /// As [`Scene::build`], but the `ranks` share the work of the filling; each rank gets the whole result.
     ///
     /// # Errors
-    /// As [`Scene::build`]; `Usage` if another rank cannot open its files.
+    /// Those of [`Scene::build`]; `Usage` if another rank cannot open its files.
     pub(crate) fn build_on<const D: usize>(&self, ranks: &Ranks) -> Result<BuiltScene<D>> {
         let built = in_dimension((), |()| self.build_2d(ranks), |()| self.build_3d(ranks));
         built.unwrap_or_else(|| Err(self.other_dimension(D)))
@@ -355,7 +355,7 @@ impl<const D: usize> SceneParts<D> {
         self.scene.size_estimate(&self.scene.context(), &self.water, &self.model, &self.placed.specs)
     }
 
-    /// Creates the water particles, with the work shared among the `ranks`, of which each has all.
+    /// Creates the water particles. The `ranks` share the work, and each rank gets all particles.
     ///
     /// # Errors
     /// `Scene` if no water is left, or the plan of the run is wrong; `File` if a table cannot be read.
@@ -473,7 +473,7 @@ impl<const D: usize> SceneParts<D> {
     }
 }
 
-/// Adds the note that a carriage moves at the start and the water, with this `velocity` in the scene, goes along.
+/// Adds a note if the water, with this `velocity` in the frame of the carriage, moves over the ground at the start.
 fn note_start_of_tow<const D: usize>(ctx: &Context, towed: &TowedFrame, velocity: &[Vector<D>]) {
     let speed = towed.velocity.value_and_rate(0.0).0;
     let mean = velocity.iter().map(|v| v[towed.axis]).sum::<f64>() / velocity.len().max(1) as f64;

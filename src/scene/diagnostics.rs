@@ -297,7 +297,7 @@ fn example_help(example: &str) -> String {
     format!("write  {}", example.replace('\n', "\n       "))
 }
 
-/// Returns the advice to write the line of `key` in `example`, without the lines that the scene has; `None` if no line is its own.
+/// Returns the advice to write only the line of `key` from `example`; `None` if no line of `example` is that of `key`.
 fn line_of(key: &str, example: &str) -> Option<String> {
     let mut lines = example.lines().map(|line| line.trim_start_matches("write").trim());
     lines.find(|line| line.split('=').next().is_some_and(|k| k.trim() == key)).map(example_help)

@@ -139,7 +139,7 @@ fn damaged(path: &Path, why: impl std::fmt::Display) -> Error {
     Error::scene(format!("{} cannot be read: {why}", path.display())).help("export it again; a mesh is STL or OBJ")
 }
 
-/// Returns the text of the file, without carriage returns as the only line ends, and a note about its encoding.
+/// Returns the text of the file, with `\n` for `\r` if lines end in `\r` alone, and a note about its encoding.
 fn text(path: &Path, bytes: &[u8]) -> Result<(String, Vec<String>)> {
     let Text { text, encoding } = file_content::decode(bytes);
     let text = if text.contains('\n') { text } else { text.replace('\r', "\n") };

@@ -1,7 +1,7 @@
 //! Scenes: reading scene, mesh and drawing files, checking, filling in the defaults, building.
 //!
-//! `toml_source` reads a [`Scene`] from TOML, `overrides` puts the values of `--set` into it and `diagnostics` explains the errors of
-//! the parser. Each file of `section` contains the configuration, validation, defaults and construction of a section of
+//! `toml_source` reads a [`Scene`] from TOML, `overrides` puts the values of `--set` into it and `diagnostics` explains the
+//! errors of the parser. Each file of `section` contains the configuration, validation, defaults and construction of a section of
 //! the scene. `resolve`, `build` and `constraints` combine the sections.
 //!
 //! An absent key is `None`; [`resolve`](Scene::resolve) returns its default and the reason. A vector is a list of two

@@ -1,7 +1,7 @@
 //! Input decks of MoorDyn v2: their line types, points and lines as sections of a scene.
 //!
-//! A deck has sections between lines of hyphens that name them. Tables have two lines of heads, then a row for each entry; options
-//! are a value and its name. The format is that of MoorDyn's user documentation (Hall and others, version 2).
+//! Each section of a deck begins with a line of hyphens that names it. Tables have two header lines, then a row for each entry;
+//! an option is a value and its name. The format is that of MoorDyn's user documentation (Hall and others, version 2).
 
 use std::{fmt::Write as _, path::Path};
 
@@ -285,7 +285,7 @@ impl Deck {
         self.lines.iter().filter(|line| line.points.contains(&p)).count()
     }
 
-    /// The sections of a scene, in which coupled points are on the solid called `solid` and the still water level is at the height
+    /// The sections of a scene, in which coupled points are on the solid called `solid` and the still water is at the height
     /// `level` (m).
     ///
     /// # Errors
@@ -325,8 +325,8 @@ impl Deck {
             }
         }
         for line in &self.lines {
-            // An end at a solid or a point comes first, the ground second. If neither end is on the ground, end B comes first,
-            // which is the fairlead in decks.
+            // An end at a solid or a point comes first, an end on the ground second. If neither end is on the ground, end B comes
+            // first: it is the fairlead in decks.
             let [a, b] = line.points;
             let on_ground = |p: usize| self.points[p].attachment == Attachment::Fixed;
             let [first, second] = if on_ground(b) { [a, b] } else { [b, a] };

@@ -142,7 +142,7 @@ fn entry_index(path: &str, items: &[Spanned<DeValue>], word: &str) -> Result<usi
     })
 }
 
-/// Returns the names of the probes, with those that they have by default; `None` for another list.
+/// Returns the names of the probes, with their default names; `None` for other lists or invalid probes.
 fn probe_names(path: &str, items: &[Spanned<DeValue>]) -> Option<Vec<String>> {
     let items = items.iter().filter(|_| path == "probe");
     let probes = items.map(|item| ProbeConfig::deserialize(ValueDeserializer::from(item.clone())).ok());

@@ -23,7 +23,7 @@ use crate::{
 /// Size of the panels that measure the wetted area, over the largest size of a solid.
 const COARSE: f64 = 0.1;
 
-/// A scene as a solver of potential flow needs it. The origin of its frame is the origin of the scene in the still water; the last
+/// A scene as a solver of potential flow needs it. The origin of its frame is that of the scene, at the still water; the last
 /// axis is vertical.
 #[derive(Clone, Debug, Serialize)]
 pub struct PanelledScene {
@@ -40,8 +40,8 @@ impl PanelledScene {
     /// about `panel_count` panels each. No particles are created.
     ///
     /// # Errors
-    /// `Usage` if the scene is 2-D, gravity is not constant downwards, there is no such solid or it does not reach into the water;
-    /// those of [`Scene::build`].
+    /// `Usage` if the scene is 2-D, gravity is not constant downwards, or a solid does not exist or does not reach into the
+    /// water; those of [`Scene::build`].
     pub fn new(scene: &Scene, names: &[String], panel_count: usize) -> Result<Self> {
         if scene.dimension != 3 {
             let what = "the scene is 2-D, and a panel method computes 3-D bodies";
@@ -61,8 +61,8 @@ impl PanelledScene {
         Ok(Self { title: parts.scene.title.clone().unwrap_or_default(), water, bodies })
     }
 
-    /// Writes `bodies.json` and a mesh of each body into the folder `out`, which is made if it does not exist, and returns the path of
-    /// `bodies.json`. Files of the same names are replaced.
+    /// Writes `bodies.json` and a mesh of each body into the folder `out`, which it creates if necessary. Replaces files of the
+    /// same names. Returns the path of `bodies.json`.
     ///
     /// # Errors
     /// `File` if a file cannot be written.
@@ -114,11 +114,11 @@ pub struct PanelledBody {
     pub displaced_volume_m3: f64,
     /// Centre of buoyancy, m.
     pub centre_of_buoyancy_m: [f64; 3],
-    /// The point about which rotations and moments are: the centre of mass of a free solid, the origin of the frame of another, m.
+    /// The point of reference of rotations and moments: the centre of mass of a free solid, or else the origin of its frame, m.
     pub reference_point_m: [f64; 3],
     /// Mass of a free solid, kg.
     pub mass_kg: Option<f64>,
-    /// Mass of the water of its own in its hollows, which moves with it and is not part of `mass_kg`, kg; absent without any.
+    /// Mass of the water enclosed in hollows, which moves with the body and is not part of `mass_kg`, kg; absent without any.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub enclosed_water_kg: Option<f64>,
     /// Inertia of a free solid about its centre of mass along the axes of the scene, kg m².

@@ -179,8 +179,8 @@ impl Record<'_> {
         })
     }
 
-    /// Takes the unit in which a law is meant, and returns the factor from its values to those of the run: columns in
-    /// degrees are known by their names, or by the row of units.
+    /// Takes the unit in which a law is meant, and returns the factor from the column's values to those of the run. The name or
+    /// the row of units shows that a column is in degrees.
     ///
     /// # Errors
     /// `Scene` if there is no such column.

@@ -294,8 +294,8 @@ impl Scene {
         }
     }
 
-    /// Returns the source of `key`: the default of a key above it, its line, or otherwise the default of the law or
-    /// shape.
+    /// Returns the source of `key`: its own default or its line, or else the default of a key above it, of the law or of
+    /// the shape.
     fn source(&self, key: &str, defaults: &Defaults) -> ValueSource {
         let above = |key: &str| key.rsplit_once('.').map(|(parent, _)| parent.to_string());
         let mut place = Some(key.to_string());

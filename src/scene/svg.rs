@@ -65,7 +65,7 @@ pub(crate) struct DrawingOptions<'a> {
 /// The points (m) of the outline in the drawing at `path`, y upwards, counter-clockwise, and notes about its size.
 ///
 /// # Errors
-/// `File` if it cannot be read; `Scene` if it is no SVG, or has not one such outline.
+/// `File` if it cannot be read; `Scene` if it is no SVG, or has no single such outline.
 pub(crate) fn outline(path: &Path, options: &DrawingOptions) -> Result<(Vec<[f64; 2]>, Vec<FileNote>)> {
     let refuse = |what: String, help: &str| Error::scene(format!("{}: {what}", path.display())).help(help);
     let bytes = mesh::bytes(path)?;
@@ -269,8 +269,8 @@ impl<'a, 'i> Search<'a, 'i> {
     }
 }
 
-/// Returns the paths with this id: the path itself, else one that a reference with this id draws, else one that a
-/// reference draws. Without an id, returns all paths.
+/// Returns the path with this id that no reference draws, else the paths that a reference with this id draws, else those with
+/// this id that a reference draws. Without an id, returns all paths.
 fn chosen<'s, 'a, 'i>(found: &'s [Drawn<'a, 'i>], id: Option<&str>) -> Vec<&'s Drawn<'a, 'i>> {
     let Some(id) = id else { return found.iter().collect() };
     let own = |drawn: &Drawn| drawn.node.attribute("id") == Some(id);

@@ -1,7 +1,7 @@
 //! Deserializes the values of a scene.
 //!
 //! The deserializer of `toml` also reads dates and positions, so that the compiler generates the code of each type of a scene
-//! three times. This one reads only the kinds of values that a scene has.
+//! three times. This deserializer reads only the kinds of values that a scene has.
 
 use std::{borrow::Cow, fmt, ops::Range};
 

@@ -45,8 +45,8 @@ impl<const D: usize> BallastSpec<D> {
         if mass < 0.0 { 0.0 } else { mass }
     }
 
-    /// The first time (s) of a run of `until` s at which its law is negative beyond round-off, or not finite, and the
-    /// law's value (kg) then. All samples of a table count.
+    /// The first time (s) of a run of `until` s at which the mass is negative beyond round-off, or not finite, and the mass (kg)
+    /// then. All samples of a table count.
     pub(crate) fn first_invalid(&self, until: f64) -> Option<(f64, f64)> {
         let mut values: Vec<(f64, f64)> = Vec::new();
         if let TimeFunction::Table(series) = &self.mass {

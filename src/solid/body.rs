@@ -71,7 +71,7 @@ impl<const D: usize> SolidSpec<D> {
 
     /// Pose and velocity of the solid at t = 0.
     ///
-    /// Its `centre` is the centre of mass of a free solid, the hinge of a hinged one, else the frame's origin.
+    /// `centre` is the centre of mass of a free solid, the hinge of a hinged solid, otherwise the frame's origin.
     pub fn initial_kinematics(&self) -> Kinematics<D> {
         let still = Kinematics {
             pose: self.pose,
@@ -141,7 +141,7 @@ impl<const D: usize> SolidSpec<D> {
         Ok(())
     }
 
-    /// Whether the solid may be a hull in the `water` (m). A fixed basin around all of the water and a fixed bed may not.
+    /// Whether the solid may be a hull in the `water` (m). Without `dry`, a fixed basin around all water and a fixed bed may not.
     pub(crate) fn may_be_hull(&self, water: &Bounds<D>) -> bool {
         let bounds = self.shape.bounds_at(&self.initial_kinematics().pose);
         let is_basin = (0..D - 1).all(|i| bounds.min[i] <= water.min[i] && water.max[i] <= bounds.max[i]);
@@ -165,8 +165,8 @@ impl<const D: usize> SolidSpec<D> {
 }
 
 impl<const D: usize> FreeBody<D> {
-    /// A body of `mass` (kg; kg/m in 2-D) and `inertia` (kg m²; kg m²/m in 2-D, in `[(0, 0)]`) about its centre of mass, at rest, with
-    /// the centre of mass at the origin of the solid's frame.
+    /// A body at rest, of `mass` (kg; kg/m in 2-D) and `inertia` (kg m²; kg m²/m in 2-D, in `[(0, 0)]`) about its centre of mass,
+    /// which is the origin of the solid's frame.
     pub fn new(mass: f64, inertia: Matrix<D>) -> Self {
         Self {
             mass,

@@ -1,4 +1,4 @@
-//! Boundary particles follow their solid: r = pose · local, v = V + Ω (r − centre). They are not integrated, so they do not drift.
+//! Boundary particles follow their solid: r = pose · local, v = V + Ω (r − centre). They are not integrated and do not drift.
 
 use crate::math::Vector;
 use crate::solid::Kinematics;

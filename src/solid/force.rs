@@ -98,7 +98,7 @@ impl<const D: usize> ForceSpec<D> {
         ForceCommand { force: values(&self.force), torque: values(&self.torque) }
     }
 
-    /// The load about the centre of the solid at time `t` (s), with the components that a program has `set`, or its own. `start`
+    /// The load about the centre of the solid at time `t` (s), with the components `set` by a program, or else its own. `start`
     /// and `now` are the kinematics of the solid at the start and at present.
     pub(super) fn load_at(
         &self,

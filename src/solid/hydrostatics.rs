@@ -34,8 +34,8 @@ impl HollowWater {
     }
 }
 
-/// The volume with which a solid displaces water: its material and its hollows that outside water does not fill, less the water
-/// enclosed in these hollows.
+/// The volume of water that a solid displaces: that of its material and of its hollows that outside water does not fill, less
+/// that of the water in these hollows.
 pub(crate) struct Hull<'a, const D: usize> {
     pub(crate) shape: &'a Shape<D>,
     /// The hollows without water.
@@ -157,7 +157,7 @@ impl<'a, const D: usize> Hull<'a, D> {
             if found.abs() < 1e-12 * volume || over - under < 1e-14 * (high - low + level.abs()) {
                 break;
             }
-            // An end that stays twice counts half, or the interpolation would be slow (Illinois).
+            // The value of an end that stays twice is halved, to speed up the interpolation (Illinois).
             let again = sank == Some(found > 0.0);
             if found > 0.0 {
                 (under, most, least) = (middle, found, if again { 0.5 * least } else { least });
@@ -244,9 +244,9 @@ pub fn equilibrium_height<const D: usize>(
 ///
 ///   GM = −dT/dφ / (m g),   T the torque about the centre of mass of the buoyancy of the re-floated body
 ///
-/// Positive: it rights itself. For a wall-sided body GM = I/V + KB − KG, with I the second moment of the
-/// waterplane. `axis`: axial components, `[1.0]` in 2-D, `[1.0, 0.0, 0.0]` for x in 3-D. The other
-/// arguments as in [`equilibrium_height`]; the derivative is a central difference over ±1e-4 rad.
+/// The body rights itself if GM > 0. For a wall-sided body GM = I/V + KB − KG, with I the second moment of the waterplane.
+/// `axis`: axial components, `[1.0]` in 2-D, `[1.0, 0.0, 0.0]` for x in 3-D. The other arguments as in [`equilibrium_height`];
+/// the derivative is a central difference over ±1e-4 rad.
 ///
 /// # Errors
 /// As [`equilibrium_height`].

@@ -90,8 +90,8 @@ pub struct SolidSpec<const D: usize> {
     pub restitution: f64,
     /// Distance outside its faces at which contact begins, m; 0: at the faces. The water is not affected.
     pub contact_skin: f64,
-    /// Whether the enclosed space starts dry. `Some(true)`: dry, also in an open hull below its rim; `Some(false)`: with water on
-    /// purpose. `None`: closed hollows are dry, and water in an open hull is reported.
+    /// Whether the enclosed space starts dry. `Some(true)`: dry, also in an open hull below its rim; `Some(false)`: water inside
+    /// is intended. `None`: closed hollows are dry, and water in an open hull is reported.
     pub dry: Option<bool>,
     /// Masses at points of a free solid that change with time, in addition to its own.
     pub ballast: Vec<BallastSpec<D>>,
@@ -190,8 +190,8 @@ pub struct Solid<const D: usize> {
     pub(crate) absorption: AbsorptionState,
 }
 
-/// Weight of the last step in the mean acceleration of a solid, a mean over about five steps: a body lighter than the
-/// water that moves with it would otherwise oscillate.
+/// Weight of the last step in the mean acceleration of a solid over about five steps. With the last step alone, a body lighter
+/// than the water that moves with it would oscillate.
 const ACCELERATION_FILTER: f64 = 0.2;
 
 impl<const D: usize> Solid<D> {

@@ -1,5 +1,5 @@
 //! Prescribed motions: a slide along a direction or a rotation about a hinge. A law (table, formula or wave) gives its value.
-//! Of several, each acts in the frame that the previous ones moved.
+//! Each of several motions acts in the frame that the previous ones moved.
 //!
 //! Positions and velocities both come from the law itself, never from differences of poses, so that a slow
 //! start is as exact as a fast motion. At time t the pose of a driven solid is its start pose, moved by the law's value at t. A
@@ -164,12 +164,12 @@ impl<const D: usize> PrescribedMotion<D> {
         }
     }
 
-    /// Height (m) of the world point about which it turns; none of a slide, or of several motions.
+    /// Height (m) of the hinge of a single rotation; `None` for a slide or several motions.
     pub(crate) fn hinge_height(&self) -> Option<f64> {
         self.hinged().map(|centre| centre[D - 1])
     }
 
-    /// Whether it may move a point along axis number `axis`. A steady stage counts, because it may turn the stages above it.
+    /// Whether the motion may move a point along axis number `axis`. A steady stage counts: it may turn the stages above it.
     pub(crate) fn moves_along(&self, axis: usize) -> bool {
         self.stages.iter().any(|stage| stage.law.steady_value().is_none())
             && self.stages.iter().any(|stage| stage.path.leads_along(axis))

@@ -4,9 +4,9 @@
 //!
 //!   E = m g (z_G − z_B),   dE = −T·dφ
 //!
-//! G is its centre of mass, B the centroid of the water that it displaces, and T their moment about the horizontal axes.
-//! The body turns downhill from its start to the first minimum of E, by Newton's method with steps of a few degrees at most.
-//! Near a maximum of E along an axis, the step has the sign of the moment, so that it leads away from the maximum.
+//! G is the body's centre of mass, B the centroid of the displaced water, and T their moment about the horizontal axes. The body
+//! turns from its start to the first minimum of E as E falls, by Newton's method with steps of a few degrees at most.
+//! Near a maximum of E along an axis, the step has the sign of the moment, and so leads away from the maximum.
 
 use nalgebra::{DMatrix, DVector, Dyn, SymmetricEigen};
 

@@ -1,9 +1,9 @@
 //! Static equilibrium of free bodies that joints, ropes, springs, motors of sliders and steady forces tie together, in their
 //! initial orientation.
 //!
-//! Bodies that a joint keeps from rising against one another rise together; each such group has one unknown, its rise.
-//! Newton's method finds the rises at which buoyancy, weight, lines and forces balance. A rope is a stiff spring that only pulls;
-//! the bottom of the water is a stiff spring that only pushes.
+//! Bodies that a joint keeps from rising against one another rise together. Each such group has one unknown, its rise. Newton's
+//! method finds the rises at which buoyancy, weight, lines and forces balance. A rope is a stiff spring that only pulls; the
+//! bottom of the water is a stiff spring that only pushes.
 
 mod strength;
 mod ties;
@@ -307,7 +307,7 @@ impl<'a, const D: usize> StaticSystem<'a, D> {
             }
             step.iter_mut().for_each(|x| *x *= (0.25 * size / longest).min(1.0));
             let start: Vec<f64> = groups.iter().map(|g| self.rise[*g]).collect();
-            // The energy is convex: beyond its least value along the step the forces point back.
+            // The energy is convex: past its minimum along the step the forces point back.
             let (mut part, mut low, mut high) = (1.0, 0.0, 1.0);
             for _ in 0..12 {
                 groups.iter().enumerate().for_each(|(k, g)| self.rise[*g] = start[k] + part * step[k]);
@@ -336,7 +336,7 @@ impl<'a, const D: usize> StaticSystem<'a, D> {
         (!tied).then_some(i)
     }
 
-    /// Returns whether body `i` floats without joints to other bodies, lines and steady forces.
+    /// Returns whether body `i` floats alone: no joint to another body, no line and no steady force.
     pub(crate) fn floats_alone(&self, i: usize) -> bool {
         self.assembly_of(i).count() == 1 && self.untied(self.group[i]).is_some()
     }
@@ -444,7 +444,7 @@ impl<'a, const D: usize> StaticSystem<'a, D> {
     }
 
     /// Returns the mass (kg) that heaves with body `i`, and the stiffness (N/m) of lines and motors to the ground. The mass is
-    /// that of the bodies that rise with it, of water inside, and of bodies that hang below on ropes or springs.
+    /// that of the bodies that rise with body `i`, of the water inside, and of the bodies on ropes or springs below.
     pub(crate) fn heaving_mass_and_stiffness(&self, i: usize) -> (f64, f64) {
         let with_water = |j: usize| self.bodies[j].body.mass + self.enclosed_water(j);
         let (mut mass, mut stiffness) = (self.group_of(i).map(with_water).sum::<f64>(), 0.0);
@@ -473,7 +473,7 @@ impl<'a, const D: usize> StaticSystem<'a, D> {
     }
 
     /// Returns the righting lever (m, axial components) of the assembly of body `i`, turned from rest by `angle` (rad)
-    /// about the horizontal `axis` and afloat again. Water inside is part of its weight, and runs to the lower side.
+    /// about the horizontal `axis` and afloat again. Water inside adds to the weight, and flows to the lower side.
     pub(crate) fn lever(&self, i: usize, axis: &[f64], angle: f64) -> Vec<f64> {
         let WaterAtRest { rho0, g, level } = self.water;
         let members: Vec<usize> = self.assembly_of(i).collect();

@@ -2,8 +2,8 @@
 //! bodies, springs and motors of sliders in their initial state, and steady forces.
 //!
 //! A body that hangs on several lines divides its load among them by the balance of forces and moments, with the lines as they
-//! are at the start; of several such sets of tensions, the smallest counts. If no tensions balance the body, each line gets an
-//! equal part.
+//! are at the start. If several sets of tensions balance the body, the smallest counts. If none does, each line gets an equal
+//! part.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -137,14 +137,14 @@ impl TieLoads {
         }
     }
 
-    /// Returns whether a body, with those that rise with it, can hang: no joint holds it and none of them floats.
+    /// Returns whether a body can hang: no joint holds it, and neither it nor a body that rises with it floats.
     fn can_hang<const D: usize>(&self, state: &StartState<D>, solid: usize) -> bool {
         let floats = |j: usize| state.afloat[j] && self.groups.rising[j] == self.groups.rising[solid];
         self.free[solid] && !self.groups.held[solid] && !(0..self.free.len()).any(floats)
     }
 
     /// Returns the position (m) at which the weight of free solid `i` less its buoyancy acts, together with the loads that hang
-    /// on it; `None` if it has other loads.
+    /// on the solid; `None` if it has other loads.
     fn load_centre<const D: usize>(
         &self,
         state: &StartState<D>,

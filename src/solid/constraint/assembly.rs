@@ -260,8 +260,8 @@ impl<const D: usize> Assembly<D> {
         }
     }
 
-    /// Updates the readings of all constraints after the step of length `dt` (s) from `before` to `after`. If the engine does not
-    /// report all of its impulses, `told` has the rate of change of momentum of each solid that no other load explains (N, N m).
+    /// Updates the readings of all constraints after the step of length `dt` (s) from `before` to `after`. If the engine reports
+    /// only part of its impulses, `told` has the rate of change of momentum of each solid that no other load explains (N, N m).
     pub(crate) fn update_reactions(
         &mut self,
         engine: &dyn Engine<D>,
@@ -387,7 +387,7 @@ impl<const D: usize> Assembly<D> {
         self.state.joints[i].1
     }
 
-    /// The coordinates of the modes that generic joint number `i` leaves free, m or rad (−π to π), where the solids are.
+    /// The coordinates of the free modes of generic joint number `i`, m or rad (−π to π), with the solids at `solids`.
     pub(crate) fn joint_coordinates(&self, i: usize, solids: &[Kinematics<D>]) -> Vec<f64> {
         let joint = &self.joints[i];
         let ends = joint.end_kinematics(solids);

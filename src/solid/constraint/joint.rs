@@ -192,8 +192,8 @@ impl<const D: usize> Joint<D> {
         self.spec.coordinate_mode().map_or(0.0, |mode| self.coordinate(mode, ends))
     }
 
-    /// The coordinate of a mode, m or rad (−π to π): displacement of the second solid along that axis of the frame in the first,
-    /// or rotation about it, which is twice the angle of that part of the quaternion.
+    /// The coordinate of a mode, m or rad (−π to π): the displacement of the second solid along the mode's axis in the frame on
+    /// the first, or the rotation about this axis, twice the angle of its part of the quaternion.
     pub(in crate::solid) fn coordinate(&self, mode: usize, ends: &[Kinematics<D>; 2]) -> f64 {
         let [first, second] = self.sits(ends);
         if mode < D {
@@ -222,8 +222,8 @@ impl<const D: usize> Joint<D> {
         let [first, second] = self.sits(ends);
         match mode.checked_sub(D) {
             None => {
-                // The engine applies the load on the first solid at the second's point as well, except for the displacement along
-                // locked axes.
+                // The engine applies the load on the first solid at the point of the second too, except for the displacement
+                // along locked axes.
                 let off = first.local(&second.position);
                 let held = Vector::from_fn(|axis, _| if self.spec.is_locked(axis) { off[axis] } else { 0.0 });
                 let places = [second.position - first.rotation * held, second.position];
@@ -233,8 +233,8 @@ impl<const D: usize> Joint<D> {
         }
     }
 
-    /// The rows of its locks in the order of the engine. In 3-D the engine measures a locked turn by its part of the quaternion (w, v)
-    /// between the frames, whose rate is ½ (w ω + ω × v).
+    /// The rows of the joint's locks in the engine's order. In 3-D the engine measures a locked turn by its part of v in the
+    /// quaternion (w, v) between the frames. The rate of v is ½ (w ω + ω × v).
     fn lock_jacobians(&self, ends: &[Kinematics<D>; 2]) -> Vec<ConstraintJacobian<D>> {
         let locked = modes_rotations_first::<D>().filter(|&mode| self.spec.is_locked(mode));
         if D == 2 {
@@ -255,8 +255,8 @@ impl<const D: usize> Joint<D> {
         locked.map(row).collect()
     }
 
-    /// Returns the rows of the locks, then the row of the coordinate (for a generic joint the rows of the end stops), made
-    /// independent of the locks; and the number of locks.
+    /// Returns the rows of the locks, then the row of the coordinate (for a generic joint: of each end stop), made independent of
+    /// the locks, and the number of locks.
     pub(in crate::solid) fn jacobians(
         &self,
         ends: &[Kinematics<D>; 2],
@@ -328,12 +328,12 @@ impl<const D: usize> JointSpec<D> {
         }
     }
 
-    /// Whether the two solids can move relative to each other along the unit vector `along`, or mostly so.
+    /// Whether the joint leaves most of a displacement along the unit vector `along` free.
     pub(in crate::solid) fn frees_translation(&self, along: &Vector<D>) -> bool {
         self.freedom(0..D, along) > 0.5
     }
 
-    /// Whether the two solids can turn relative to each other about this axis (axial components, of length 1), or mostly so.
+    /// Whether the joint leaves most of a rotation about this axis (axial components, of length 1) free.
     pub(in crate::solid) fn frees_rotation(&self, axis: &[f64]) -> bool {
         if D == 2 { !self.is_locked(D) } else { self.freedom(D..2 * D, &Vector::from_fn(|i, _| axis[i])) > 0.5 }
     }
@@ -346,8 +346,8 @@ impl<const D: usize> JointSpec<D> {
         free.map(|mode| frame.column(mode - first).dot(direction).powi(2)).sum()
     }
 
-    /// Returns the steady load of the motor of a slider: the direction in which it drives the second solid, its force (N) where the
-    /// joint starts, its stiffness (N/m) and its largest force (N).
+    /// Returns the steady load of a slider's motor: the direction in which the motor drives the second solid, the force (N) where
+    /// the joint starts, the stiffness (N/m) and the largest force (N).
     pub(in crate::solid) fn steady_drive(&self) -> Option<(Vector<D>, f64, f64, f64)> {
         let motor = self.motor.as_ref().filter(|_| self.coordinate_mode() == Some(0))?;
         let (force, stiffness) = motor.steady_force()?;

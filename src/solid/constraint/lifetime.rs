@@ -169,7 +169,7 @@ pub struct ConstraintEvent {
 pub enum ConstraintChange {
     /// It begins to act.
     Connected,
-    /// A rope begins to act over a distance (m) that is longer than the length (m) that it was given.
+    /// A rope begins to act between ends that are farther apart than its given length (m).
     Lengthened {
         /// Length that it was given, m.
         given: f64,
@@ -186,7 +186,7 @@ pub enum ConstraintChange {
     Removed,
 }
 
-/// Time (s) at which `element`, such as `spring "line"`, ended or broke, by the texts of `events`.
+/// Time (s) at which `element`, such as `spring "line"`, ended or broke, as the texts of `events` say.
 #[cfg(feature = "cli")]
 pub(crate) fn end_in_events(events: &[String], element: &str) -> Option<f64> {
     let end = |event: &String| {

@@ -2,7 +2,7 @@
 //!
 //! A spring of length l pulls with  T = k (l − l₀) + c l̇;  a mooring line (`tension_only`) never pushes. The elastic force is
 //! explicit and limits the time step: a mode of frequency ω is stable while Δt ω < 2, and its frequency is too high by the share
-//! (Δt ω)²/24. The damping acts at the rate that it alone would give at the end of the step, and limits nothing.
+//! (Δt ω)²/24. The damping does not: it acts at the rate that it alone would give at the end of the step.
 //!
 //! In real water a body that oscillates on a spring radiates sound, which damps it with ρ₀ c₀ A/(2 m ω) of the critical damping.
 //! Particles carry no sound with ω h/c₀ > 2, and their delayed load would increase such an oscillation. The spring therefore has
@@ -211,7 +211,7 @@ impl<const D: usize> AttachedLine<D> {
 }
 
 impl SpringParameters {
-    /// The same parameters with ends in water. `crossing` (s) is the time in which sound crosses a smoothing length, and `g`
+    /// The same parameters for ends in water. `crossing` (s) is the time in which sound crosses a smoothing length, and `g`
     /// (1/kg) is the inverse effective mass of the ends.
     pub(in crate::solid) fn damped_in_water(&self, crossing: f64, g: f64) -> Self {
         let swings = (self.stiffness * g).sqrt() * crossing > SOUNDLESS;

@@ -396,7 +396,7 @@ fn check_line<const D: usize>(who: &str, ends: &[LineEnd<D>; 2], solids: &[Solid
     }
 }
 
-/// Refuses ends that are not solids or are the same solid, and ends of which none is on a free solid.
+/// Refuses an end on an unknown solid, two ends on one solid, and ends of which none is on a free solid.
 fn check_ends<const D: usize>(who: &str, ends: [Option<usize>; 2], solids: &[SolidSpec<D>]) -> Result<()> {
     if ends.iter().flatten().any(|&i| i >= solids.len()) {
         return Err(Error::scene(format!("{who} names a solid that is not there")));

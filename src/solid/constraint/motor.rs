@@ -3,15 +3,15 @@
 //!   F = F₀ + k (x* − x) + c (v* − ẋ)
 //!
 //! The stiffness limits the time step, as that of a spring does. The damping does not, because it acts at the rate at the end of
-//! the step. With g = J M⁻¹ Jᵀ, the inverse effective mass of the pair along the coordinate with the joint's locks, and s = Δt c
-//! g, the damping force is
+//! the step. g = J M⁻¹ Jᵀ is the inverse effective mass of the pair along the coordinate, with the joint's locks. With
+//! s = Δt c g, the damping force is
 //!
 //!   c (v* − ẋ − w Δt ẍ)/(1 + s),   w = 1/(1 + (0.1/s)²),
 //!
 //! where ẍ is the acceleration of the coordinate by water, weight, pushes and F₀. Without the term w Δt ẍ the rate would miss v*
-//! by Δt ẍ, however strong the brake is: by 0.2 m/s for a light body. With it the speed at which a brake yields to a load is
-//! correct within 5 %. ẍ does not include the locks of other joints, end stops and contacts. Therefore w is small where the step
-//! resolves the damping. The term is omitted if there is a stiffness, which finds its equilibrium under any load.
+//! by Δt ẍ, however strong the brake is: by 0.2 m/s for a light body. With it, the speed at which a load moves a brake is correct
+//! within 5 %. ẍ does not include the locks of other joints, end stops and contacts. Therefore w is small where the step resolves
+//! the damping. A motor with a stiffness omits the term, because a stiffness finds its equilibrium under any load.
 
 use std::f64::consts::TAU;
 
@@ -96,8 +96,8 @@ impl Motor {
         Self { max_force, ..self }
     }
 
-    /// Its force (N or N m) where the coordinate is 0, F₀ + k x*, and its stiffness k (N/m or N m/rad), if they do not change with
-    /// time; its damping bears no load at rest.
+    /// The motor's force (N or N m) at the coordinate 0, F₀ + k x*, and its stiffness k (N/m or N m/rad), if both are constant in
+    /// time. At rest, the damping bears no load.
     pub(in crate::solid) fn steady_force(&self) -> Option<(f64, f64)> {
         let stiffness = self.stiffness.steady_value()?;
         // Without a stiffness the target does not matter.

@@ -1,9 +1,9 @@
 //! Reactions of locks, end stops and ropes along their rows, where the engine reports only part of them.
 //!
-//! With several solver iterations rapier reports only the impulse of the last; with one, 1e-6 of the impulse, from position
-//! correction, is unreported. The momentum of the solids gives the rest: with R its unexplained change, the reactions f satisfy Σ
-//! f Jᵀ = R. The iteration starts from the last impulse times the number of iterations. It corrects row by row, f ← f + J M⁻¹
-//! R/(J M⁻¹ Jᵀ), until R vanishes (Kaczmarz 1937).
+//! With several solver iterations rapier reports only the impulse of the last one. With one iteration it omits 1e-6 of the
+//! impulse, from position correction. The momentum of the solids gives the rest: for its unexplained change R, the reactions f
+//! satisfy Σ f Jᵀ = R. The method starts from the last impulse times the number of iterations. It corrects row by row,
+//! f ← f + J M⁻¹ R/(J M⁻¹ Jᵀ), until R vanishes (Kaczmarz 1937).
 
 use super::jacobian::{ConstraintJacobian, Mobility};
 use crate::{

@@ -58,7 +58,7 @@ pub(crate) struct Mooring<const D: usize> {
 }
 
 impl<const D: usize> Mooring<D> {
-    /// The line between the places where its ends start, straight, in water of the density `water_density` (kg/m³).
+    /// The line, straight between the initial places of its ends, in water of density `water_density` (kg/m³).
     pub(crate) fn new(spec: &MooringSpec<D>, start: &[Kinematics<D>], water_density: f64) -> Self {
         let length = spec.length_at(0.0);
         let material = spec.line.material(spec.length / spec.segments as f64, water_density);

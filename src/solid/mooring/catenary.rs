@@ -101,8 +101,8 @@ impl CatenarySpan {
         }
     }
 
-    /// Finds the tension at which the ends have their distance. A line that is longer than its way down and along the bed
-    /// has no horizontal tension.
+    /// Finds the tension at which the ends have their given distance. A line longer than the way down and along the bed has no
+    /// horizontal tension.
     pub(crate) fn solve(&self) -> Catenary {
         let Self { x, z, length, weight: w, stiffness: ea, .. } = *self;
         let least = 1e-9 * w * length;

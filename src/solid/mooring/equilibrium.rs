@@ -1,9 +1,9 @@
 //! The equilibrium of a lumped-mass line between held ends.
 //!
-//! The potential energy of tension, weight and bed is convex in the places of the nodes, because no segment pushes.
-//! Newton's method with a search along each step finds its minimum from the elastic catenary. The reaction of the bed where the
-//! line leaves it also depends on the tension, which changes little in a step. Friction of the bed is neglected: the line lies as
-//! it was laid, without tension across it.
+//! The potential energy of tension, weight and bed is convex in the places of the nodes, because no segment pushes. Newton's
+//! method with a search along each step finds the minimum; it starts from the elastic catenary. The reaction of the bed where the
+//! line leaves it also depends on the tension, which changes little in a step. The method neglects friction of the bed: the line
+//! lies as it was laid, without tension across it.
 //!
 //! For a line that sinks, the surroundings of the nodes are read in a few rounds. A line that floats, or has floats, comes to
 //! rest at the surface, where the buoyancy of a node falls as the node rises. Its surroundings are read in each iteration.
@@ -309,7 +309,7 @@ impl<const D: usize> MooringLine<D> {
                     near = around.of(&self.state.x);
                 }
                 forces = self.forces(&near, gravity);
-                // The energy is convex: beyond its least value along the step the forces point back.
+                // The energy is convex: past its minimum along the step the forces point back.
                 if inner(&forces).dot(&step) > -0.5 * downhill && !self.sinks(&before, &start) {
                     break;
                 }
@@ -322,7 +322,7 @@ impl<const D: usize> MooringLine<D> {
         largest(&forces)
     }
 
-    /// Whether a node has moved from `start` (m) through its bed `before` the step: behind a thin wall no bed would be found.
+    /// Whether a node has moved too far from `start` (m) into its bed `before` the step: behind a thin wall it would find no bed.
     fn sinks(&self, before: &[NodeSurroundings<D>], start: &[Vector<D>]) -> bool {
         let sinks = |((here, from), to): ((&NodeSurroundings<D>, &Vector<D>), &Vector<D>)| {
             let allowed = |bed: &BedPlane<D>| self.material.depth(bed, from).max(0.0) + SINKING * self.state.segment;

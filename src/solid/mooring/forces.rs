@@ -12,8 +12,8 @@
 //!   the same stiffness against displacement from the point of first contact, up to the Coulomb friction, at which it slides
 //! - where the line leaves the bed, [`touchdown`]
 //!
-//! These forces neglect the acceleration of the water: its load is small beside the drag of a line much thinner than the waves
-//! are high.
+//! These forces neglect the acceleration of the water: its load is much smaller than the drag if the line is much thinner than
+//! the waves are high.
 
 use std::{f64::consts::PI, sync::Arc};
 
@@ -281,7 +281,7 @@ pub(super) fn friction<const D: usize>(
     let held = grip.get_or_insert(*x);
     let mut way = x - *held;
     way -= bed.normal * bed.normal.dot(&way);
-    // The stiffness is the same along and across the bed. A node therefore slides from a displacement on that is its depth times
+    // The stiffness is the same along and across the bed. A node therefore slides if its displacement exceeds its depth times
     // the friction coefficient.
     let longest = material.bed_friction * depth;
     let length = way.norm();
@@ -304,7 +304,7 @@ pub(super) fn elastic_law(material: &LineMaterial, strain: f64) -> [f64; 2] {
     [t0 + slope * (strain - e0), slope]
 }
 
-/// Forces (N) of bending on three nodes between which two segments lie, with the energy EI/l₀ (1 − q₁·q₂) of `energy` = EI/l₀ (J).
+/// Forces (N) of bending on the three nodes of two segments, with the energy EI/l₀ (1 − q₁·q₂). `energy` is EI/l₀ (J).
 pub(super) fn bending_forces<const D: usize>(nodes: [&Vector<D>; 3], energy: f64) -> [Vector<D>; 3] {
     let sides = [nodes[1] - nodes[0], nodes[2] - nodes[1]];
     let [l1, l2] = [sides[0].norm(), sides[1].norm()];

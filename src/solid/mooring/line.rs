@@ -385,7 +385,7 @@ pub(super) fn eliminate<const D: usize>(
     }
 }
 
-/// Solves for the changes of the velocities of the nodes from `first` to `last` by their impulses, with the `matrix` of [`eliminate`].
+/// Solves for the changes of velocity of the nodes from `first` to `last` by their impulses, with the `matrix` of [`eliminate`].
 pub(super) fn substitute<const D: usize>(
     matrix: &[Matrix<D>],
     impulse: &mut [Vector<D>],

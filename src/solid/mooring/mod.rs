@@ -1,8 +1,8 @@
 //! Mooring lines with mass: elastic catenaries, and lumped-mass lines at rest and in motion.
 //!
-//! `forces` and `segment` have the equations, `line` their integration in time, `network` the points in which lines meet, `equilibrium` and
-//! `catenary` the line at rest, and `attached` the line on the solids of a running system. No function here knows the particles:
-//! the coupling provides the surroundings of each node.
+//! `forces` and `segment` have the equations, `line` their integration in time, `network` the points in which lines meet,
+//! `equilibrium` and `catenary` the line at rest, and `attached` the line on the solids of a running system. No function here
+//! knows the particles: the coupling provides the surroundings of each node.
 
 mod attached;
 mod catenary;

@@ -2,9 +2,9 @@
 //!
 //! The ends of lines that meet in a point have a common position and velocity, and the point carries their masses and loads. In
 //! an inner step the nodes between the ends of each line are eliminated. To change the velocity of its first end by Δv₀, a line
-//! needs the impulse M Δv₀ − b q (q·Δv₁); Δv₁ of the next node is linear in the changes Δv₀ and Δvₙ of both ends. The changes of
-//! all points follow from one dense system, which is symmetric and positive definite, so that damping of any strength is stable
-//! as in a single line.
+//! needs the impulse M Δv₀ − b q (q·Δv₁). Δv₁ of the next node is linear in the changes Δv₀ and Δvₙ of both ends. One dense
+//! system gives the changes of all points. It is symmetric and positive definite, so that damping of any strength is stable as in
+//! a single line.
 
 use std::ops::AddAssign;
 
@@ -129,7 +129,7 @@ impl Junctions {
         }
     }
 
-    /// Advances the lines that meet by `dt` (s). `steps` has the ends and the surroundings of each line, and `gravity` is in m/s².
+    /// Advances joined lines by `dt` (s). `steps` has the ends and the surroundings of each line, and `gravity` is in m/s².
     pub(crate) fn advance<const D: usize>(
         &self,
         lines: &mut [&mut MooringLine<D>],

@@ -1,13 +1,13 @@
 //! A segment of a line as a piece of catenary.
 //!
-//! Between two nodes a line sags by its weight less buoyancy. With its part w_n across the chord (N/m), the tension T and the length
-//! l₀ without tension, the strain of the chord is (own derivation: the catenary to second order in w l₀/T, as Ernst 1965 for cables)
+//! Between two nodes a line sags by its weight less buoyancy: w_n (N/m) across the chord. With the tension T and the length l₀
+//! without tension, the strain of the chord is (own derivation: the catenary to second order in w l₀/T, as Ernst 1965 for cables)
 //!
 //!   ε = ε_e(T) − (w_n l₀)²/(24 T²)
 //!
-//! with the elastic strain ε_e, and the mean pull of the segment is T q + l₀² w_t w_n/(12 T), with the unit vector q along the chord
-//! and the parts w_t and w_n of the weight along and across it. Half of the weight at each node and this pull are the forces of the
-//! catenary on its ends up to the fourth order in l₀; a straight segment is of second order. A segment whose chord is shorter
+//! with the elastic strain ε_e. The mean pull of the segment is T q + l₀² w_t w_n/(12 T), with the unit vector q along the chord
+//! and the parts w_t and w_n of the weight along and across it. Half of the weight at each node and this pull are the forces of
+//! the catenary on its ends up to the fourth order in l₀; a straight segment is of second order. A segment whose chord is shorter
 //! than l₀ has the tension that follows from its sag, and never pushes.
 //!
 //! Bending stiffness EI holds the sag back as in a beam with clamped ends: T + 48 EI/l₀² takes the place of T in both terms.
@@ -129,8 +129,8 @@ struct RiseFromBed<const D: usize> {
 }
 
 impl<const D: usize> RiseFromBed<D> {
-    /// The shortening by sag of a segment along `q` with the length `l0` (m) and this `tension` (N), over that of the same
-    /// segment if it hung completely, –.
+    /// The shortening by sag of a segment along `q` with the length `l0` (m) and this `tension` (N), over the shortening if the
+    /// whole segment hung, –.
     fn hanging_share(&self, tension: f64, q: &Vector<D>, l0: f64) -> f64 {
         let flat = tension * (q - self.normal * self.normal.dot(q)).norm();
         let [low, high] = self.heights.map(|z| distance_from_touchdown(z, flat / self.weight) / l0);

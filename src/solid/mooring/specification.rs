@@ -69,8 +69,8 @@ pub struct LineType {
 }
 
 impl LineType {
-    /// A line of this volume-equivalent diameter (m), mass (kg/m) and axial stiffness EA (N), with critical axial damping, C_d = 1.2
-    /// and C_a = 1 across it, no drag or added mass along it, and a smooth bed.
+    /// A line of this volume-equivalent diameter (m), mass (kg/m) and axial stiffness EA (N), with critical axial damping,
+    /// C_d = 1.2 and C_a = 1 across it, no drag or added mass along it, and a smooth bed.
     pub fn new(diameter: f64, mass_per_length: f64, stiffness: f64) -> Self {
         Self {
             diameter,
@@ -247,7 +247,7 @@ impl<const D: usize> MooringSpec<D> {
         Self { acts_on_water: true, ..self }
     }
 
-    /// Length without tension at time `t` (s), m: [`SHORTEST_SHARE`] of the length at the start at least.
+    /// Length without tension at time `t` (s), m; at least [`SHORTEST_SHARE`] of the length at the start.
     pub(crate) fn length_at(&self, t: f64) -> f64 {
         let paid_out = self.paid_out.as_ref().map_or(0.0, |law| law.value_and_rate(t).0);
         (self.length + paid_out).max(SHORTEST_SHARE * self.length)
@@ -438,7 +438,7 @@ pub(crate) fn junctions<const D: usize>(
 /// Most segments of a line.
 const MOST_SEGMENTS: usize = 1000;
 
-/// Largest mass of an end of a line over the mass of its body, –. The body carries this mass one step late, which is stable up to
+/// Largest mass of an end of a line over the mass of its body, –. The body carries this mass one step late; this is stable up to
 /// a third.
 const MOST_END_MASS: f64 = 0.1;
 

@@ -50,7 +50,7 @@ impl Winch {
         Self { target, rate_limit, shortest, longest }
     }
 
-    /// The length (m) after a step `dt` (s) long of a line of this `length` (m), with this `tension` (N) and axial `stiffness` (N).
+    /// Length (m) of a line after a step of `dt` (s), from this `length` (m), with this `tension` (N) and axial `stiffness` (N).
     pub(super) fn next_length(&self, length: f64, tension: f64, stiffness: f64, dt: f64) -> f64 {
         let way = match self.target {
             WinchTarget::Tension { tension: target, gain } => {

@@ -163,8 +163,8 @@ fn convex_parts(points: &[Vector<D>]) -> Option<Vec<SharedShape>> {
     hertel_mehlhorn(mesh.vertices(), mesh.indices()).iter().map(|part| SharedShape::convex_hull(part)).collect()
 }
 
-/// Returns one convex quadrilateral for each side of a wall, to the right of the line and mitred at the corners, and a fan for each
-/// rounded corner.
+/// Returns one convex quadrilateral for each side of a wall, to the right of the line and mitred at the corners, and a fan for
+/// each rounded corner.
 fn strip(points: &[Vector<D>], thickness: f64) -> Option<Vec<SharedShape>> {
     let far = far_corners(points, thickness);
     let side = |(near, far): (&[Vector<D>], &[Vec<Vector<D>>])| {

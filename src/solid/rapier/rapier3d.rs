@@ -156,10 +156,10 @@ fn gained(body: &RigidBody, arm: Point, impulse: Point) -> Point {
 
 /// The way in which a free body turns in a step.
 enum Turning {
-    /// By its angular momentum, kg m²/s: with the spin of the rotation, and the principal axes before the step.
+    /// By its angular momentum, kg m²/s. `spin` is that of the rotation, `axes` the principal axes before the step.
     Loose { momentum: Point, spin: Point, axes: Rotation },
-    /// By its spin: with its inertia (kg m², in the world's axes before the step, zero about locked axes) and
-    /// gyroscopic torque, N m.
+    /// By its spin. `inertia` (kg m²) is along the world's axes before the step, and zero about locked axes. `torque` is
+    /// gyroscopic, N m.
     Bound { inertia: Matrix<D>, torque: Point },
 }
 

@@ -11,9 +11,9 @@
 //! - Contact recycling is off, because it leaves small bodies hanging on ledges. Sleep is off.
 //! - Continuous collision detection is off, because no body passes through a wall in one step of the water.
 //!
-//! The module `restitution` makes bodies rebound, not the springs. Colliders have the true faces; other bodies touch
-//! them there, or at the contact skin that the solid sets. The friction and restitution of a pair are the means of both
-//! solids' values. Only this module applies weight. Mass and inertia belong to the body; colliders have no mass.
+//! The module `restitution` makes bodies rebound; the springs do not. Colliders have the true faces; other bodies touch them
+//! there, or at the contact skin that the solid sets. The friction and restitution of a pair are the means of both solids'
+//! values. Only this module applies weight. Mass and inertia belong to the body; colliders have no mass.
 
 #[allow(clippy::duplicate_mod, reason = "one source, compiled against each engine")]
 #[path = "colliders.rs"]
@@ -226,7 +226,7 @@ impl RapierWorld {
         Ok(())
     }
 
-    /// Moves each body that had only its weight in the step, of length `dt` (s), by the mean of its velocities before
+    /// Moves each body on which only its weight acted, in the step of `dt` (s), by the mean of its velocities before
     /// and after. This position lies on the parabola of free fall; rapier uses the velocity after the step, in each of
     /// its iterations.
     fn fall(&mut self, dt: f64, before: &[Point]) {
