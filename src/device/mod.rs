@@ -501,8 +501,8 @@ impl<const D: usize> Device<D> {
         self.gpu.run(&[], [self.passes.place.as_ref()]);
     }
 
-    /// Makes a force pass at the present state; returns acceleration (m/s²) and rate of the excess density (1/s) of each water
-    /// particle, in the order of the host, and the largest values that limit a step.
+    /// Makes a force pass at the present state. Returns the acceleration (m/s²) and the rate of ρ/ρ₀ (1/s) of each water
+    /// particle, in the order of `system`, and the largest values that limit a step.
     pub(crate) fn rates(&mut self, system: &System<D>) -> Result<(Vec<PairSums<D>>, StepLimits)> {
         self.begin(&StepRequest::NONE);
         self.gpu.run(&[], self.passes.rates.iter().map(AsRef::as_ref));

@@ -1,5 +1,5 @@
-//! Geometry of solids and water: shapes, volumes, distances, boundary points and filling. The module has no motion or
-//! mass, and reads no files.
+//! Geometry of solids and water: shapes, volumes, distances, boundary points and filling. The module handles neither motion
+//! nor mass, and reads no files.
 //!
 //! A [`Shape`] computes its exact volume properties, its signed distance, its submerged part and its boundary
 //! particles. [`fill()`] places water on a lattice and fits the water to the solids.

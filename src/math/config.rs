@@ -11,6 +11,7 @@ use serde::{
 /// A box given by two corners.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct BoxConfig {
     /// Lowest corner, m.
     pub min: Vec<f64>,

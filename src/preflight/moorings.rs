@@ -43,9 +43,8 @@ pub struct MooredSurge {
     pub period_s: Option<f64>,
 }
 
-/// Returns the mooring lines and the surge of the free bodies that they hold. Adds
-/// notes about lines that take many steps, about winches that start with another tension than they hold, and warnings about lines
-/// that break at once.
+/// Returns mooring lines and the surge stiffness and period of moored bodies. Adds notes about lines with many steps and
+/// winches that do not start at their target tension, and warnings about lines that break at once or enter solids.
 pub(super) fn summaries<const D: usize>(
     context: &PreflightContext<'_, D>,
     sim: &Simulation<D>,

@@ -130,8 +130,8 @@ impl LiveRun {
         Ok(page)
     }
 
-    /// Returns what was added since `position` and moves it there, or `None` if the page has to be loaded afresh: the position
-    /// does not belong to this run, or the run has rolled back behind it.
+    /// Returns what was added since `position`, and advances `position`. Returns `None` if the page must be reloaded:
+    /// `position` is from another run, the run has rolled back behind it, or the first frame has arrived.
     ///
     /// # Errors
     /// `File` if a table or the list of frames cannot be read.

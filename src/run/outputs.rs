@@ -312,8 +312,8 @@ impl<const D: usize> Outputs<D> {
         }
     }
 
-    /// Removes all rows and frames after the positions `extent`. Keeps the due time of the next checkpoint, so that no
-    /// checkpoint is due before the run has passed the time of the alarm.
+    /// Removes all rows and frames after the positions `extent`. Does not reset the due time of the next checkpoint: none is
+    /// due until the run has passed the alarm that caused the rollback.
     ///
     /// # Errors
     /// `File` if the disk reports an error.

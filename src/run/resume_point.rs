@@ -1,5 +1,5 @@
 //! Selects the checkpoint from which a run continues: the last in the run's folder, or the previous one if the last is unusable.
-//! Defines which keys of the scene may change then. Writes no file.
+//! Defines which scene keys a resumed run may change. Writes no file.
 
 use std::{fs, path::Path};
 

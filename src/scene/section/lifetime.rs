@@ -18,6 +18,7 @@ use crate::{
 /// The load at which a constraint breaks: a number (N), or a table.
 #[derive(Clone, Debug, Default, PartialEq, JsonSchema)]
 #[schemars(with = "StrengthForm")]
+#[non_exhaustive]
 pub struct StrengthConfig {
     /// Tension of a spring or a rope, N (N/m in 2-D).
     pub tension: Option<f64>,

@@ -67,6 +67,7 @@ pub struct MooringConfig {
 /// A clump weight or a float on a mooring line.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct ClumpConfig {
     /// Length of line from `from` to the clump, m.
     pub at: f64,

@@ -12,6 +12,7 @@ use crate::{
 /// A winch with a controller at the end `from` of a mooring line.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct WinchConfig {
     /// Tension at `from` that it holds, N.
     pub hold_tension: Option<f64>,

@@ -148,8 +148,8 @@ impl<const D: usize> MooringLine<D> {
         Some((span.solve(), [ahead, up], rises))
     }
 
-    /// Puts the nodes on the elastic catenary. If a line that may float would not be wet everywhere there, its nodes are put on
-    /// the catenary of a sinking line without floats instead, from which they rise.
+    /// Puts the nodes on the elastic catenary. If part of a line that may float would then be above water, puts the nodes on
+    /// the catenary of a sinking line without floats; they rise from there.
     fn hang(&mut self, around: &dyn Fn(&Vector<D>) -> NodeSurroundings<D>, gravity: &Vector<D>) {
         let Some(shape) = self.catenary(around, gravity) else { return };
         self.place_on(shape);

@@ -120,6 +120,7 @@ impl LineType {
 
 /// A clump weight or a float: a point mass on a line.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct ClumpSpec {
     /// Length of the line from its first end to the point, without tension, m. The nearest node carries the mass.
     pub at: f64,
