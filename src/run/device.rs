@@ -16,6 +16,7 @@ use crate::{
     scene::Scene,
     simulation::Simulation,
     solid::Solid,
+    system::has_thin_faces,
 };
 
 /// Refuses a device for a run on several `ranks`.
@@ -39,7 +40,7 @@ pub(super) fn omissions<const D: usize>(scene: &Scene, sim: &Simulation<D>) -> V
         "the pressure of the film of water between a body and what it touches, so that a body on the bed is not lifted";
     let faces =
         "the force by which the faces of parts thinner than 2.5 dp keep water out in 3-D, so that such walls may leak";
-    let omitted = [(system.solids().iter().any(Solid::is_free), film), (system.has_thin_faces(), faces)];
+    let omitted = [(system.solids().iter().any(Solid::is_free), film), (has_thin_faces(system), faces)];
     let told =
         omitted.into_iter().filter(|(is_needed, _)| *is_needed && scene.device_name().is_some()).map(|(_, what)| {
             format!(

@@ -13,7 +13,6 @@ use super::{
     own_water,
     periodic::Images,
     symmetry::{AxisSet, Division, MirroredParticle, reflected},
-    thin_faces::ThinFaces,
     thin_layers::{self, ThinLayers},
 };
 use crate::{
@@ -55,8 +54,6 @@ pub(crate) struct Boundary<const D: usize> {
     pub(super) films: Films<D>,
     /// The parts thinner than dp.
     pub(super) thin: ThinLayers<D>,
-    /// The faces of thin parts.
-    pub(super) thin_faces: ThinFaces<D>,
     /// Poses of the solids when the neighbour lists were built; `None` if they must be built anew.
     pub(super) poses_at_rebuild: Option<Vec<Pose<D>>>,
     /// Whether a device has the particles: the host places none.
@@ -96,7 +93,6 @@ impl<const D: usize> Boundary<D> {
             mirrored: Vec::new(),
             films: Films::new(model),
             thin: ThinLayers::new(model),
-            thin_faces: ThinFaces::default(),
             poses_at_rebuild: None,
             #[cfg(feature = "gpu")]
             on_device: false,
@@ -115,7 +111,7 @@ impl<const D: usize> Boundary<D> {
     ) -> Result<(Range<usize>, SolidDivision)> {
         let first = self.particles.len();
         let points = spec.shape.boundary_points(model.dp, model.boundary_layers());
-        self.thin_faces.append(&spec.shape, &points, model.dp);
+        self.thin.faces.append(&spec.shape, &points, model.dp);
         let mut faces = points.into_iter().map(|point| point.r).collect::<Vec<_>>();
         let local: Vec<Vector<D>> = faces.iter().copied().chain(extension.iter().map(|particle| particle.r)).collect();
         faces.extend(extension.iter().map(|particle| particle.behind_face));
@@ -177,7 +173,6 @@ impl<const D: usize> Boundary<D> {
         }
         id.truncate(self.particles.r.len());
         thin.remove(solid);
-        self.thin_faces.remove(solid);
         local_bounds[solid] = Bounds { min: Vector::zeros(), max: Vector::zeros() };
     }
 

@@ -46,7 +46,7 @@ pub use sponge_layer::SpongeLayer;
 pub use step_check::{Escape, ExitPath, ParticleLimits, RemovedParticle};
 pub(crate) use step_check::{LimitViolation, StepCheck};
 pub(crate) use symmetry::{AxisSet, reflected};
-pub(crate) use thin_faces::repel as repel_from_thin_faces;
+pub(crate) use thin_faces::{has_thin_faces, repel as repel_from_thin_faces};
 
 use own_water::StateAtStart;
 use symmetry::{reflected_auxiliary, reflected_sums, reflected_tensor};
@@ -445,7 +445,7 @@ impl<const D: usize> System<D> {
         let Self { gap_pressure, neighbours, solids, .. } = self;
         gap_pressure.find(solids, r, neighbours.boundary_near_fluid(), neighbours.margin());
         film::find(self, r);
-        self.boundary.thin_faces.forget_water();
+        self.boundary.thin.faces.forget_water();
     }
 
     /// The sums of the water from the last force pass.

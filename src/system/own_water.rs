@@ -53,7 +53,7 @@ pub(crate) fn ranks<const D: usize>(system: &System<D>) -> Ranks {
 pub(crate) fn divide<const D: usize>(system: &mut System<D>, by_owner: bool) {
     let was_divided = division(&system.neighbours).is_some();
     if was_divided != by_owner {
-        system.boundary.thin_faces.forget_water();
+        system.boundary.thin.faces.forget_water();
     }
     if was_divided && !by_owner {
         gather(system, true);

@@ -91,11 +91,9 @@ impl<const D: usize> ThinFaces<D> {
     }
 }
 
-impl<const D: usize> System<D> {
-    /// Whether a solid has parts whose faces push the water.
-    pub(crate) fn has_thin_faces(&self) -> bool {
-        !self.boundary.thin_faces.is_empty()
-    }
+/// Whether a solid has parts whose faces push the water.
+pub(crate) fn has_thin_faces<const D: usize>(system: &System<D>) -> bool {
+    !system.boundary.thin.faces.is_empty()
 }
 
 /// Displacement (m) to copy number `copy` of solid number `number` across periodic sides.
@@ -109,7 +107,7 @@ fn way_to_copy<const D: usize>(system: &System<D>, number: usize, copy: usize) -
 
 /// The water of this rank that may come near thin parts before the next lists.
 fn candidates<const D: usize>(system: &System<D>) -> Vec<Candidate> {
-    let (r, faces) = (&system.fluid.particles.r, &system.boundary.thin_faces.of_solid);
+    let (r, faces) = (&system.fluid.particles.r, &system.boundary.thin.faces.of_solid);
     // Water and solids may both have moved by the margin, and a step may pass it.
     let reach = REACH * system.model.dp + 3.0 * system.neighbours.margin();
     let mut found = Vec::new();
@@ -142,12 +140,12 @@ pub(crate) fn repel<const D: usize>(
     dt: f64,
     weight: f64,
 ) -> Option<(MomentumTransfer<D>, Vec<Load<D>>)> {
-    if system.boundary.thin_faces.is_empty() {
+    if !has_thin_faces(system) {
         return None;
     }
-    let candidates = system.boundary.thin_faces.candidates.take().unwrap_or_else(|| candidates(system));
+    let candidates = system.boundary.thin.faces.candidates.take().unwrap_or_else(|| candidates(system));
     let mut pushes = own_pushes(system, &candidates, dt);
-    system.boundary.thin_faces.candidates = Some(candidates);
+    system.boundary.thin.faces.candidates = Some(candidates);
     let mass = system.particle_mass();
     let mut impulses = vec![Load::zero(); system.solids.len()];
     let reactions = pushes.iter().map(|push| (push.particle, push.solid, push.reaction)).collect();

@@ -10,7 +10,7 @@
 //! water is below its lower end. The component along the faces is then subtracted from the load on that other solid, whose face
 //! the layer covers.
 
-use super::System;
+use super::{System, thin_faces::ThinFaces};
 use crate::{
     geometry::{Shape, cells::PointCells, thin::thin_place},
     math::Vector,
@@ -66,7 +66,7 @@ struct Ends<const D: usize> {
     lowest: Vec<u32>,
 }
 
-/// The boundary particles in the middle of thin parts.
+/// The boundary particles in the middle of thin parts, and the faces of such parts.
 pub(super) struct ThinLayers<const D: usize> {
     of_solid: Vec<Vec<ThinParticle<D>>>,
     /// The ends of the parts of each solid; `None` for free solids and for those without thin parts.
@@ -75,11 +75,14 @@ pub(super) struct ThinLayers<const D: usize> {
     wet: Vec<f64>,
     /// Whether walls have the weight of the water before them.
     possible: bool,
+    /// The faces that push water away.
+    pub(super) faces: ThinFaces<D>,
 }
 
 impl<const D: usize> ThinLayers<D> {
     pub(super) fn new(model: &Model) -> Self {
-        Self { of_solid: Vec::new(), ends: Vec::new(), wet: Vec::new(), possible: model.walls == Walls::RelaxedAdami }
+        let possible = model.walls == Walls::RelaxedAdami;
+        Self { of_solid: Vec::new(), ends: Vec::new(), wet: Vec::new(), possible, faces: ThinFaces::default() }
     }
 
     /// Whether no part is thin.
@@ -116,6 +119,7 @@ impl<const D: usize> ThinLayers<D> {
             particles.clear();
         }
         self.wet.clear();
+        self.faces.remove(solid);
     }
 
     /// Number of the solid, first boundary particle and thin particles of each copy.
