@@ -8,6 +8,8 @@ use crate::math::{Bounds, Vector};
 
 /// Faces are parallel if their normals are more than 160 degrees apart: −cos 160°. A blunter wedge is a tip.
 const PARALLEL: f64 = 0.94;
+/// Step of the search for the opposite face, limits of the thickness.
+const SEARCH: f64 = 0.02;
 /// Least distance of a particle from the rim of a thin part, dp.
 const RIM: f64 = 0.45;
 /// Least distance of a particle from those of thicker parts, dp.
@@ -34,36 +36,48 @@ pub(crate) fn thin_place<const D: usize>(
     limit: f64,
     step: f64,
 ) -> Option<ThinPlace<D>> {
+    opposite_faces(shape, x, limit, step, PARALLEL)
+}
+
+/// As [`thin_place`], with faces whose normals have an angle of more than 180° − acos `facing` between them.
+pub(crate) fn opposite_faces<const D: usize>(
+    shape: &Shape<D>,
+    x: &Vector<D>,
+    limit: f64,
+    step: f64,
+    facing: f64,
+) -> Option<ThinPlace<D>> {
     let (distance, mut normal) = shape.distance_and_normal(x, step);
     if normal.norm() < 0.5 {
-        normal = across(shape, x, step)?;
+        normal = across(shape, x, step, facing)?;
     }
     let face = x - normal * distance;
     if shape.signed_distance(&(face - normal * limit)) <= 0.0 {
         return None;
     }
-    let mut way = 0.02 * limit;
-    while way < limit {
+    let mut way = SEARCH * limit;
+    // The first point outside may lie a step beyond the opposite face.
+    while way < (1.0 + 2.0 * SEARCH) * limit {
         let exit = face - normal * way;
         let outside = shape.signed_distance(&exit);
         if outside > 1e-9 * limit {
             let thickness = way - outside;
-            let facing = shape.outward_normal(&exit, step);
-            let is_thin = thickness > 0.0 && normal.dot(&facing) < -PARALLEL;
+            let opposite = shape.outward_normal(&exit, step);
+            let is_thin = thickness > 0.0 && thickness < limit && normal.dot(&opposite) < -facing;
             return is_thin.then(|| ThinPlace { middle: face - normal * (0.5 * thickness), normal, thickness });
         }
-        way += (-outside).max(0.02 * limit);
+        way += (-outside).max(SEARCH * limit);
     }
     None
 }
 
 /// Returns the normal at a point midway between two faces, where the gradient of the distance is zero.
-fn across<const D: usize>(shape: &Shape<D>, x: &Vector<D>, step: f64) -> Option<Vector<D>> {
+fn across<const D: usize>(shape: &Shape<D>, x: &Vector<D>, step: f64, facing: f64) -> Option<Vector<D>> {
     (0..D).find_map(|axis| {
         let mut aside = Vector::zeros();
         aside[axis] = 2.0 * step;
         let [a, b] = [x + aside, x - aside].map(|x| shape.outward_normal(&x, step));
-        (a.dot(&b) < -PARALLEL).then_some(a)
+        (a.dot(&b) < -facing).then_some(a)
     })
 }
 

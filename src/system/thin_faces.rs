@@ -13,7 +13,11 @@ use rayon::prelude::*;
 
 use super::{MomentumTransfer, System, impulses::change_velocities, own_water};
 use crate::{
-    geometry::{BoundaryPoint, Shape, cells::PointCells, thin::thin_place},
+    geometry::{
+        BoundaryPoint, Shape,
+        cells::PointCells,
+        thin::{face_cells, opposite_faces},
+    },
     math::Vector,
     particles::PARTICLES_PER_TASK,
     solid::Load,
@@ -22,15 +26,19 @@ use crate::{
 /// Thickness of a part, dp, from which on boundary particles alone keep water out (`docs/measurements/thin-tank.toml`).
 const THIN: f64 = 2.5;
 
+/// Faces less than 60° from parallel are opposite: cos 60°. Boundary particles keep water out of blunter wedges.
+const OPPOSITE: f64 = 0.5;
+
 /// Distance from the face, dp, from which on water is not pushed: that at which boundary particles begin to repel it.
 const RANGE: f64 = 0.25;
 
-/// A, –, as that of boundary particles: it requires no shorter time step than sound does.
+/// A, –, as that of boundary particles. With steps Δt longer than dp/(c₀ √A), as at large h and Courant numbers, 1/Δt² replaces
+/// A c₀²/dp²: the oscillation of a particle is stable up to four times that.
 const STRENGTH: f64 = 2.0;
 
-/// Largest distance, dp, of water that is pushed from the nearest boundary particle beside the face: ¾ dp across and half the
-/// diagonal of a cell of the layer along it.
-const REACH: f64 = 1.25;
+/// Largest distance, dp, of water that is pushed from the nearest of the places that mark a thin part: up to 1½ dp across, and the
+/// diagonal of a cell of edge dp.
+const REACH: f64 = 2.0;
 
 /// Depth, dp, beyond which the push does not grow: half of the largest thickness.
 const DEEPEST: f64 = 0.5 * THIN;
@@ -56,7 +64,7 @@ struct Push<const D: usize> {
 /// The faces of thin parts, and the water beside them.
 #[derive(Default)]
 pub(super) struct ThinFaces<const D: usize> {
-    /// Of each solid: the boundary particles beside the faces of its thin parts, in its frame; `None` without thin parts.
+    /// Of each solid: places (m, in its frame) beside the faces of its thin parts; `None` without thin parts.
     of_solid: Vec<Option<PointCells<D>>>,
     /// The water of this rank that may come near them before the next lists; `None` if it is to be found.
     candidates: Option<Vec<Candidate>>,
@@ -65,10 +73,17 @@ pub(super) struct ThinFaces<const D: usize> {
 impl<const D: usize> ThinFaces<D> {
     /// Adds a solid of this `shape` with these boundary `points`.
     pub(super) fn append(&mut self, shape: &Shape<D>, points: &[BoundaryPoint<D>], dp: f64) {
-        let is_thin = |point: &&BoundaryPoint<D>| {
-            D == 3 && point.layer == 0 && thin_place(shape, &point.r, THIN * dp, 1e-3 * dp).is_some()
+        if D == 2 {
+            self.of_solid.push(None);
+            return;
+        }
+        // The tips of a mesh have no boundary particles.
+        let places = match shape {
+            Shape::Mesh { .. } => face_cells(shape, dp),
+            _ => points.iter().filter(|point| point.layer == 0).map(|point| point.r).collect(),
         };
-        let found: Vec<Vector<D>> = points.par_iter().filter(is_thin).map(|point| point.r).collect();
+        let is_thin = |x: &Vector<D>| opposite_faces(shape, x, THIN * dp, 1e-3 * dp, OPPOSITE).is_some();
+        let found: Vec<Vector<D>> = places.into_par_iter().filter(is_thin).collect();
         self.of_solid.push((!found.is_empty()).then(|| PointCells::new(&found, REACH * dp)));
     }
 
@@ -175,7 +190,7 @@ pub(crate) fn repel<const D: usize>(
 /// The pushes on the `candidates` over a step `dt` (s), in the order of the solids.
 fn own_pushes<const D: usize>(system: &System<D>, candidates: &[Candidate], dt: f64) -> Vec<Push<D>> {
     let (dp, mass, water) = (system.model.dp, system.particle_mass(), &system.fluid.particles);
-    let stiffness = STRENGTH * (system.properties.c0 / dp).powi(2);
+    let stiffness = (STRENGTH * (system.properties.c0 / dp).powi(2)).min(1.0 / (dt * dt));
     let push = |candidate: &Candidate| {
         let Candidate { particle, solid: number, copy } = *candidate;
         let (particle, number) = (particle as usize, number as usize);
