@@ -187,11 +187,17 @@ impl<const D: usize> Accounting<D> {
             self.budget.walls += (total_power(system) - viscous - diffusion - gradient) * dt;
             self.budget.driven += system.periodic_gravity_power() * dt;
         }
-        for (i, (solid, work)) in system.solids().iter().zip(&mut self.work).enumerate() {
-            *work = solid.load.power(&solid.kinematics) * dt;
-            if let Role::Driven(_) = solid.spec.role {
-                self.budget.driven -= *work * system.solid_multiplicity(i);
-            }
+        self.work.fill(0.0);
+        for (i, solid) in system.solids().iter().enumerate() {
+            self.add_work_on(system, i, solid.load.power(&solid.kinematics) * dt);
+        }
+    }
+
+    /// Adds the `work` (J) of the water on solid number `i` in the present step.
+    fn add_work_on(&mut self, system: &System<D>, i: usize, work: f64) {
+        self.work[i] += work;
+        if let Role::Driven(_) = system.solids()[i].spec.role {
+            self.budget.driven -= work * system.solid_multiplicity(i);
         }
     }
 
@@ -236,13 +242,10 @@ impl<const D: usize> Accounting<D> {
     /// solids.
     pub(crate) fn add_repelled(&mut self, system: &System<D>, energy: f64, impulses: &[Load<D>]) {
         self.budget.walls += energy;
-        for (i, ((solid, impulse), work)) in system.solids().iter().zip(impulses).zip(&mut self.work).enumerate() {
-            let received = impulse.power(&solid.kinematics);
-            *work += received;
-            self.budget.walls += received * system.solid_multiplicity(i);
-            if let Role::Driven(_) = solid.spec.role {
-                self.budget.driven -= received * system.solid_multiplicity(i);
-            }
+        for (i, (solid, impulse)) in system.solids().iter().zip(impulses).enumerate() {
+            let work = impulse.power(&solid.kinematics);
+            self.budget.walls += work * system.solid_multiplicity(i);
+            self.add_work_on(system, i, work);
         }
     }
 

@@ -22,7 +22,7 @@ const SHORT: f64 = 0.25;
 /// Distance over which the depth falls beyond the middle between two opposite faces, dp.
 const MIDWAY: f64 = 0.1;
 /// Two faces are opposite if their normals are more than 120 degrees apart: −cos 120°.
-const OPPOSITE: f64 = 0.5;
+pub(super) const OPPOSITE: f64 = 0.5;
 
 /// A cell: its centre (m) and the signed distance (m) of that centre.
 type Cell<const D: usize> = (Vector<D>, f64);

@@ -3,7 +3,12 @@
 
 use std::f64::consts::PI;
 
-use super::{Shape, cells::PointCells, packing, shell::chosen};
+use super::{
+    Shape,
+    cells::PointCells,
+    packing,
+    shell::{OPPOSITE, chosen},
+};
 use crate::math::{Bounds, Vector};
 
 /// Faces are parallel if their normals are more than 160 degrees apart: −cos 160°. A blunter wedge is a tip.
@@ -36,11 +41,23 @@ pub(crate) fn thin_place<const D: usize>(
     limit: f64,
     step: f64,
 ) -> Option<ThinPlace<D>> {
-    opposite_faces(shape, x, limit, step, PARALLEL)
+    faces_around(shape, x, limit, step, PARALLEL)
 }
 
-/// As [`thin_place`], with faces whose normals have an angle of more than 180° − acos `facing` between them.
-pub(crate) fn opposite_faces<const D: usize>(
+/// Whether `x` (m) is beside a part with opposite faces, which are nearly parallel or form a wedge below 60°, less than `limit` (m)
+/// apart. `step` (m) is that of the differences for normals.
+pub(crate) fn is_between_opposite_faces<const D: usize>(
+    shape: &Shape<D>,
+    x: &Vector<D>,
+    limit: f64,
+    step: f64,
+) -> bool {
+    faces_around(shape, x, limit, step, OPPOSITE).is_some()
+}
+
+/// The faces on both sides of the part next to `x` (m) if they are less than `limit` (m) apart and the cosine between their outward
+/// normals is below −`facing`. `step` (m) is that of the differences for normals.
+fn faces_around<const D: usize>(
     shape: &Shape<D>,
     x: &Vector<D>,
     limit: f64,

@@ -35,19 +35,18 @@ pub(super) fn check_ranks(scene: &Scene, ranks: &Ranks) -> Result<()> {
 
 /// The parts of the physics of `sim` that a device leaves out, if `scene` names a device.
 pub(super) fn omissions<const D: usize>(scene: &Scene, sim: &Simulation<D>) -> Vec<String> {
-    let system = sim.system();
+    if scene.device_name().is_none() {
+        return Vec::new();
+    }
     let film =
         "the pressure of the film of water between a body and what it touches, so that a body on the bed is not lifted";
     let faces =
         "the force by which the faces of parts thinner than 2.5 dp keep water out in 3-D, so that such walls may leak";
-    let omitted = [(system.solids().iter().any(Solid::is_free), film), (has_thin_faces(system), faces)];
-    let told =
-        omitted.into_iter().filter(|(is_needed, _)| *is_needed && scene.device_name().is_some()).map(|(_, what)| {
-            format!(
-                "a device leaves out {what}: let such a scene run on the processor, without --device (model.device)"
-            )
-        });
-    told.collect()
+    let system = sim.system();
+    let needed = [(system.solids().iter().any(Solid::is_free), film), (has_thin_faces(system), faces)];
+    let needed = needed.into_iter().filter_map(|(is_needed, what)| is_needed.then_some(what));
+    let remedy = "let such a scene run on the processor, without --device (model.device)";
+    needed.map(|what| format!("a device leaves out {what}: {remedy}")).collect()
 }
 
 /// Puts the water of `sim` on the device that `scene` names, if it names one.

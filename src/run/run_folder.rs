@@ -69,7 +69,7 @@ pub(crate) fn create_run_folder(file: &Path, out: Option<&Path>) -> Result<PathB
 ///
 /// # Errors
 /// `File` if one cannot be removed.
-pub(crate) fn remove_ends(folder: &Path) -> Result<()> {
+pub(crate) fn remove_end_files(folder: &Path) -> Result<()> {
     [FAILURE, checkpoint::PART, SPECTRA_FILE, RAO_FILE].iter().map(|name| folder.join(name)).try_for_each(|path| {
         match fs::remove_file(&path) {
             Err(why) if why.kind() != std::io::ErrorKind::NotFound => Err(Error::write(&path, "removed", &why)),

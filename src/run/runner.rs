@@ -102,7 +102,7 @@ where
         let controls = Controls::new(&plan.controls, &sim)?;
         let sim = device::place_on_device(scene, sim, &outputs)?;
         if resumed {
-            run_folder::remove_ends(&folder)?;
+            run_folder::remove_end_files(&folder)?;
         }
         let good = warning.is_none();
         // The list of a killed run may be ahead of its checkpoint.

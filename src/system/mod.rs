@@ -440,7 +440,8 @@ impl<const D: usize> System<D> {
         gaps.add_to(sums, input.neighbours.boundary_near_fluid(), &boundary.r, pressure);
     }
 
-    /// Finds the narrow gaps and the films at the positions `r` (m) of the boundary particles for which the lists were built.
+    /// Finds the narrow gaps and the films at the positions `r` (m) of the boundary particles for which the lists were built. The water
+    /// beside thin parts is found when it is pushed.
     fn find_gaps(&mut self, r: &[Vector<D>]) {
         let Self { gap_pressure, neighbours, solids, .. } = self;
         gap_pressure.find(solids, r, neighbours.boundary_near_fluid(), neighbours.margin());

@@ -7,12 +7,12 @@ use rayon::prelude::*;
 
 use super::{ExitPath, Fluid, RemovedParticle, StepCheck, System};
 use crate::{
-    math::{Bivector, Matrix, Vector},
+    math::{Matrix, Vector},
     model::TimeScheme,
     neighbours::{Columns, Division, IndexRanges, NeighbourLists},
     particles::{PARTICLES_PER_TASK, Particles, zeros},
     ranks::{self, Ranks},
-    solid::{Load, Role},
+    solid::Role,
 };
 
 /// What comes together at set-up where each rank has its own water.
@@ -234,32 +234,11 @@ pub(super) fn share_boundary_velocity<const D: usize>(neighbours: &NeighbourList
     division.share_boundary(&mut { v }, D, give, take);
 }
 
-/// A water particle, a solid that pushes it, and the impulse (N s, N m s) on the solid.
-pub(super) type Reaction<const D: usize> = (usize, usize, Load<D>);
-
-/// The reactions of all ranks to those of this rank's `own` water, in the order of the particles.
-pub(super) fn gather_reactions<const D: usize>(
-    neighbours: &NeighbourLists<D>,
-    mut own: Vec<Reaction<D>>,
-) -> Vec<Reaction<D>> {
-    if let Some(division) = division(neighbours) {
-        let numbers = |(particle, solid, load): &Reaction<D>| {
-            let load = load.force.iter().chain(load.torque.0.iter());
-            [*particle as f64, *solid as f64].into_iter().chain(load.copied()).collect::<Vec<_>>()
-        };
-        let bytes: Vec<u8> = own.iter().flat_map(numbers).flat_map(f64::to_le_bytes).collect();
-        let all = division.ranks.gather_bytes(&bytes).concat();
-        let (numbers, _) = all.as_chunks::<8>();
-        let numbers: Vec<f64> = numbers.iter().map(|bytes| f64::from_le_bytes(*bytes)).collect();
-        let reaction = |x: &[f64]| {
-            let force = Vector::from_column_slice(&x[2..2 + D]);
-            let torque = Bivector(Matrix::from_column_slice(&x[2 + D..]));
-            (x[0] as usize, x[1] as usize, Load { force, torque })
-        };
-        own = numbers.chunks_exact(2 + D + D * D).map(reaction).collect();
-    }
-    own.sort_by_key(|(particle, solid, _)| (*particle, *solid));
-    own
+/// The numbers that the ranks give, in the order of the ranks, where each advances its own water; else `own`.
+pub(super) fn gather_numbers<const D: usize>(neighbours: &NeighbourLists<D>, own: Vec<f64>) -> Vec<f64> {
+    let Some(division) = division(neighbours) else { return own };
+    let all = division.ranks.gather_bytes(bytemuck::cast_slice(&own));
+    all.iter().flat_map(|bytes| bytemuck::pod_collect_to_vec::<u8, f64>(bytes)).collect()
 }
 
 /// The numbers of a rank's water particles in ascending order, and how many all ranks have.

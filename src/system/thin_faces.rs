@@ -16,25 +16,19 @@ use crate::{
     geometry::{
         BoundaryPoint, Shape,
         cells::PointCells,
-        thin::{face_cells, opposite_faces},
+        thin::{face_cells, is_between_opposite_faces},
     },
     math::Vector,
     particles::PARTICLES_PER_TASK,
     solid::Load,
+    sph::boundary::Repulsion,
 };
 
 /// Thickness of a part, dp, from which on boundary particles alone keep water out (`docs/measurements/thin-tank.toml`).
 const THIN: f64 = 2.5;
 
-/// Faces less than 60° from parallel are opposite: cos 60°. Boundary particles keep water out of blunter wedges.
-const OPPOSITE: f64 = 0.5;
-
-/// Distance from the face, dp, from which on water is not pushed: that at which boundary particles begin to repel it.
-const RANGE: f64 = 0.25;
-
-/// A, –, as that of boundary particles. With steps Δt longer than dp/(c₀ √A), as at large h and Courant numbers, 1/Δt² replaces
-/// A c₀²/dp²: the oscillation of a particle is stable up to four times that.
-const STRENGTH: f64 = 2.0;
+/// Distance from the face, dp, from which on water is not pushed: there boundary particles, half a dp behind the face, begin to repel it.
+const RANGE: f64 = Repulsion::RANGE - 0.5;
 
 /// Largest distance, dp, of water that is pushed from the nearest of the places that mark a thin part: up to 1½ dp across, and the
 /// diagonal of a cell of edge dp.
@@ -43,22 +37,30 @@ const REACH: f64 = 2.0;
 /// Depth, dp, beyond which the push does not grow: half of the largest thickness.
 const DEEPEST: f64 = 0.5 * THIN;
 
-/// A water particle that may come near a thin part before the next lists.
-#[derive(Clone, Copy)]
-struct Candidate {
-    particle: u32,
-    solid: u32,
-    copy: u32,
-}
-
-/// A particle that a thin part pushes.
+/// A push of a solid on a water particle.
 struct Push<const D: usize> {
     particle: usize,
-    /// Change of its velocity, m/s.
-    change: Vector<D>,
     solid: usize,
-    /// The impulse on the solid about its centre, N s and N m s.
-    reaction: Load<D>,
+    /// Change of the particle's velocity, m/s.
+    change: Vector<D>,
+    /// Place of the particle from the centre of the solid, m.
+    arm: Vector<D>,
+}
+
+impl<const D: usize> Push<D> {
+    /// How many numbers [`Push::numbers`] gives.
+    const NUMBERS: usize = 2 + 2 * D;
+
+    fn numbers(&self) -> impl Iterator<Item = f64> {
+        let vectors = self.change.iter().chain(self.arm.iter()).copied();
+        [self.particle as f64, self.solid as f64].into_iter().chain(vectors)
+    }
+
+    /// The push of these [`Push::numbers`].
+    fn of(numbers: &[f64]) -> Self {
+        let [change, arm] = [2, 2 + D].map(|start| Vector::from_column_slice(&numbers[start..start + D]));
+        Self { particle: numbers[0] as usize, solid: numbers[1] as usize, change, arm }
+    }
 }
 
 /// The faces of thin parts, and the water beside them.
@@ -66,8 +68,8 @@ struct Push<const D: usize> {
 pub(super) struct ThinFaces<const D: usize> {
     /// Of each solid: places (m, in its frame) beside the faces of its thin parts; `None` without thin parts.
     of_solid: Vec<Option<PointCells<D>>>,
-    /// The water of this rank that may come near them before the next lists; `None` if it is to be found.
-    candidates: Option<Vec<Candidate>>,
+    /// The water of this rank that may come near them before the next lists, for each of [`copies`]; `None` if it is to be found.
+    beside: Option<Vec<Vec<u32>>>,
 }
 
 impl<const D: usize> ThinFaces<D> {
@@ -82,7 +84,7 @@ impl<const D: usize> ThinFaces<D> {
             Shape::Mesh { .. } => face_cells(shape, dp),
             _ => points.iter().filter(|point| point.layer == 0).map(|point| point.r).collect(),
         };
-        let is_thin = |x: &Vector<D>| opposite_faces(shape, x, THIN * dp, 1e-3 * dp, OPPOSITE).is_some();
+        let is_thin = |x: &Vector<D>| is_between_opposite_faces(shape, x, THIN * dp, 1e-3 * dp);
         let found: Vec<Vector<D>> = places.into_par_iter().filter(is_thin).collect();
         self.of_solid.push((!found.is_empty()).then(|| PointCells::new(&found, REACH * dp)));
     }
@@ -97,7 +99,7 @@ impl<const D: usize> ThinFaces<D> {
 
     /// Lets the next step find the water beside thin parts: lists, or the water of this rank, have changed.
     pub(super) fn forget_water(&mut self) {
-        self.candidates = None;
+        self.beside = None;
     }
 
     /// Whether no solid has thin parts.
@@ -111,41 +113,40 @@ pub(crate) fn has_thin_faces<const D: usize>(system: &System<D>) -> bool {
     !system.boundary.thin.faces.is_empty()
 }
 
-/// Displacement (m) to copy number `copy` of solid number `number` across periodic sides.
-fn way_to_copy<const D: usize>(system: &System<D>, number: usize, copy: usize) -> Vector<D> {
-    let solid = &system.solids[number];
-    if solid.copied_axes == 0 {
-        return Vector::zeros();
-    }
-    system.fluid.images.way_to_copy(&system.boundary.middle(number, &solid.kinematics.pose), solid.copied_axes, copy)
+/// The copies of the solids with thin parts: the number of the solid, the places that mark its thin parts, and the displacement (m) to
+/// the copy across periodic sides.
+fn copies<const D: usize>(system: &System<D>) -> impl Iterator<Item = (usize, &PointCells<D>, Vector<D>)> {
+    let System { solids, boundary, fluid, .. } = system;
+    let thin = solids.iter().zip(&boundary.thin.faces.of_solid).enumerate();
+    thin.filter_map(|(number, (solid, faces))| Some((number, solid, faces.as_ref()?))).flat_map(
+        |(number, solid, faces)| {
+            let copies = boundary.copies(&fluid.images, (number, solid), &solid.kinematics.pose);
+            copies.map(move |(_, way)| (number, faces, way))
+        },
+    )
 }
 
-/// The water of this rank that may come near thin parts before the next lists.
-fn candidates<const D: usize>(system: &System<D>) -> Vec<Candidate> {
-    let (r, faces) = (&system.fluid.particles.r, &system.boundary.thin.faces.of_solid);
+/// The water of this rank that may come near thin parts before the next lists, for each of [`copies`].
+fn water_beside<const D: usize>(system: &System<D>) -> Vec<Vec<u32>> {
+    let r = &system.fluid.particles.r;
     // Water and solids may both have moved by the margin, and a step may pass it.
     let reach = REACH * system.model.dp + 3.0 * system.neighbours.margin();
-    let mut found = Vec::new();
     let (these, own) = own_water::own(&system.neighbours, system.own_count());
-    for (number, (solid, faces)) in system.solids.iter().zip(faces).enumerate() {
-        let Some(faces) = faces else { continue };
-        let bounds = system.boundary.local_bounds[number].grown(reach);
-        for copy in 0..solid.copies() {
-            let (way, pose) = (way_to_copy(system, number, copy), &solid.kinematics.pose);
-            let is_near = |i: &u32| {
-                let x = pose.local(&(r[*i as usize] - way));
-                let mut near = false;
-                if own.is_none_or(|own| own[*i as usize]) && bounds.contains(&x) {
-                    faces.visit_near(&x, reach, |_, y| near |= (x - y).norm_squared() < reach * reach);
-                }
-                near
-            };
-            let water = (these.start as u32..these.end as u32).into_par_iter().with_min_len(PARTICLES_PER_TASK);
-            let candidate = |particle| Candidate { particle, solid: number as u32, copy: copy as u32 };
-            found.par_extend(water.filter(is_near).map(candidate));
-        }
-    }
-    found
+    let beside = |(number, faces, way): (usize, &PointCells<D>, Vector<D>)| {
+        let (pose, bounds) = (&system.solids[number].kinematics.pose, &system.boundary.local_bounds[number]);
+        let bounds = bounds.grown(reach);
+        let is_near = |i: &u32| {
+            let x = pose.local(&(r[*i as usize] - way));
+            let mut near = false;
+            if own.is_none_or(|own| own[*i as usize]) && bounds.contains(&x) {
+                faces.visit_near(&x, reach, |_, y| near |= (x - y).norm_squared() < reach * reach);
+            }
+            near
+        };
+        let water = (these.start as u32..these.end as u32).into_par_iter().with_min_len(PARTICLES_PER_TASK);
+        water.filter(is_near).collect()
+    };
+    copies(system).map(beside).collect()
 }
 
 /// Pushes the water beside thin parts over a step `dt` (s), and adds the loads on the solids; they act on bodies by the factor `weight`
@@ -158,14 +159,16 @@ pub(crate) fn repel<const D: usize>(
     if !has_thin_faces(system) {
         return None;
     }
-    let candidates = system.boundary.thin.faces.candidates.take().unwrap_or_else(|| candidates(system));
-    let mut pushes = own_pushes(system, &candidates, dt);
-    system.boundary.thin.faces.candidates = Some(candidates);
-    let mass = system.particle_mass();
+    let beside = system.boundary.thin.faces.beside.take().unwrap_or_else(|| water_beside(system));
+    let mut own = pushes(system, &beside, dt);
+    system.boundary.thin.faces.beside = Some(beside);
+    let (mass, numbers) = (system.particle_mass(), own.iter().flat_map(Push::numbers).collect());
+    let numbers = own_water::gather_numbers(&system.neighbours, numbers);
+    let mut all: Vec<Push<D>> = numbers.chunks_exact(Push::<D>::NUMBERS).map(Push::of).collect();
+    all.sort_by_key(|push| (push.particle, push.solid));
     let mut impulses = vec![Load::zero(); system.solids.len()];
-    let reactions = pushes.iter().map(|push| (push.particle, push.solid, push.reaction)).collect();
-    for (_, solid, reaction) in own_water::gather_reactions(&system.neighbours, reactions) {
-        impulses[solid] += reaction;
+    for push in all {
+        impulses[push.solid] += Load::from_force_at(&push.arm, push.change * -mass);
     }
     for (solid, impulse) in impulses.iter_mut().enumerate() {
         if system.solids[solid].division.cut != 0 {
@@ -175,37 +178,34 @@ pub(crate) fn repel<const D: usize>(
             system.solids[solid].load += *impulse * (1.0 / (dt * weight));
         }
     }
-    // A particle may have pushes by several solids.
-    pushes.sort_by_key(|push| push.particle);
-    let mut changes: Vec<(usize, Vector<D>)> = Vec::with_capacity(pushes.len());
-    for push in pushes {
-        match changes.last_mut() {
-            Some((particle, change)) if *particle == push.particle => *change += push.change,
-            _ => changes.push((push.particle, push.change)),
-        }
-    }
+    own.sort_by_key(|push| push.particle);
+    let by_particle = own.chunk_by(|a, b| a.particle == b.particle);
+    let change = |same: &[Push<D>]| same[1..].iter().fold(same[0].change, |sum, push| sum + push.change);
+    let changes = by_particle.map(|same| (same[0].particle, change(same))).collect();
     Some((change_velocities(system, changes, mass * system.water_multiplicity()), impulses))
 }
 
-/// The pushes on the `candidates` over a step `dt` (s), in the order of the solids.
-fn own_pushes<const D: usize>(system: &System<D>, candidates: &[Candidate], dt: f64) -> Vec<Push<D>> {
-    let (dp, mass, water) = (system.model.dp, system.particle_mass(), &system.fluid.particles);
-    let stiffness = (STRENGTH * (system.properties.c0 / dp).powi(2)).min(1.0 / (dt * dt));
-    let push = |candidate: &Candidate| {
-        let Candidate { particle, solid: number, copy } = *candidate;
-        let (particle, number) = (particle as usize, number as usize);
+/// The pushes of thin parts on the water `beside` each of [`copies`] over a step `dt` (s).
+fn pushes<const D: usize>(system: &System<D>, beside: &[Vec<u32>], dt: f64) -> Vec<Push<D>> {
+    let dp = system.model.dp;
+    // Long steps, as with large h and Courant numbers, limit the push; it is stable up to four times this limit.
+    let stiffness = (Repulsion::STRENGTH * (system.properties.c0 / dp).powi(2)).min(1.0 / (dt * dt));
+    let by_copy = |((number, _, way), particles): ((usize, &PointCells<D>, Vector<D>), &Vec<u32>)| {
         let solid = &system.solids[number];
-        let (pose, r) = (&solid.kinematics.pose, &water.r[particle]);
-        let on_solid = r - way_to_copy(system, number, copy as usize);
-        let x = pose.local(&on_solid);
-        let near = RANGE * dp - solid.spec.shape.signed_distance(&x).max(-DEEPEST * dp);
-        if near <= 0.0 {
-            return None;
-        }
-        let normal = pose.rotation * solid.spec.shape.outward_normal(&x, 1e-3 * dp);
-        let change = normal * (stiffness * near * dt);
-        let reaction = Load::from_force_at(&(on_solid - solid.kinematics.centre), change * -mass);
-        Some(Push { particle, change, solid: number, reaction })
+        let (shape, kinematics) = (&solid.spec.shape, &solid.kinematics);
+        let push = |particle: &u32| {
+            let particle = *particle as usize;
+            let on_solid = system.fluid.particles.r[particle] - way;
+            let x = kinematics.pose.local(&on_solid);
+            let near = RANGE * dp - shape.signed_distance(&x).max(-DEEPEST * dp);
+            if near <= 0.0 {
+                return None;
+            }
+            let normal = kinematics.pose.rotation * shape.outward_normal(&x, 1e-3 * dp);
+            let change = normal * (stiffness * near * dt);
+            Some(Push { particle, solid: number, change, arm: on_solid - kinematics.centre })
+        };
+        particles.par_iter().with_min_len(PARTICLES_PER_TASK).filter_map(push).collect::<Vec<_>>()
     };
-    candidates.par_iter().with_min_len(PARTICLES_PER_TASK).filter_map(push).collect()
+    copies(system).zip(beside).flat_map(by_copy).collect()
 }

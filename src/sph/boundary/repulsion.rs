@@ -6,13 +6,6 @@
 
 use crate::sph::{FluidProperties, Num, Pair, Term, kernel::Kernel};
 
-/// r₀/dp, –.
-const RANGE: f64 = 0.75;
-
-/// A, –. It stops water that approaches with a third of the speed of sound or is pressed with a tenth of ρ₀ c₀², and it requires
-/// no shorter time step than sound does.
-const STRENGTH: f64 = 2.0;
-
 /// The repulsion under one kernel.
 #[derive(Clone, Copy, Debug)]
 pub struct Repulsion {
@@ -23,11 +16,18 @@ pub struct Repulsion {
 }
 
 impl Repulsion {
+    /// r₀/dp, –.
+    pub(crate) const RANGE: f64 = 0.75;
+
+    /// A, –. It stops water that approaches with a third of the speed of sound or is pressed with a tenth of ρ₀ c₀², and it requires
+    /// no shorter time step than sound does.
+    pub(crate) const STRENGTH: f64 = 2.0;
+
     /// The repulsion under `kernel`.
     pub fn new<K: Kernel, const D: usize>(kernel: K, medium: &FluidProperties<D>) -> Self {
-        let range2 = (RANGE * medium.dp).powi(2);
+        let range2 = (Self::RANGE * medium.dp).powi(2);
         let slope: f64 = kernel.normalised_on_lattice(medium).slope(0.25 * range2);
-        Self { inv_range2: 1.0 / range2, strength: STRENGTH * (medium.c0 / medium.dp).powi(2) / -slope }
+        Self { inv_range2: 1.0 / range2, strength: Self::STRENGTH * (medium.c0 / medium.dp).powi(2) / -slope }
     }
 }
 
