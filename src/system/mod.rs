@@ -18,6 +18,7 @@ mod open_boundary;
 pub(crate) mod own_water;
 pub(crate) mod periodic;
 mod setup;
+mod slip_rates;
 mod sponge_layer;
 mod step_check;
 mod symmetric_setup;
@@ -49,6 +50,7 @@ pub(crate) use symmetry::{AxisSet, reflected};
 pub(crate) use thin_faces::{has_thin_faces, repel as repel_from_thin_faces};
 
 use own_water::StateAtStart;
+use slip_rates::SlipRates;
 use symmetry::{reflected_auxiliary, reflected_sums, reflected_tensor};
 
 pub use crate::interaction::StepLimits;
@@ -113,6 +115,8 @@ pub(crate) struct Rates<const D: usize> {
     corrections_current: bool,
     /// One for each boundary particle near water.
     pub(crate) boundary: Vec<PairSums<D>>,
+    /// Density rates by the slip of boundary particles; `None` unless water sticks to faces.
+    slip: Option<SlipRates>,
 }
 
 /// The sums of the water from the last force pass. An image has those of its original.
@@ -120,6 +124,7 @@ pub(crate) struct Rates<const D: usize> {
 pub(crate) struct FluidRates<'a, const D: usize> {
     pair_loop: &'a dyn PairLoop<D>,
     neighbours: &'a NeighbourLists<D>,
+    slip: Option<&'a SlipRates>,
     originals: &'a [u32],
     reflections: &'a [AxisSet],
     /// Number of particles that are no images.
@@ -136,7 +141,10 @@ impl<'a, const D: usize> FluidRates<'a, D> {
         if original >= self.water {
             return PairSums::zero();
         }
-        let sums = self.pair_loop.fluid_sums(self.neighbours, original);
+        let mut sums = self.pair_loop.fluid_sums(self.neighbours, original);
+        if let Some(slip) = self.slip {
+            sums.compression_rate += slip.of(original);
+        }
         if self.reflections.is_empty() { sums } else { reflected_sums(self.reflection(i), sums) }
     }
 
@@ -251,7 +259,12 @@ impl<const D: usize> System<D> {
             pair_loop,
             neighbours: NeighbourLists::new(support, model.dp, model.pair_loop.instruction_set())
                 .on_ranks(ranks.clone()),
-            rates: Rates { current: false, corrections_current: false, boundary: Vec::new() },
+            rates: Rates {
+                current: false,
+                corrections_current: false,
+                boundary: Vec::new(),
+                slip: SlipRates::new::<D>(&model),
+            },
             boundary: Boundary::new(&model),
             gap_pressure: GapPressure::new(&model),
             model,
@@ -422,6 +435,10 @@ impl<const D: usize> System<D> {
             self;
         let input = Self::pair_input(neighbours, fluid, boundary, properties, equation_of_state);
         self.status.step_limits = pair_loop.rates(&input, requested, &mut rates.boundary);
+        if let Some(slip) = &mut rates.slip {
+            let near = neighbours.boundary_near_fluid();
+            slip.update(&fluid.particles, boundary, (near, &mut rates.boundary));
+        }
         rates.current = true;
         Self::add_gap_pressure(gap_pressure, &input, &mut rates.boundary);
         self.limit_step_by_originals();
@@ -440,12 +457,13 @@ impl<const D: usize> System<D> {
         gaps.add_to(sums, input.neighbours.boundary_near_fluid(), &boundary.r, pressure);
     }
 
-    /// Finds the narrow gaps and the films at the positions `r` (m) of the boundary particles for which the lists were built. The water
+    /// Finds the narrow gaps, the films and the water that sticks to faces at the positions `r` (m) of the boundary particles for which the lists were built. The water
     /// beside thin parts is found when it is pushed.
     fn find_gaps(&mut self, r: &[Vector<D>]) {
         let Self { gap_pressure, neighbours, solids, .. } = self;
         gap_pressure.find(solids, r, neighbours.boundary_near_fluid(), neighbours.margin());
         film::find(self, r);
+        self.find_water_that_sticks(r);
         self.boundary.thin.faces.forget_water();
     }
 
@@ -457,17 +475,17 @@ impl<const D: usize> System<D> {
     /// The sums of the water from the last pass of a pair loop at the present lists.
     pub(crate) fn fluid_rates_of<'a>(&'a self, pair_loop: &'a dyn PairLoop<D>) -> FluidRates<'a, D> {
         let Images { originals, reflections, .. } = &self.fluid.images;
-        let (real, water) = (self.own_count(), self.particle_count());
-        FluidRates { pair_loop, neighbours: &self.neighbours, originals, reflections, real, water }
+        let (real, water, slip) = (self.own_count(), self.particle_count(), self.rates.slip.as_ref());
+        FluidRates { pair_loop, neighbours: &self.neighbours, slip, originals, reflections, real, water }
     }
 
     /// The water's particles, and their sums from the last force pass.
     pub(crate) fn fluid_and_rates(&mut self) -> (&mut Particles<D>, FluidRates<'_, D>) {
         let (real, water) = (self.own_count(), self.particle_count());
         let Fluid { particles, images, .. } = &mut self.fluid;
-        let (pair_loop, neighbours) = (&*self.pair_loop, &self.neighbours);
+        let (pair_loop, neighbours, slip) = (&*self.pair_loop, &self.neighbours, self.rates.slip.as_ref());
         let Images { originals, reflections, .. } = images;
-        (particles, FluidRates { pair_loop, neighbours, originals, reflections, real, water })
+        (particles, FluidRates { pair_loop, neighbours, slip, originals, reflections, real, water })
     }
 
     /// The stress that the next force pass reads, from the sums of this one.

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use super::{ExitPath, Fluid, RemovedParticle, StepCheck, System};
 use crate::{
     math::{Matrix, Vector},
-    model::TimeScheme,
+    model::{Slip, TimeScheme},
     neighbours::{Columns, Division, IndexRanges, NeighbourLists},
     particles::{PARTICLES_PER_TASK, Particles, zeros},
     ranks::{self, Ranks},
@@ -37,6 +37,7 @@ pub(crate) fn may_be_divided<const D: usize>(system: &System<D>, t: f64) -> bool
         && model.scheme == TimeScheme::Symplectic
         && model.viscosity.stress().is_none()
         && model.shift().is_none()
+        && model.slip != Slip::None
         && !fluid.images.any()
         && system.fluid_domain.open_boundaries.is_empty()
         && system.driving.driving.current.is_none()

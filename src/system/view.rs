@@ -6,6 +6,7 @@ use rayon::prelude::*;
 
 use super::{
     Driving, FaceExchange, Fluid, OpenBoundary, Periodic, System, own_water, reflected,
+    slip_rates::SlipRates,
     symmetry::{SymmetryPlanes, reflected_turn},
 };
 use crate::{
@@ -380,6 +381,7 @@ impl<const D: usize> System<D> {
             + self.pair_loop.memory_bytes()
             + self.boundary.memory_bytes()
             + size_of_val(&self.rates.boundary[..])
+            + self.rates.slip.as_ref().map_or(0, SlipRates::memory_bytes)
     }
 
     /// Additional memory (B) that a step takes for a while beside [`System::memory_bytes`]: the start of a symplectic step,
