@@ -120,6 +120,11 @@ impl<const D: usize> Hollow<D> {
         cut.map(|column| column.area / along).sum()
     }
 
+    /// The places over which water can come in, m in the solid's frame; none if the hollow is closed.
+    pub(crate) fn rim(&self) -> &[Vector<D>] {
+        &self.rim
+    }
+
     /// Whether no water can come in.
     pub(crate) fn is_closed(&self) -> bool {
         self.rim.is_empty()

@@ -13,7 +13,7 @@ use super::{
     own_water,
     periodic::Images,
     symmetry::{AxisSet, Division, MirroredParticle, reflected},
-    thin_layers::{self, ThinLayers},
+    thin_layers::{self, ThinLayers, WaterAround},
 };
 use crate::{
     error::{Error, Result},
@@ -141,7 +141,7 @@ impl<const D: usize> Boundary<D> {
         }
         if let Some(depths) = &mut self.depths {
             let own: Vec<f64> = faces.par_iter().map(|r| -spec.shape.signed_distance(r)).collect();
-            self.thin.append(&spec.shape, &faces, &own, model.dp);
+            self.thin.append((&spec.shape, &kinematics.pose.rotation), &faces, &own, model.dp);
             (0..copies).for_each(|_| depths.extend_from_slice(&own));
             depths.extend(mirrored.iter().map(|image| own[image.own as usize]));
         }
@@ -392,7 +392,12 @@ impl<const D: usize> System<D> {
             self.gap_pressure.update_directions(&fits);
             film::update_water(self, &fits);
             let place = |system: &Self, i: u32| system.neighbours.boundary_near_fluid().binary_search(&i).ok();
-            thin_layers::update_water(self, |system, i| place(system, i).map(|place| fits[place].weight_sum));
+            let around = |fit: &WallExtrapolation<f64, D>| WaterAround {
+                weight: fit.weight_sum,
+                // Offsets point from the water to the wall.
+                offset: -Vector::from(fit.offset_sum) / fit.weight_sum.max(f64::MIN_POSITIVE),
+            };
+            thin_layers::update_water(self, |system, i| place(system, i).map(|place| around(&fits[place])));
         }
         let near = self.neighbours.boundary_near_fluid();
         let wet: Cow<'_, [u32]> = match own_water::own_boundary(&self.neighbours) {

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::{
     ParticleLimits, System,
     impulses::{MomentumTransfer, bounds_beside, water_beside},
-    thin_layers,
+    thin_layers::{self, WaterAround},
 };
 use crate::{
     math::{Bounds, Matrix, Vector},
@@ -136,7 +136,8 @@ pub(crate) fn place_solids<const D: usize>(system: &mut System<D>) {
 pub(crate) fn set_loads<const D: usize>(system: &mut System<D>, of: WaterLoads<D>) {
     let WaterLoads { loads, weights } = of;
     let weight = |i: u32| weights.binary_search_by_key(&i, |(watched, _)| *watched).ok().map(|place| weights[place].1);
-    thin_layers::update_water(system, |_, i| weight(i));
+    let around = |weight| WaterAround { weight, offset: Vector::zeros() };
+    thin_layers::update_water(system, |_, i| weight(i).map(around));
     let thin = thin_layers::loads(system);
     system.solids.iter_mut().zip(loads).for_each(|(solid, load)| solid.load = load);
     system.solids.iter_mut().zip(thin).for_each(|(solid, load)| solid.load += load);

@@ -5,6 +5,9 @@
 //! on the solid. The share s of water around the particle, by kernel weights, is 1 under water, ½ with water on one side, and 0
 //! in air. Only the buoyancy in water at rest is corrected; the added mass of a plate hardly depends on its thickness.
 //!
+//! Water in a hollow of the solid, as in a vessel, is a fixed amount: the excess raises its level, and the solid carries its weight
+//! without a correction. The side of a layer beside a hollow therefore does not count, until water outside covers the rim.
+//!
 //! The component across the faces of a layer moves the pressures to the true faces. The component along the faces is the excess
 //! of the pressure on the lower end over that on the upper end. Where a fixed or driven part stands on another such solid, no
 //! water is below its lower end. The component along the faces is then subtracted from the load on that other solid, whose face
@@ -12,8 +15,13 @@
 
 use super::{System, thin_faces::ThinFaces};
 use crate::{
-    geometry::{Shape, cells::PointCells, thin::thin_place},
-    math::Vector,
+    geometry::{
+        Shape,
+        cells::PointCells,
+        hollow::{Enclosure, Place, may_enclose},
+        thin::thin_place,
+    },
+    math::{Matrix, Vector},
     model::{Model, Walls},
     solid::{Load, Solid},
 };
@@ -33,6 +41,9 @@ const LEVEL: f64 = 1e-3;
 /// Gap below the end of a part from which on water is below it, dp.
 const OPEN: f64 = 0.25;
 
+/// Largest distance, dp, of a thin particle from the rim of a hollow for which it tells whether water covers the rim.
+const RIM: f64 = 3.0;
+
 /// A boundary particle in the middle of a thin part.
 struct ThinParticle<const D: usize> {
     /// Its place among the particles of a copy of its solid.
@@ -43,8 +54,18 @@ struct ThinParticle<const D: usize> {
     excess: f64,
     /// Outward unit normal of one of its faces, in the frame of its solid.
     normal: Vector<D>,
+    /// Numbers of the hollows of the solid before that face and behind the opposite one.
+    hollows: [Option<u32>; 2],
     /// Places in this list of those next to it.
     beside: Vec<u32>,
+}
+
+/// The water around a boundary particle.
+pub(super) struct WaterAround<const D: usize> {
+    /// Share of the kernel's support that it fills, –.
+    pub weight: f64,
+    /// Mean place of the water from the particle, m; zero where it is not known.
+    pub offset: Vector<D>,
 }
 
 /// What a part stands on.
@@ -69,9 +90,11 @@ struct Ends<const D: usize> {
 /// The boundary particles in the middle of thin parts, and the faces of such parts.
 pub(super) struct ThinLayers<const D: usize> {
     of_solid: Vec<Vec<ThinParticle<D>>>,
+    /// The thin particles at the rim of each hollow of each solid.
+    rims: Vec<Vec<Vec<u32>>>,
     /// The ends of the parts of each solid; `None` for free solids and for those without thin parts.
     ends: Vec<Option<Ends<D>>>,
-    /// Share of the surroundings that is water, of each particle of each copy, at the last force pass.
+    /// Share of the surroundings that is water, without that in hollows, of each particle of each copy at the last force pass.
     wet: Vec<f64>,
     /// Whether walls have the weight of the water before them.
     possible: bool,
@@ -82,7 +105,14 @@ pub(super) struct ThinLayers<const D: usize> {
 impl<const D: usize> ThinLayers<D> {
     pub(super) fn new(model: &Model) -> Self {
         let possible = model.walls == Walls::RelaxedAdami;
-        Self { of_solid: Vec::new(), ends: Vec::new(), wet: Vec::new(), possible, faces: ThinFaces::default() }
+        Self {
+            of_solid: Vec::new(),
+            rims: Vec::new(),
+            ends: Vec::new(),
+            wet: Vec::new(),
+            possible,
+            faces: ThinFaces::default(),
+        }
     }
 
     /// Whether no part is thin.
@@ -90,13 +120,21 @@ impl<const D: usize> ThinLayers<D> {
         self.of_solid.iter().all(Vec::is_empty)
     }
 
-    /// Adds a solid of this `shape` with boundary particles at `places` (m, in its frame), `depths` (m) below its face.
-    pub(super) fn append(&mut self, shape: &Shape<D>, places: &[Vector<D>], depths: &[f64], dp: f64) {
+    /// Adds a solid of this `shape`, turned by `rotation`, with boundary particles at `places` (m, in its frame), `depths` (m) below
+    /// its face.
+    pub(super) fn append(
+        &mut self,
+        (shape, rotation): (&Shape<D>, &Matrix<D>),
+        places: &[Vector<D>],
+        depths: &[f64],
+        dp: f64,
+    ) {
         let thin = |(place, (x, depth)): (usize, (&Vector<D>, &f64))| {
             let candidate = self.possible && *depth < THICK * dp;
             let found = candidate.then(|| thin_place(shape, x, dp, 1e-3 * dp)).flatten()?;
             let excess = (dp - found.thickness) * dp.powi(D as i32 - 1);
-            Some(ThinParticle { place: place as u32, at: *x, excess, normal: found.normal, beside: Vec::new() })
+            let (normal, beside) = (found.normal, Vec::new());
+            Some(ThinParticle { place: place as u32, at: *x, excess, normal, hollows: [None; 2], beside })
         };
         let mut found: Vec<_> = places.iter().zip(depths).enumerate().filter_map(thin).collect();
         let points: Vec<_> = found.iter().map(|particle| places[particle.place as usize]).collect();
@@ -110,6 +148,24 @@ impl<const D: usize> ThinLayers<D> {
             });
             particle.beside.sort_unstable();
         }
+        let enclosure = (!found.is_empty() && may_enclose(shape, true)).then(|| Enclosure::of(shape, rotation, dp));
+        let rims = enclosure.flatten().map(|enclosure| {
+            for particle in &mut found {
+                let thickness = dp - particle.excess / dp.powi(D as i32 - 1);
+                let aside = particle.normal * (0.5 * (thickness + dp));
+                particle.hollows = [aside, -aside].map(|aside| match enclosure.place(shape, &(particle.at + aside)) {
+                    Place::Hollow(number) => Some(number as u32),
+                    Place::Outside | Place::Material => None,
+                });
+            }
+            let nearest = |rim: &Vector<D>| {
+                let distance = |k: &usize| (points[*k] - rim).norm();
+                let nearest = (0..points.len()).min_by(|a, b| distance(a).total_cmp(&distance(b)));
+                nearest.filter(|k| distance(k) < RIM * dp).map(|k| k as u32)
+            };
+            enclosure.hollows.iter().map(|hollow| hollow.rim().iter().filter_map(nearest).collect()).collect()
+        });
+        self.rims.push(rims.unwrap_or_default());
         self.of_solid.push(found);
     }
 
@@ -128,26 +184,41 @@ impl<const D: usize> ThinLayers<D> {
             (0..solid.copies()).map(move |copy| (number, solid.boundary_of_copy(copy).start, &particles[..]))
         })
     }
-
-    /// Indices of all thin particles.
-    fn indices<'a>(&'a self, solids: &'a [Solid<D>]) -> impl Iterator<Item = usize> + 'a {
-        self.each(solids).flat_map(|(_, start, particles)| particles.iter().map(move |p| start + p.place as usize))
-    }
 }
 
 /// The boundary particles in the middle of thin parts.
 #[cfg(feature = "gpu")]
 pub(super) fn particles<const D: usize>(system: &System<D>) -> impl Iterator<Item = u32> + '_ {
-    system.boundary.thin.indices(&system.solids).map(|i| i as u32)
+    let each = system.boundary.thin.each(&system.solids);
+    each.flat_map(|(_, start, particles)| particles.iter().map(move |particle| start as u32 + particle.place))
 }
 
-/// Reads the water around the thin parts from the `weight` (–) of that around a boundary particle, if there is any, and finds the ends
-/// of parts that have turned.
-pub(super) fn update_water<const D: usize>(system: &mut System<D>, weight: impl Fn(&System<D>, u32) -> Option<f64>) {
-    let thin = &system.boundary.thin;
-    let both_sides = 2.0 * system.boundary.coverage.full_weight(0.5 * system.model.dp);
-    let share = |i: usize| weight(system, i as u32).map_or(0.0, |weight| (weight / both_sides).min(1.0));
-    let wet = thin.indices(&system.solids).map(share).collect();
+/// Reads the `water` around the thin parts, if there is any around a boundary particle, and finds the ends of parts that have turned.
+pub(super) fn update_water<const D: usize>(
+    system: &mut System<D>,
+    water: impl Fn(&System<D>, u32) -> Option<WaterAround<D>>,
+) {
+    let (thin, dp) = (&system.boundary.thin, system.model.dp);
+    let both_sides = 2.0 * system.boundary.coverage.full_weight(0.5 * dp);
+    let mut wet = Vec::new();
+    for (number, start, particles) in thin.each(&system.solids) {
+        let around = particles.iter().map(|particle| {
+            let water = water(system, start as u32 + particle.place);
+            water.map_or((0.0, Vector::zeros()), |water| ((water.weight / both_sides).min(1.0), water.offset))
+        });
+        let around: Vec<(f64, Vector<D>)> = around.collect();
+        // With water on both sides at the rim, a hollow is a part of the water outside.
+        let most = |rim: &Vec<u32>| rim.iter().map(|&k| around[k as usize].0).fold(0.0, f64::max);
+        let apart: Vec<f64> = thin.rims[number].iter().map(|rim| (2.0 - 2.0 * most(rim)).clamp(0.0, 1.0)).collect();
+        let rotation = &system.solids[number].kinematics.pose.rotation;
+        let share = |(particle, (share, offset)): (&ThinParticle<D>, &(f64, Vector<D>))| {
+            let before = (0.5 + (rotation * particle.normal).dot(offset) / dp).clamp(0.0, 1.0);
+            let in_hollow = |(hollow, part): (Option<u32>, f64)| hollow.map_or(0.0, |k| apart[k as usize] * part);
+            let in_hollows: f64 = particle.hollows.into_iter().zip([before, 1.0 - before]).map(in_hollow).sum();
+            share * (1.0 - in_hollows)
+        };
+        wet.extend(particles.iter().zip(&around).map(share));
+    }
     system.boundary.thin.wet = wet;
     update_ends(system);
 }

@@ -280,3 +280,18 @@ fn faces_of_thin_parts_are_stable_at_the_largest_steps() -> Result<()> {
     assert!(energy < 2.0 * 0.018, "the water has {energy} J");
     Ok(())
 }
+
+/// A vessel on a spring carries the weight of its water, 78.5 N, whatever its walls. Bound: 2 %, as for forces on walls. With the excess
+/// buoyancy of its layers subtracted as under a sea, it carried 94 N with walls of 0.5 dp and 110 N with 0.1 dp.
+#[test]
+fn a_thin_vessel_carries_the_weight_of_its_water() -> Result<()> {
+    for thickness in ["0.01", "0.002"] {
+        let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/measurements/thin-vessel.toml");
+        let sets = [("solid.vessel.shape.tank.thickness".to_string(), thickness.to_string())];
+        let mut sim = Simulation::new(Scene::read(&scene, &sets)?.build::<3>()?.setup)?;
+        let [force] = time_mean(&mut sim, 0.3, 0.6, |sim| [sim.system().solids()[0].load.force[2]])?;
+        println!("{thickness} m: {force} N");
+        assert!((force / (-1000.0 * G * 0.008) - 1.0).abs() < 0.02, "{thickness} m: {force} N for 78.5 N of water");
+    }
+    Ok(())
+}
