@@ -48,12 +48,30 @@ type Square = SMatrix<f64, 6, 6>;
 pub(crate) struct AcousticAddedMass<const D: usize> {
     /// Index of the body among the solids.
     pub(super) solid: usize,
-    /// Indices of the outer boundary particles of the body, in ascending order, and their normals in the frame of the
-    /// body.
-    outer: Vec<(u32, Vector<D>)>,
+    /// Indices of the outer boundary particles of the body, in ascending order, and their faces.
+    outer: Vec<(u32, Face<D>)>,
     state: AddedMassState,
     /// Load (N, N m) of the present step, without contacts and joints.
     given: Six,
+}
+
+/// The face at an outer boundary particle, or both faces of a part about one dp thick with the particle in its middle.
+struct Face<const D: usize> {
+    /// Outward unit normal (of one of two faces), in the frame of the body.
+    normal: Vector<D>,
+    /// Number of faces: 1 or 2.
+    count: f64,
+}
+
+impl<const D: usize> Face<D> {
+    /// At the boundary particle `r` (m) of `shape`.
+    fn at(shape: &Shape<D>, r: &Vector<D>, dp: f64) -> Self {
+        let step = 0.05 * dp;
+        match thin_place(shape, r, 1.5 * dp, step).filter(|place| (place.middle - r).norm() < 0.25 * dp) {
+            Some(place) => Self { normal: place.normal, count: 2.0 },
+            None => Self { normal: shape.outward_normal(r, step), count: 1.0 },
+        }
+    }
 }
 
 /// The state of an [`AcousticAddedMass`] in a checkpoint.
@@ -95,7 +113,7 @@ impl<const D: usize> AcousticAddedMass<D> {
         let near_face = |(_, r): &(u32, Vector<D>)| -shape.signed_distance(r) < 0.75 * medium.dp;
         let own = if solid.copied_axes != 0 { solid.boundary.clone() } else { solid.boundary_of_copy(0) };
         let all = own.map(of).filter(near_face);
-        let outer = all.map(|(i, r)| (i, shape.outward_normal(&r, 0.05 * medium.dp))).collect();
+        let outer = all.map(|(i, r)| (i, Face::at(shape, &r, medium.dp))).collect();
         let state = AddedMassState { pending: Six::zeros(), contacts: Six::zeros(), stiffness_sum: 0.0 };
         Some(Self { solid: i, outer, state, given: Six::zeros() })
     }
@@ -249,17 +267,17 @@ impl<const D: usize> AcousticAddedMass<D> {
         sum * stiffness(system)
     }
 
-    /// Calls `visit` for every wet outer boundary particle with its wet fraction (0 to 1), position (m), normal n, and J.
+    /// Calls `visit` for every wet outer boundary particle with its number of wet faces (0 to 2), position (m), normal n, and J.
     fn for_each_wet(&self, system: &System<D>, mut visit: impl FnMut(f64, &Vector<D>, &Vector<D>, Six)) {
         let solid = &system.solids()[self.solid];
         let turn = &solid.kinematics.pose.rotation;
         let wetness = system.boundary.wetness.as_deref().unwrap_or_default();
         let of_whole = system.symmetry_planes().multiplicity(!solid.division.cut);
         let mut k = wetness.partition_point(|&(i, _)| (i as usize) < solid.boundary.start);
-        for (i, normal) in &self.outer {
+        for (i, face) in &self.outer {
             k += wetness[k..].iter().take_while(|(wet, _)| wet < i).count();
             if let Some((_, weight)) = wetness.get(k).filter(|(wet, _)| wet == i) {
-                let (x, normal) = (&system.boundary.particles.r[*i as usize], turn * normal);
+                let (x, normal) = (&system.boundary.particles.r[*i as usize], turn * face.normal);
                 if !system.is_between_sides(x) {
                     continue;
                 }
@@ -267,7 +285,7 @@ impl<const D: usize> AcousticAddedMass<D> {
                 let images = system.computed_share(solid, x) * of_whole;
                 let arm = system.place_on_solid(self.solid, *i as usize) - solid.kinematics.centre;
                 let torque = Bivector::torque(&arm, &normal);
-                visit((weight / FULL).min(1.0) * images, x, &normal, to_six(&Load { force: normal, torque }));
+                visit((weight / FULL).min(face.count) * images, x, &normal, to_six(&Load { force: normal, torque }));
             }
         }
     }
@@ -336,14 +354,8 @@ pub fn stiffest_frequency<const D: usize>(shape: &Shape<D>, body: &FreeBody<D>, 
     let spring = medium.rho0 * medium.c0 * medium.c0 * medium.dp.powi(D as i32 - 2);
     let (mut along, mut about) = (Vector::<D>::zeros(), [0.0; 3]);
     for point in shape.boundary_points(medium.dp, 1) {
-        let mut normal = shape.outward_normal(&point.r, 0.05 * medium.dp);
-        let mut stiffness = spring;
-        // A particle in the middle of a part about one dp thick has water on both faces.
-        if normal.norm() < 0.5
-            && let Some(place) = thin_place(shape, &point.r, 1.5 * medium.dp, 0.05 * medium.dp)
-        {
-            (normal, stiffness) = (place.normal, 2.0 * spring);
-        }
+        let Face { normal, count } = Face::at(shape, &point.r, medium.dp);
+        let stiffness = count * spring;
         along += normal.component_mul(&normal) * stiffness;
         for (sum, arm) in about.iter_mut().zip(Bivector::torque(&(point.r - body.centre), &normal).axial()) {
             *sum += arm * arm * stiffness;
