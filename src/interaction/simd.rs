@@ -276,6 +276,10 @@ impl<const D: usize> PairLoop<D> for SimdPairLoop<D> {
             self.packed.pack_rows(input, clusters, &self.units, needs);
         }
         let lengths = self.lay_out(clusters, needs.requested_rows(D, requested));
+        if clusters.division.by_owner {
+            // The extrapolation to the walls had more rows, and a rank needs their memory for the sums of all boundary particles.
+            self.sums.shrink_to_fit();
+        }
         let start = Instant::now();
         let works = works(clusters, &lengths, &mut self.sums);
         let closing = sum_slabs(&*self.laws, self.level, &self.packed, requested, works);

@@ -414,6 +414,8 @@ impl<const D: usize> System<D> {
     /// Computes the rates of the water and the loads on the solids at the present positions, velocities and densities;
     /// the neighbour lists must hold.
     pub(crate) fn update_rates(&mut self, requested: RequestedSums) {
+        // The sums of boundary particles of the last pass make room for the extrapolation to the walls.
+        self.rates.boundary = Vec::new();
         self.update_wall_state();
         self.boundary.update_copies(&self.solids, &self.fluid.images);
         self.boundary.update_mirrored(&self.solids);
@@ -421,6 +423,7 @@ impl<const D: usize> System<D> {
         let Self { pair_loop, neighbours, fluid, boundary, properties, equation_of_state, rates, gap_pressure, .. } =
             self;
         let input = Self::pair_input(neighbours, fluid, boundary, properties, equation_of_state);
+        rates.boundary = vec![PairSums::zero(); neighbours.boundary_near_fluid().len()];
         self.status.step_limits = pair_loop.rates(&input, requested, &mut rates.boundary);
         rates.current = true;
         Self::add_gap_pressure(gap_pressure, &input, &mut rates.boundary);
