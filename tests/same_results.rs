@@ -72,10 +72,12 @@ where
         sim.step().unwrap();
     }
     let (mut hash, system) = (Hash::new(), sim.system());
-    for particles in [system.fluid(), system.boundary()] {
+    let (water, boundary) = (system.fluid(), system.boundary());
+    let numbers: Vec<u32> = (0..boundary.len() as u32).collect();
+    for (particles, id) in [(water, water.id), (boundary, &numbers)] {
         particles.r.iter().chain(particles.v).flat_map(|x| x.iter()).for_each(|&x| hash.number(x));
         particles.rho.iter().for_each(|&x| hash.number(x));
-        particles.id.iter().for_each(|id| hash.bytes(&id.to_le_bytes()));
+        id.iter().for_each(|id| hash.bytes(&id.to_le_bytes()));
     }
     for solid in system.solids() {
         let now = &solid.kinematics;
