@@ -232,11 +232,14 @@ impl<const D: usize> System<D> {
         let (properties, support) = (model.fluid_properties::<D>(), model.support_radius());
         let equation_of_state = EquationOfState::new(properties.c0, properties.gamma);
         // Depth along g: the level is a height on the last axis.
-        let depth = |(r, level): (&Vector<D>, &f64)| (level - r[D - 1]).max(0.0) * -properties.gravity[D - 1];
+        let depth = |r: &Vector<D>, level: f64| (level - r[D - 1]).max(0.0) * -properties.gravity[D - 1];
         let more = pressure.into_iter().chain(std::iter::repeat(0.0));
-        let head = water.iter().zip(&surface_levels).map(depth).zip(more).map(|(head, p)| head + p / properties.rho0);
-        let rho = head.map(|head| properties.rho0 * (1.0 + equation_of_state.hydrostatic_compression(head))).collect();
-        drop(surface_levels);
+        // The densities take the place of the levels.
+        let mut rho = surface_levels;
+        for ((rho, r), p) in rho.iter_mut().zip(&water).zip(more) {
+            let head = depth(r, *rho) + p / properties.rho0;
+            *rho = properties.rho0 * (1.0 + equation_of_state.hydrostatic_compression(head));
+        }
         let fluid = Fluid::new(&model, water, velocity, rho, Images::new(periodic, planes, support));
         let particles = &fluid.particles;
         let region = FluidDomain {
