@@ -45,7 +45,7 @@ impl IndexRanges {
     }
 
     /// The indices in `part`.
-    fn within(&self, part: &Range<usize>) -> impl Iterator<Item = u32> + Clone {
+    pub(crate) fn within(&self, part: &Range<usize>) -> impl Iterator<Item = u32> + Clone {
         let (start, end) = (part.start as u32, part.end as u32);
         let ranges = self.0[self.0.partition_point(|range| range.end <= start)..].iter();
         let ranges = ranges.take_while(move |range| range.start < end);
@@ -73,7 +73,7 @@ pub struct Division {
     pub(crate) is_apart: bool,
     /// Water particles of this rank.
     own: IndexRanges,
-    /// Whether the water particle is this rank's.
+    /// Whether the water particle is this rank's; empty if all in its range are.
     is_own: Vec<bool>,
     /// Boundary particles near water of each rank, by their place among all of these.
     boundary: Vec<IndexRanges>,
@@ -95,9 +95,11 @@ impl Division {
         if own.is_empty() { own } else { own.start..(own.end + 1).min(count) }
     }
 
-    /// The water particles that this rank advances, and whether it is this rank's for every particle; `None` if it advances all.
-    pub(crate) fn own_water(&self) -> Option<(&IndexRanges, &[bool])> {
-        self.by_owner.then_some((&self.own, &self.is_own[..]))
+    /// The water particles that this rank advances, and for every particle whether it is this rank's, unless all in its range are;
+    /// `None` if it advances all.
+    pub(crate) fn own_water(&self) -> Option<(&IndexRanges, Option<&[bool]>)> {
+        let is_own = (!self.is_own.is_empty()).then_some(&self.is_own[..]);
+        self.by_owner.then_some((&self.own, is_own))
     }
 
     /// The water particles that this rank advances; none if it advances all.
@@ -118,9 +120,12 @@ impl Division {
 
     /// Makes `own` the water of this rank, in ascending order, of `count` particles.
     pub(crate) fn set_own_water(&mut self, own: Vec<u32>, count: usize) {
-        self.is_own = vec![false; count];
-        own.iter().for_each(|&i| self.is_own[i as usize] = true);
         self.own = IndexRanges::new(own);
+        self.is_own = Vec::new();
+        if self.own.0.len() > 1 {
+            self.is_own = vec![false; count];
+            self.own.iter().for_each(|i| self.is_own[i as usize] = true);
+        }
     }
 
     /// The rank that computes `slab`.

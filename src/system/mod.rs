@@ -160,7 +160,7 @@ impl<'a, const D: usize> FluidRates<'a, D> {
         self.neighbours.positions_at_build()
     }
 
-    /// The range of particles that this rank advances, and which ones there; `None` if all.
+    /// The range of particles that this rank advances, and which ones there; `None` if all there.
     pub(crate) fn own_water(&self) -> (Range<usize>, Option<&'a [bool]>) {
         own_water::own(self.neighbours, self.neighbours.positions_at_build().len())
     }
