@@ -17,7 +17,8 @@ pub struct Particles<const D: usize> {
     pub v: Vec<Vector<D>>,
     /// Density, kg/m³.
     pub rho: Vec<f64>,
-    /// Name of the particle for life, from 0; sorting moves it with the rest.
+    /// Name of the particle for life, from 0; sorting moves it with the rest. Empty for boundary particles, whose names are their
+    /// numbers.
     pub id: Vec<u32>,
 }
 
@@ -44,7 +45,12 @@ impl<const D: usize> Particles<D> {
 
     /// The first `n` of them.
     pub(crate) fn first_n(&self, n: usize) -> ParticlesView<'_, D> {
-        ParticlesView { r: &self.r[..n], v: &self.v[..n], rho: &self.rho[..n], id: &self.id[..n] }
+        ParticlesView {
+            r: &self.r[..n],
+            v: &self.v[..n],
+            rho: &self.rho[..n],
+            id: self.id.get(..n).unwrap_or_default(),
+        }
     }
 
     /// Memory of the arrays, B.
@@ -90,17 +96,15 @@ impl<const D: usize> Particles<D> {
         Self { r: zeros(n), v: zeros(n), rho: zeros(n), id: zeros(n) }
     }
 
-    /// Makes room for `more` particles, and no more than that.
+    /// Makes room for `more` particles without names, and no more than that.
     pub(crate) fn reserve_exact(&mut self, more: usize) {
         self.r.reserve_exact(more);
         self.v.reserve_exact(more);
         self.rho.reserve_exact(more);
-        self.id.reserve_exact(more);
     }
 
-    /// Adds a particle at rest at `r` (m) of density `rho` (kg/m³); its id is its number.
+    /// Adds a boundary particle at rest at `r` (m) of density `rho` (kg/m³).
     pub fn push(&mut self, r: Vector<D>, rho: f64) {
-        self.id.push(self.r.len() as u32);
         self.r.push(r);
         self.v.push(Vector::zeros());
         self.rho.push(rho);
@@ -116,7 +120,7 @@ pub struct ParticlesView<'a, const D: usize> {
     pub v: &'a [Vector<D>],
     /// Density, kg/m³.
     pub rho: &'a [f64],
-    /// Name of the particle for life.
+    /// Name of the particle for life; empty for boundary particles, whose names are their numbers.
     pub id: &'a [u32],
 }
 

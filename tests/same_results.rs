@@ -4,7 +4,8 @@
 //! layout of a checkpoint. It hashes the series as files. On a mismatch it prints the new table, which replaces the
 //! record after an intended change.
 //!
-//! Each scene has the same bits on three ranks, or on as many as the environment variable `PONTOON_TEST_RANKS` says.
+//! Each scene has the same bits on two, three and five ranks, or on as many as the environment variable `PONTOON_TEST_RANKS` says, as in
+//! `3,5`.
 //!
 //! `.ci/without-slp` repeats the test in a build with `-C no-vectorize-slp`: a compiler fault in one of the builds, in this crate
 //! or in its dependencies, changes bits of only one of them (decision record 0130).
@@ -38,8 +39,8 @@ const COARSER: [(&str, &str); 6] = [
 /// Largest number of water particles for a run with the reference pair loop, which takes ten times as long.
 const REFERENCE: usize = 8_000;
 
-/// Number of ranks unless the environment says another.
-const RANKS: usize = 3;
+/// Numbers of ranks unless the environment says others.
+const RANKS: &str = "2,3,5";
 
 /// FNV-1a, 64 bits.
 struct Hash(u64);
@@ -72,10 +73,12 @@ where
         sim.step().unwrap();
     }
     let (mut hash, system) = (Hash::new(), sim.system());
-    for particles in [system.fluid(), system.boundary()] {
+    let (water, boundary) = (system.fluid(), system.boundary());
+    let numbers: Vec<u32> = (0..boundary.len() as u32).collect();
+    for (particles, id) in [(water, water.id), (boundary, &numbers)] {
         particles.r.iter().chain(particles.v).flat_map(|x| x.iter()).for_each(|&x| hash.number(x));
         particles.rho.iter().for_each(|&x| hash.number(x));
-        particles.id.iter().for_each(|id| hash.bytes(&id.to_le_bytes()));
+        id.iter().for_each(|id| hash.bytes(&id.to_le_bytes()));
     }
     for solid in system.solids() {
         let now = &solid.kinematics;
@@ -89,22 +92,24 @@ where
     hash.0
 }
 
-/// Asserts that each of several ranks, which share the pairs, has the state `alone`.
+/// Asserts that each of several ranks, which share the pairs, has the state `alone`, for each number of ranks.
 fn assert_same_on_ranks<const D: usize>(name: &str, scene: &Scene, alone: u64)
 where
     Dim<D>: Dimension<D>,
 {
-    let count = std::env::var("PONTOON_TEST_RANKS").map_or(RANKS, |count| count.parse().unwrap());
     let of_rank = |ranks| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
         pool.install(|| state::<D>(scene, ranks))
     };
-    let states: Vec<u64> = std::thread::scope(|scope| {
-        let threads: Vec<_> =
-            Ranks::in_threads(count).into_iter().map(|ranks| scope.spawn(move || of_rank(ranks))).collect();
-        threads.into_iter().map(|thread| thread.join().unwrap()).collect()
-    });
-    assert_eq!(states, vec![alone; count], "{name} on {count} ranks");
+    let counts = std::env::var("PONTOON_TEST_RANKS").unwrap_or_else(|_| RANKS.into());
+    for count in counts.split(',').map(|count| count.parse().unwrap()) {
+        let states: Vec<u64> = std::thread::scope(|scope| {
+            let threads: Vec<_> =
+                Ranks::in_threads(count).into_iter().map(|ranks| scope.spawn(move || of_rank(ranks))).collect();
+            threads.into_iter().map(|thread| thread.join().unwrap()).collect()
+        });
+        assert_eq!(states, vec![alone; count], "{name} on {count} ranks");
+    }
 }
 
 /// Asserts that no water is lost or inside a solid.

@@ -67,7 +67,7 @@ pub(crate) struct Filling<'a, const D: usize> {
 pub(crate) struct Filled<const D: usize> {
     pub(crate) water: FilledWater<D>,
     /// Number of the region of each particle.
-    pub(crate) home: Vec<usize>,
+    pub(crate) home: Vec<u32>,
     /// Whether a region of water lies in each enclosed space without reaching around the solid.
     pub(crate) has_own_water: Vec<bool>,
 }
@@ -159,15 +159,16 @@ impl<const D: usize> Filling<'_, D> {
                 } else {
                     obstacles.iter_mut().for_each(|o| o.check_fit(x, |cell| lattice.contains(cell)));
                     filled.r.push(*x);
-                    home.push(k);
+                    home.push(k as u32);
                 }
             });
         }
         pack_around_obstacles(self.ranks, &mut filled.r, &home, &lattices, &mut obstacles, dp);
         if obstacles.iter().any(Obstacle::needs_packing) {
             let before = filled.r.len();
-            let keep =
-                |(x, k): (&Vector<D>, &usize)| !obstacles.iter().any(|o| o.is_in_narrow_gap(x)) && !excludes(*k, x);
+            let keep = |(x, k): (&Vector<D>, &u32)| {
+                !obstacles.iter().any(|o| o.is_in_narrow_gap(x)) && !excludes(*k as usize, x)
+            };
             let keep: Vec<bool> = filled.r.iter().zip(&home).map(keep).collect();
             let mut flags = keep.iter();
             filled.r.retain(|_| flags.next() == Some(&true));

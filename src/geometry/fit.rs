@@ -177,7 +177,7 @@ fn below_bed<const D: usize>(x: &Vector<D>, line: &[Vector<D>]) -> bool {
 pub(super) fn pack_around_obstacles<const D: usize>(
     ranks: &Ranks,
     water: &mut [Vector<D>],
-    home: &[usize],
+    home: &[u32],
     lattices: &[Lattice<D>],
     obstacles: &mut [Obstacle<D>],
     dp: f64,
@@ -192,12 +192,18 @@ pub(super) fn pack_around_obstacles<const D: usize>(
         near.map(|o| o.distance(x)).fold(f64::INFINITY, f64::min) / dp
     };
     let (mut movable, mut held) = (Vec::new(), Vec::new());
-    let far: Vec<f64> = water.par_iter().with_min_len(PARTICLES_PER_TASK).map(to_misfit).collect();
-    for (i, (x, far)) in water.iter().zip(far).enumerate() {
-        match far {
-            d if d < ZONE => movable.push(i),
-            d if d < ZONE + packing::SUPPORT_RADIUS_DP + 1.0 => held.push(*x),
-            _ => (),
+    // Whether a point near a misfit can move.
+    let moves = |x: &Vector<D>| match to_misfit(x) {
+        d if d < ZONE => Some(true),
+        d if d < ZONE + packing::SUPPORT_RADIUS_DP + 1.0 => Some(false),
+        _ => None,
+    };
+    let near: Vec<Option<bool>> = water.par_iter().with_min_len(PARTICLES_PER_TASK).map(moves).collect();
+    for (i, (x, near)) in water.iter().zip(near).enumerate() {
+        match near {
+            Some(true) => movable.push(i),
+            Some(false) => held.push(*x),
+            None => (),
         }
     }
     // Temporary points continue the water beyond its regions, so that the water does not spread out of them.
@@ -209,7 +215,7 @@ pub(super) fn pack_around_obstacles<const D: usize>(
         points.extend(skin.iter().map(|p| o.pose.point(&p.r)).filter(|x| near.contains(x)));
     }
     packing::spread_points_on(ranks, &mut points, all_movable, dp, |i, _, x| {
-        let room = movable.get(i).map_or(f64::INFINITY, |&w| lattices[home[w]].clamp_to_sides(x));
+        let room = movable.get(i).map_or(f64::INFINITY, |&w| lattices[home[w] as usize].clamp_to_sides(x));
         // Two passes: a point that moves out of one face of a corner may move into the other face.
         (0..2).flat_map(|_| &*obstacles).fold(room, |room, o| room.min(o.push_out(x)))
     });

@@ -250,7 +250,7 @@ impl<const D: usize> PairLoop<D> for SimdPairLoop<D> {
         exchange::complete_sums(&mut self.sums, clusters, &lengths);
         let these = clusters.division.own_range(moments.len());
         let slots = clusters.fluid_slots[these.clone()].par_iter().enumerate().with_min_len(PARTICLES_PER_TASK);
-        let is_own = clusters.division.own_water().map(|(_, is_own)| &is_own[these.clone()]);
+        let is_own = clusters.division.own_water().and_then(|(_, is_own)| is_own).map(|is_own| &is_own[these.clone()]);
         let own = moments[these].par_iter_mut().zip(slots).filter(|(_, (k, _))| is_own.is_none_or(|is_own| is_own[*k]));
         own.for_each(|(moment, (_, &slot))| {
             let sums = self.auxiliary_sums_of(slot, needs).renormalization;
@@ -276,6 +276,10 @@ impl<const D: usize> PairLoop<D> for SimdPairLoop<D> {
             self.packed.pack_rows(input, clusters, &self.units, needs);
         }
         let lengths = self.lay_out(clusters, needs.requested_rows(D, requested));
+        if clusters.division.by_owner {
+            // The extrapolation to the walls had more rows, and a rank needs their memory for the sums of all boundary particles.
+            self.sums.shrink_to_fit();
+        }
         let start = Instant::now();
         let works = works(clusters, &lengths, &mut self.sums);
         let closing = sum_slabs(&*self.laws, self.level, &self.packed, requested, works);
@@ -291,7 +295,8 @@ impl<const D: usize> PairLoop<D> for SimdPairLoop<D> {
             }
             Some((_, is_own)) => {
                 let own = clusters.division.own_range(slots.len()).into_par_iter().with_min_len(PARTICLES_PER_TASK);
-                own.filter(|&i| is_own[i]).map(|i| acceleration2(slots[i])).reduce(|| 0.0, f64::max)
+                let own = own.filter(|&i| is_own.is_none_or(|is_own| is_own[i]));
+                own.map(|i| acceleration2(slots[i])).reduce(|| 0.0, f64::max)
             }
         };
         let [low, high] = ranks::words_of(a2);

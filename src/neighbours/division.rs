@@ -21,14 +21,17 @@ pub(crate) struct IndexRanges(Vec<Range<u32>>);
 impl IndexRanges {
     /// Stores indices that are in ascending order.
     pub(crate) fn new(ascending: impl IntoIterator<Item = u32>) -> Self {
-        let mut ranges: Vec<Range<u32>> = Vec::new();
-        for i in ascending {
-            match ranges.last_mut().filter(|last| last.end == i) {
-                Some(last) => last.end += 1,
-                None => ranges.push(i..i + 1),
-            }
+        let mut all = Self::default();
+        ascending.into_iter().for_each(|i| all.push(i));
+        all
+    }
+
+    /// Adds an index above all others.
+    fn push(&mut self, i: u32) {
+        match self.0.last_mut().filter(|last| last.end == i) {
+            Some(last) => last.end += 1,
+            None => self.0.push(i..i + 1),
         }
-        Self(ranges)
     }
 
     /// The number of indices.
@@ -42,7 +45,7 @@ impl IndexRanges {
     }
 
     /// The indices in `part`.
-    fn within(&self, part: &Range<usize>) -> impl Iterator<Item = u32> + Clone {
+    pub(crate) fn within(&self, part: &Range<usize>) -> impl Iterator<Item = u32> + Clone {
         let (start, end) = (part.start as u32, part.end as u32);
         let ranges = self.0[self.0.partition_point(|range| range.end <= start)..].iter();
         let ranges = ranges.take_while(move |range| range.start < end);
@@ -70,10 +73,12 @@ pub struct Division {
     pub(crate) is_apart: bool,
     /// Water particles of this rank.
     own: IndexRanges,
-    /// Whether the water particle is this rank's.
+    /// Whether the water particle is this rank's; empty if all in its range are.
     is_own: Vec<bool>,
     /// Boundary particles near water of each rank, by their place among all of these.
-    boundary: Vec<Vec<u32>>,
+    boundary: Vec<IndexRanges>,
+    /// Those of this rank.
+    own_boundary: Vec<u32>,
     /// Number of list entries of each slab.
     entries: Vec<u32>,
 }
@@ -90,9 +95,11 @@ impl Division {
         if own.is_empty() { own } else { own.start..(own.end + 1).min(count) }
     }
 
-    /// The water particles that this rank advances, and whether it is this rank's for every particle; `None` if it advances all.
-    pub(crate) fn own_water(&self) -> Option<(&IndexRanges, &[bool])> {
-        self.by_owner.then_some((&self.own, &self.is_own[..]))
+    /// The water particles that this rank advances, and for every particle whether it is this rank's, unless all in its range are;
+    /// `None` if it advances all.
+    pub(crate) fn own_water(&self) -> Option<(&IndexRanges, Option<&[bool]>)> {
+        let is_own = (!self.is_own.is_empty()).then_some(&self.is_own[..]);
+        self.by_owner.then_some((&self.own, is_own))
     }
 
     /// The water particles that this rank advances; none if it advances all.
@@ -108,14 +115,17 @@ impl Division {
     /// The places, among the boundary particles near water, of those that this rank advances, in ascending order; `None` if it advances
     /// all.
     pub(crate) fn own_boundary(&self) -> Option<&[u32]> {
-        self.boundary.get(self.ranks.rank()).filter(|_| self.by_owner).map(Vec::as_slice)
+        (self.by_owner && !self.boundary.is_empty()).then_some(&self.own_boundary[..])
     }
 
     /// Makes `own` the water of this rank, in ascending order, of `count` particles.
     pub(crate) fn set_own_water(&mut self, own: Vec<u32>, count: usize) {
-        self.is_own = vec![false; count];
-        own.iter().for_each(|&i| self.is_own[i as usize] = true);
         self.own = IndexRanges::new(own);
+        self.is_own = Vec::new();
+        if self.own.0.len() > 1 {
+            self.is_own = vec![false; count];
+            self.own.iter().for_each(|i| self.is_own[i as usize] = true);
+        }
     }
 
     /// The rank that computes `slab`.
@@ -199,13 +209,13 @@ impl Division {
             self.set_own_water(own, water);
         }
         let ends: Vec<Range<usize>> = self.slabs.iter().map(slots).collect();
-        self.boundary = vec![Vec::new(); ends.len()];
+        self.boundary = vec![IndexRanges::default(); ends.len()];
         for (k, &slot) in boundary_slots.iter().enumerate() {
             if let Some(rank) = ends.iter().position(|slots| slots.contains(&(slot as usize))) {
                 self.boundary[rank].push(k as u32);
             }
         }
-        self.boundary.iter_mut().for_each(Vec::shrink_to_fit);
+        self.own_boundary = self.boundary[self.ranks.rank()].iter().collect();
     }
 
     /// Completes the numbers of boundary particles near water in `data`, `width` of each: `give` appends those of place k, `take`
@@ -217,20 +227,21 @@ impl Division {
         give: impl Fn(&C, usize, &mut Vec<f64>),
         take: impl Fn(&mut C, usize, &[f64]),
     ) {
-        let (ranks, owned) = (&self.ranks, &self.boundary);
-        let (own, counts): (_, Vec<usize>) = (ranks.rank(), owned.iter().map(Vec::len).collect());
+        let counts: Vec<usize> = self.boundary.iter().map(IndexRanges::len).collect();
+        let mut rest: Vec<_> = self.boundary.iter().map(IndexRanges::iter).collect();
         let [mut given, mut taken] = [Vec::with_capacity(width), Vec::with_capacity(width)];
         let pack = |data: &C, k: usize, words: &mut Vec<u32>| {
             given.clear();
-            give(data, owned[own][k] as usize, &mut given);
+            give(data, self.own_boundary[k] as usize, &mut given);
             words.extend(given.iter().flat_map(|x| ranks::words_of(*x)));
         };
-        let unpack = |data: &mut C, rank: usize, k: usize, words: &[u32]| {
+        let unpack = |data: &mut C, rank: usize, _: usize, words: &[u32]| {
+            let Some(k) = rest[rank].next() else { return };
             taken.clear();
             taken.extend(ranks::doubles(words));
-            take(data, owned[rank][k] as usize, &taken);
+            take(data, k as usize, &taken);
         };
-        ranks.share_items(data, (&counts, 2 * width), pack, unpack);
+        self.ranks.share_items(data, (&counts, 2 * width), pack, unpack);
     }
 
     /// Gives `width` numbers of each of the water particles `these` of this rank to the others, which gives them theirs: `give`

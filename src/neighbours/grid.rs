@@ -44,19 +44,20 @@ impl<const D: usize> CellGrid<D> {
         }
         let cells = std::array::from_fn(|i| (size[i] / cell).floor() as usize + 1);
         let mut grid = Self { min: bounds.min, inv_cell: 1.0 / cell, cells, start: Vec::new(), order: Vec::new() };
-        let cell_of: Vec<u32> = r.iter().map(|x| grid.index(&grid.cell(x)) as u32).collect();
+        let cell_of = |x: &Vector<D>| grid.index(&grid.cell(x));
         let mut start = vec![0u32; cells.iter().product::<usize>() + 1];
-        for &c in &cell_of {
-            start[c as usize + 1] += 1;
+        for x in r {
+            start[cell_of(x) + 1] += 1;
         }
         for c in 1..start.len() {
             start[c] += start[c - 1];
         }
         let mut next = start.clone();
         let mut order = vec![0u32; r.len()];
-        for (i, &c) in cell_of.iter().enumerate() {
-            order[next[c as usize] as usize] = i as u32;
-            next[c as usize] += 1;
+        for (i, x) in r.iter().enumerate() {
+            let place = &mut next[cell_of(x)];
+            order[*place as usize] = i as u32;
+            *place += 1;
         }
         (grid.start, grid.order) = (start, order);
         grid

@@ -159,7 +159,8 @@ impl FrameWriter {
         commit_partial(&path)?;
         let ranges: Vec<Range<usize>> = (0..system.solids().len()).map(|i| system.home_boundary(i)).collect();
         let owner = ranges.iter().enumerate().flat_map(|(i, range)| range.clone().map(move |_| i as f32)).collect();
-        let boundary = system.boundary();
+        let numbers: Vec<u32> = (0..system.boundary().len() as u32).collect();
+        let boundary = ParticlesView { id: &numbers, ..system.boundary() };
         let has_copies = ranges.iter().map(Range::len).sum::<usize>() < boundary.len();
         let kept = has_copies.then(|| boundary.select(ranges.into_iter().flatten()));
         let boundary = kept.as_ref().map_or(boundary, |kept| kept.first_n(kept.len()));

@@ -111,8 +111,8 @@ impl<const D: usize> PreflightContext<'_, D> {
     fn memory(&self) -> f64 {
         let system = self.system;
         let boundary = system.boundary().len() as f64;
-        // A frame is written a block of an array at a time, with the number of the solid of each boundary particle.
-        let frame = self.plan.frames.as_ref().map_or(0.0, |_| FRAME + size_of::<f32>() as f64 * boundary);
+        // A frame is written a block of an array at a time, with the numbers of each boundary particle and of its solid.
+        let frame = self.plan.frames.as_ref().map_or(0.0, |_| FRAME + size_of::<(u32, f32)>() as f64 * boundary);
         let for_a_while = (system.step_memory_bytes() as f64).max(frame);
         PROGRAM + system.memory_bytes() as f64 + for_a_while
     }

@@ -403,22 +403,23 @@ impl<const D: usize> SceneParts<D> {
             spaces.iter().zip(has_own_water).filter(|(_, own)| *own).map(|(space, _)| space.solid).collect();
         let plan = scene.resolved_plan(ctx, &still)?;
         // The packing algorithm can move a particle slightly out of its body of water.
-        let nearest = |(x, home): (&Vector<D>, &usize)| match &water[*home] {
+        let nearest = |(x, home): (&Vector<D>, &u32)| match &water[*home as usize] {
             own if own.inside.is_some() => Some(own),
             _ => {
-                let bodies = if *home < first_buffer { &water[..first_buffer] } else { &water[first_buffer..] };
+                let bodies =
+                    if (*home as usize) < first_buffer { &water[..first_buffer] } else { &water[first_buffer..] };
                 let open = bodies.iter().filter(|body| body.inside.is_none());
                 open.min_by(|a, b| a.distance(x).total_cmp(&b.distance(x)))
             }
         };
-        let origins: Vec<_> = filled.r.iter().zip(&home).map(nearest).collect();
-        let levels = origins.iter().map(|body| body.map_or(still.level, |body| body.level)).collect();
+        let origins = || filled.r.iter().zip(&home).map(nearest);
+        let levels = origins().map(|body| body.map_or(still.level, |body| body.level)).collect();
         let flow =
-            |(x, body): (&Vector<D>, &Option<&WaterBody<D>>)| body.map_or((Vector::zeros(), 0.0), |b| b.flow.at(x));
+            |(x, body): (&Vector<D>, Option<&WaterBody<D>>)| body.map_or((Vector::zeros(), 0.0), |b| b.flow.at(x));
         let moves = scene.water.iter().any(|water| water.velocity.is_some() || water.pressure.is_some());
-        let (velocity, pressure): (Vec<Vector<D>>, Vec<f64>) =
-            filled.r.iter().zip(&origins).filter(|_| moves).map(flow).unzip();
-        for (x, body) in filled.r.iter().zip(&origins).filter(|_| moves) {
+        let moving = || filled.r.iter().zip(origins()).take(if moves { filled.r.len() } else { 0 });
+        let (velocity, pressure): (Vec<Vector<D>>, Vec<f64>) = moving().map(flow).unzip();
+        for (x, body) in moving() {
             let number = body.and_then(|body| water.iter().position(|own| std::ptr::eq(own, body)));
             if let Some(number) = number.filter(|number| *number < scene.water.len()) {
                 water[number].flow.require_possible(ctx, &format!("water.{number}"), x, model.c0)?;

@@ -158,7 +158,7 @@ impl<const D: usize> Boundary<D> {
 
     /// Removes the boundary particles `gone`, which are those of solid number `solid`.
     pub(super) fn remove_range(&mut self, gone: &Range<usize>, solid: usize) {
-        let Self { particles: Particles { r, v, rho, id }, local_positions, depths, normals, .. } = self;
+        let Self { particles: Particles { r, v, rho, .. }, local_positions, depths, normals, .. } = self;
         let Self { target_density, extrapolated_velocity, local_bounds, mirrored, thin, .. } = self;
         for vectors in [r, v].into_iter().chain(normals).chain(extrapolated_velocity) {
             remove_range(vectors, gone);
@@ -171,7 +171,6 @@ impl<const D: usize> Boundary<D> {
             let later = targets.partition_point(|target| (target.particle as usize) < gone.start);
             targets[later..].iter_mut().for_each(|target| target.particle -= gone.len() as u32);
         }
-        id.truncate(self.particles.r.len());
         thin.remove(solid);
         local_bounds[solid] = Bounds { min: Vector::zeros(), max: Vector::zeros() };
     }

@@ -168,7 +168,7 @@ impl<'a, const D: usize> FluidRates<'a, D> {
         self.neighbours.positions_at_build()
     }
 
-    /// The range of particles that this rank advances, and which ones there; `None` if all.
+    /// The range of particles that this rank advances, and which ones there; `None` if all there.
     pub(crate) fn own_water(&self) -> (Range<usize>, Option<&'a [bool]>) {
         own_water::own(self.neighbours, self.neighbours.positions_at_build().len())
     }
@@ -240,11 +240,14 @@ impl<const D: usize> System<D> {
         let (properties, support) = (model.fluid_properties::<D>(), model.support_radius());
         let equation_of_state = EquationOfState::new(properties.c0, properties.gamma);
         // Depth along g: the level is a height on the last axis.
-        let depth = |(r, level): (&Vector<D>, &f64)| (level - r[D - 1]).max(0.0) * -properties.gravity[D - 1];
+        let depth = |r: &Vector<D>, level: f64| (level - r[D - 1]).max(0.0) * -properties.gravity[D - 1];
         let more = pressure.into_iter().chain(std::iter::repeat(0.0));
-        let head = water.iter().zip(&surface_levels).map(depth).zip(more).map(|(head, p)| head + p / properties.rho0);
-        let rho = head.map(|head| properties.rho0 * (1.0 + equation_of_state.hydrostatic_compression(head))).collect();
-        drop(surface_levels);
+        // The densities take the place of the levels.
+        let mut rho = surface_levels;
+        for ((rho, r), p) in rho.iter_mut().zip(&water).zip(more) {
+            let head = depth(r, *rho) + p / properties.rho0;
+            *rho = properties.rho0 * (1.0 + equation_of_state.hydrostatic_compression(head));
+        }
         let fluid = Fluid::new(&model, water, velocity, rho, Images::new(periodic, planes, support));
         let particles = &fluid.particles;
         let region = FluidDomain {
@@ -427,6 +430,8 @@ impl<const D: usize> System<D> {
     /// Computes the rates of the water and the loads on the solids at the present positions, velocities and densities;
     /// the neighbour lists must hold.
     pub(crate) fn update_rates(&mut self, requested: RequestedSums) {
+        // The sums of boundary particles of the last pass make room for the extrapolation to the walls.
+        self.rates.boundary = Vec::new();
         self.update_wall_state();
         self.boundary.update_copies(&self.solids, &self.fluid.images);
         self.boundary.update_mirrored(&self.solids);
@@ -434,6 +439,7 @@ impl<const D: usize> System<D> {
         let Self { pair_loop, neighbours, fluid, boundary, properties, equation_of_state, rates, gap_pressure, .. } =
             self;
         let input = Self::pair_input(neighbours, fluid, boundary, properties, equation_of_state);
+        rates.boundary = vec![PairSums::zero(); neighbours.boundary_near_fluid().len()];
         self.status.step_limits = pair_loop.rates(&input, requested, &mut rates.boundary);
         if let Some(slip) = &mut rates.slip {
             let near = neighbours.boundary_near_fluid();

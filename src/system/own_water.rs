@@ -190,7 +190,7 @@ pub(super) fn share_first<const D: usize>(system: &mut System<D>, own: Option<us
 pub(crate) fn tell_of<const D: usize>(system: &mut System<D>, i: usize) {
     let is_own = divided(&system.neighbours)
         .and_then(Division::own_water)
-        .is_some_and(|(_, is_own)| is_own.get(i) == Some(&true));
+        .is_some_and(|(own, _)| own.within(&(i..i + 1)).next().is_some());
     share_first(system, is_own.then_some(i));
 }
 
@@ -199,10 +199,10 @@ fn division<const D: usize>(neighbours: &NeighbourLists<D>) -> Option<&Division>
     neighbours.division().filter(|division| division.by_owner)
 }
 
-/// The range of particles that this rank advances, of `count`, and which ones there; `None` if all.
+/// The range of particles that this rank advances, of `count`, and which ones there; `None` if all there.
 pub(crate) fn own<const D: usize>(neighbours: &NeighbourLists<D>, count: usize) -> (Range<usize>, Option<&[bool]>) {
     match division(neighbours) {
-        Some(division) => (division.own_range(count), division.own_water().map(|(_, is_own)| is_own)),
+        Some(division) => (division.own_range(count), division.own_water().and_then(|(_, is_own)| is_own)),
         None => (0..count, None),
     }
 }
@@ -488,9 +488,9 @@ impl<const D: usize> StateAtStart<D> {
     /// That of the present.
     pub(crate) fn of(system: &System<D>) -> Self {
         let now @ Particles { r, v, rho, .. } = &system.fluid.particles;
-        let water = match own(&system.neighbours, r.len()) {
-            (_, None) => Particles { r: r.clone(), v: v.clone(), rho: rho.clone(), id: Vec::new() },
-            (these, Some(_)) => part(now, &these),
+        let water = match division(&system.neighbours) {
+            None => Particles { r: r.clone(), v: v.clone(), rho: rho.clone(), id: Vec::new() },
+            Some(division) => part(now, &division.own_range(r.len())),
         };
         let mut start = Self { water, boundary_density: Vec::new() };
         start.set_boundary_densities(system, &system.boundary.particles.rho);

@@ -10,6 +10,7 @@ use super::{
     symmetry::{SymmetryPlanes, reflected_turn},
 };
 use crate::{
+    interaction::PairSums,
     math::{Bivector, Bounds, Pose, Vector},
     model::{Model, TimeScheme},
     neighbours::{CHUNK, Division},
@@ -385,7 +386,7 @@ impl<const D: usize> System<D> {
     }
 
     /// Additional memory (B) that a step takes for a while beside [`System::memory_bytes`]: the start of a symplectic step,
-    /// shifts, and the extrapolation of the water to the walls.
+    /// shifts, and the extrapolation of the water to the walls, which takes the place of the sums of boundary particles.
     pub(crate) fn step_memory_bytes(&self) -> usize {
         let (water, wet) = (self.fluid.particles.len(), self.boundary_near_fluid_count());
         let start = match self.model.scheme {
@@ -393,6 +394,6 @@ impl<const D: usize> System<D> {
             TimeScheme::Symplectic => water * size_of::<(Vector<D>, Vector<D>, f64)>() + wet * size_of::<f64>(),
         };
         let shifts = if self.model.shift().is_some() { water * size_of::<Vector<D>>() } else { 0 };
-        start + shifts + wet * size_of::<WallExtrapolation<f64, D>>()
+        start + shifts + wet * (size_of::<WallExtrapolation<f64, D>>() - size_of::<PairSums<D>>())
     }
 }

@@ -11,6 +11,7 @@ use pontoon::{
     error::{Error, ErrorKind},
     math::Vector,
     model::Model,
+    output::manifest::RunStatus,
     ranks::Ranks,
     run::{self, Progress, RunObserver, RunOptions, RunOutcome, RunRequest},
     simulation::{Setup, Simulation},
@@ -36,6 +37,9 @@ const SCENES: [(&str, f64, f64); 8] = [
 fn scene(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("tests/spec/run/restart/{name}.toml"))
 }
+
+/// Bundled scenes, and a spacing (m) with which they end soon.
+const BUNDLED: [(&str, &str); 3] = [("column", "0.04"), ("raft", "0.02"), ("dam-break", "0.05")];
 
 /// What each of `count` ranks returns, each a thread with a pool of its own.
 fn on_ranks<T: Send>(count: usize, work: impl Fn(&Ranks) -> T + Sync) -> Vec<T> {
@@ -170,6 +174,24 @@ fn ranks_with_water_of_their_own_write_the_files_of_one() -> Result<()> {
         resume_on(2, &parted, 0.27)?;
         resume_on(1, &parted, f64::INFINITY)?;
         assert_same_files(&whole, &parted, "a run in three parts");
+    }
+    Ok(())
+}
+
+#[test]
+fn bundled_scenes_end_with_the_files_of_one_rank_on_two_three_and_five() -> Result<()> {
+    for (name, dp) in BUNDLED {
+        let home = TestFolder::new(&format!("ranks-end-{name}"));
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(name);
+        for count in [1, 2, 3, 5] {
+            let out = home.join(count.to_string());
+            let overrides = vec![("dp".into(), dp.into()), ("guard.escape".into(), "remove".into())];
+            let options = RunOptions { out: Some(out.clone()), overrides, threads: Some(1) };
+            let outcome =
+                first(on_ranks(count, |ranks| run::run_on(ranks, &path, &options, &mut |_: &Progress| true)))?;
+            assert_eq!(outcome.manifest.status, RunStatus::Finished);
+            assert_same_files(&home.join("1"), &out, &format!("{name} on {count} ranks"));
+        }
     }
     Ok(())
 }

@@ -16,3 +16,14 @@ fn indices_kept_as_ranges_come_back() {
         }
     }
 }
+
+/// The water of a rank is marked only if particles of other ranks lie between its own.
+#[test]
+fn own_water_in_one_range_has_no_marks() {
+    let mut division = Division { by_owner: true, ..Division::default() };
+    division.set_own_water(vec![2, 3, 4], 8);
+    assert_eq!(division.own_water().map(|(own, marks)| (own.len(), marks)), Some((3, None)));
+    division.set_own_water(vec![1, 3], 5);
+    assert_eq!(division.own_water().and_then(|(_, marks)| marks), Some(&[false, true, false, true, false][..]));
+    assert_eq!(division.own_range(5), 1..4);
+}
