@@ -463,13 +463,13 @@ impl<const D: usize> System<D> {
         gaps.add_to(sums, input.neighbours.boundary_near_fluid(), &boundary.r, pressure);
     }
 
-    /// Finds the narrow gaps, the films and the water that sticks to faces at the positions `r` (m) of the boundary particles for which the lists were built. The water
-    /// beside thin parts is found when it is pushed.
+    /// Finds the narrow gaps, the films and the water that sticks to faces at the positions `r` (m) of the boundary particles for
+    /// which the lists were built. The water beside thin parts is found when it is pushed.
     fn find_gaps(&mut self, r: &[Vector<D>]) {
         let Self { gap_pressure, neighbours, solids, .. } = self;
         gap_pressure.find(solids, r, neighbours.boundary_near_fluid(), neighbours.margin());
         film::find(self, r);
-        self.find_water_that_sticks(r);
+        slip_rates::find(self, r);
         self.boundary.thin.faces.forget_water();
     }
 

@@ -101,32 +101,30 @@ impl SlipRates {
     }
 }
 
-impl<const D: usize> System<D> {
-    /// Finds the water beside boundary particles, which were at `r` (m) when the present lists were built.
-    pub(super) fn find_water_that_sticks(&mut self, r: &[Vector<D>]) {
-        let Some(slip) = &mut self.rates.slip else { return };
-        let (water, neighbours) = (self.neighbours.positions_at_build(), &self.neighbours);
-        let reach = slip.support + neighbours.margin();
-        let beside = |i: usize| {
-            let mut others = Vec::new();
-            let mut add = |b: usize| {
-                if (water[i] - r[b]).norm_squared() < reach * reach {
-                    others.push(b as u32);
-                }
-            };
-            neighbours.visit_boundary_around(|| r.to_vec(), &water[i], &mut add);
-            others.sort_unstable();
-            (!others.is_empty()).then_some(Neighbourhood { particle: i as u32, others })
+/// Finds the water beside the boundary particles of `system`, which were at `r` (m) when the present lists were built.
+pub(super) fn find<const D: usize>(system: &mut System<D>, r: &[Vector<D>]) {
+    let Some(slip) = &mut system.rates.slip else { return };
+    let (water, neighbours) = (system.neighbours.positions_at_build(), &system.neighbours);
+    let reach = slip.support + neighbours.margin();
+    let beside = |i: usize| {
+        let mut others = Vec::new();
+        let mut add = |b: usize| {
+            if (water[i] - r[b]).norm_squared() < reach * reach {
+                others.push(b as u32);
+            }
         };
-        let all = (0..water.len()).into_par_iter().with_min_len(PARTICLES_PER_TASK);
-        slip.water = all.filter_map(beside).collect();
-        let near = neighbours.boundary_near_fluid();
-        let mut waters = vec![Vec::new(); near.len()];
-        for Neighbourhood { particle, others } in &slip.water {
-            let places = others.iter().filter_map(|b| near.binary_search(b).ok());
-            places.for_each(|place| waters[place].push(*particle));
-        }
-        let filled = waters.into_iter().enumerate().filter(|(_, others)| !others.is_empty());
-        slip.boundary = filled.map(|(place, others)| Neighbourhood { particle: place as u32, others }).collect();
+        neighbours.visit_boundary_around(|| r.to_vec(), &water[i], &mut add);
+        others.sort_unstable();
+        (!others.is_empty()).then_some(Neighbourhood { particle: i as u32, others })
+    };
+    let all = (0..water.len()).into_par_iter().with_min_len(PARTICLES_PER_TASK);
+    slip.water = all.filter_map(beside).collect();
+    let near = neighbours.boundary_near_fluid();
+    let mut waters = vec![Vec::new(); near.len()];
+    for Neighbourhood { particle, others } in &slip.water {
+        let places = others.iter().filter_map(|b| near.binary_search(b).ok());
+        places.for_each(|place| waters[place].push(*particle));
     }
+    let filled = waters.into_iter().enumerate().filter(|(_, others)| !others.is_empty());
+    slip.boundary = filled.map(|(place, others)| Neighbourhood { particle: place as u32, others }).collect();
 }

@@ -104,15 +104,8 @@ pub(super) struct ThinLayers<const D: usize> {
 
 impl<const D: usize> ThinLayers<D> {
     pub(super) fn new(model: &Model) -> Self {
-        let possible = model.walls == Walls::RelaxedAdami;
-        Self {
-            of_solid: Vec::new(),
-            rims: Vec::new(),
-            ends: Vec::new(),
-            wet: Vec::new(),
-            possible,
-            faces: ThinFaces::default(),
-        }
+        let (possible, faces) = (model.walls == Walls::RelaxedAdami, ThinFaces::default());
+        Self { of_solid: Vec::new(), rims: Vec::new(), ends: Vec::new(), wet: Vec::new(), possible, faces }
     }
 
     /// Whether no part is thin.
