@@ -4,7 +4,7 @@
     python3 tests/moordyn_check.py [--require] [--decks N] [--out DIR]
 
 Each deck is one line in still water from an anchor on the bed to a fairlead that moves on an ellipse: a slack chain or a taut rope.
-In half as many decks again the fairlead also moves across the plane of the line.
+In a third as many decks again the fairlead also moves across the plane of the line.
 MoorDyn computes the tension at the fairlead, of a chain with twice the segments; the unit test `lines_follow_moordyn` reads the
 decks from DIR (variable MOORDYN_DECKS) and compares its own, within 2 % of the range. Without the package `moordyn` the script
 prints that it is skipped; with --require it fails.
@@ -91,7 +91,7 @@ def random_deck(rng, is_spatial):
     # MoorDyn's chain of 23 segments is 4.5 % of the range from one of 92, so that the reference has twice the segments.
     deck["reference"] = deck["segments"] * (2 if chain else 1)
     node = deck["length"] / deck["reference"]
-    deck["sway"] = rng.uniform(0.5, 2.0) if is_spatial else 0.0
+    deck["sway"] = rng.uniform(1.0, 3.0) if is_spatial else 0.0
     deck["inner"] = 0.05 * node * math.sqrt(deck["mass"] / deck["stiffness"])
     return deck
 
@@ -143,7 +143,7 @@ def main():
     with tempfile.TemporaryDirectory() as scratch:
         folder = arguments.out or Path(scratch)
         folder.mkdir(parents=True, exist_ok=True)
-        for i in range(arguments.decks + arguments.decks // 2):
+        for i in range(arguments.decks + arguments.decks // 3):
             deck = random_deck(rng, i >= arguments.decks)
             rows = tensions(deck, folder)
             text = ",".join(COLUMNS) + "\n" + ",".join(repr(float(deck[name])) for name in COLUMNS) + "\n"
