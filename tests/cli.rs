@@ -163,6 +163,32 @@ fn wrong_commands_are_refused_with_a_remedy() {
 }
 
 #[test]
+fn sections_of_a_moordyn_deck_complete_a_scene() {
+    let folder = TestFolder::new("moordyn");
+    let deck = "--- LINE TYPES ---\nTypeName Diam MassDen EA BA/-zeta EI Cd Ca CdAx CaAx\n(name) (m) (kg/m) (N) (N-s/-) (N-m2) (-) (-) (-) (-)\n\
+                chain 0.008 0.3 2e3 -1.0 0.0 1.2 1.0 0.0 0.0\n\
+                --- POINTS ---\nID Attachment X Y Z M V CdA CA\n(#) (-) (m) (m) (m) (kg) (m^3) (m^2) (-)\n\
+                1 Fixed 0.1 0.24 -0.24 0 0 0 0\n2 Coupled 0.28 0.24 0.0 0 0 0 0\n\
+                --- LINES ---\nID LineType AttachA AttachB UnstrLen NumSegs LineOutputs\n(#) (name) (#) (#) (m) (-) (-)\n1 chain 1 2 0.35 10 -\n\
+                --- need this line ---\n";
+    fs::write(folder.path("lines.txt"), deck).unwrap();
+    folder.pontoon(&["import-moordyn", "nowhere.txt"]).assert_refused(2, &["nowhere.txt"]);
+    let output =
+        folder.command(&["import-moordyn", "lines.txt", "--solid", "box", "--level", "0.24"]).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let sections = String::from_utf8(output.stdout).unwrap();
+    let scene = "dimension = 3\ndp = 0.04\nuntil = 0.01\nwater = [{ fill = { box = { min = [0.0, 0.0, 0.0], max = [0.8, 0.48, 0.24] } } }]\n\
+                 [[solid]]\nname = \"tank\"\nfixed = true\nshape = { tank = { size = [0.8, 0.48, 0.48] } }\n\
+                 [[solid]]\nname = \"box\"\nshape = { box = { size = [0.24, 0.2, 0.12] } }\nat = { x = 0.4, y = 0.24, bottom = 0.18 }\n\
+                 free = { density = 500.0 }\n";
+    fs::write(folder.path("scene.toml"), format!("{scene}{sections}")).unwrap();
+    let report = folder.command(&["inspect", "scene.toml", "--json"]).output().unwrap();
+    assert!(report.status.success(), "{}", String::from_utf8_lossy(&report.stderr));
+    let report: serde_json::Value = serde_json::from_slice(&report.stdout).unwrap();
+    assert_eq!(report["moorings"][0]["name"], "line1", "{sections}");
+}
+
+#[test]
 fn a_body_wider_than_its_tank_is_refused_before_the_run() {
     let folder = TestFolder::new("wide");
     for command in ["run", "inspect"] {

@@ -4,6 +4,7 @@
     python3 tests/moordyn_check.py [--require] [--decks N] [--out DIR]
 
 Each deck is one line in still water from an anchor on the bed to a fairlead that moves on an ellipse: a slack chain or a taut rope.
+In a third as many decks again the fairlead also moves across the plane of the line.
 MoorDyn computes the tension at the fairlead, of a chain with twice the segments; the unit test `lines_follow_moordyn` reads the
 decks from DIR (variable MOORDYN_DECKS) and compares its own, within 2 % of the range. Without the package `moordyn` the script
 prints that it is skipped; with --require it fails.
@@ -59,8 +60,8 @@ FairTen1
 """
 
 
-def random_deck(rng):
-    """Numbers of a deck: a slack chain, or a taut rope that keeps tension."""
+def random_deck(rng, is_spatial):
+    """Numbers of a deck: a slack chain, or a taut rope that keeps tension. A spatial one has sway."""
     depth = rng.uniform(40.0, 150.0)
     chain = rng.random() < 0.5
     diameter = rng.uniform(0.1, 0.25)
@@ -90,6 +91,7 @@ def random_deck(rng):
     # MoorDyn's chain of 23 segments is 4.5 % of the range from one of 92, so that the reference has twice the segments.
     deck["reference"] = deck["segments"] * (2 if chain else 1)
     node = deck["length"] / deck["reference"]
+    deck["sway"] = rng.uniform(1.0, 3.0) if is_spatial else 0.0
     deck["inner"] = 0.05 * node * math.sqrt(deck["mass"] / deck["stiffness"])
     return deck
 
@@ -99,7 +101,8 @@ def motion(deck, t):
     ramp = min(t / deck["period"], 1.0)
     ramp = ramp * ramp * (3.0 - 2.0 * ramp)
     phase = 2.0 * math.pi * t / deck["period"]
-    return [deck["surge"] * ramp * math.sin(phase), 0.0, deck["top"] + deck["heave"] * ramp * (1.0 - math.cos(phase))]
+    sway = deck["sway"] * ramp * math.cos(phase)
+    return [deck["surge"] * ramp * math.sin(phase), sway, deck["top"] + deck["heave"] * ramp * (1.0 - math.cos(phase))]
 
 
 def tensions(deck, folder):
@@ -122,7 +125,7 @@ def tensions(deck, folder):
 
 COLUMNS = [
     "depth", "top", "x", "length", "segments", "diameter", "mass", "stiffness", "zeta", "drag", "added", "drag_axial",
-    "surge", "heave", "period",
+    "surge", "heave", "period", "sway",
 ]
 
 
@@ -140,8 +143,8 @@ def main():
     with tempfile.TemporaryDirectory() as scratch:
         folder = arguments.out or Path(scratch)
         folder.mkdir(parents=True, exist_ok=True)
-        for i in range(arguments.decks):
-            deck = random_deck(rng)
+        for i in range(arguments.decks + arguments.decks // 3):
+            deck = random_deck(rng, i >= arguments.decks)
             rows = tensions(deck, folder)
             text = ",".join(COLUMNS) + "\n" + ",".join(repr(float(deck[name])) for name in COLUMNS) + "\n"
             text += "".join(f"{t!r},{tension!r}\n" for t, tension in rows)

@@ -27,11 +27,12 @@ use pontoon::{
 const STEPS: u64 = 50;
 
 /// Scenes with a coarser spacing in this test, because their own takes minutes.
-const COARSER: [(&str, &str); 6] = [
+const COARSER: [(&str, &str); 7] = [
     ("added-mass-3d", "0.04"),
     ("buoyancy-3d", "0.04"),
     ("column", "0.04"),
     ("column-gate", "0.04"),
+    ("cylinder", "0.01"),
     ("flume-box", "0.02"),
     ("wigley", "0.045"),
 ];

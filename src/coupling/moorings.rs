@@ -4,6 +4,8 @@
 //! the share of the kernel support that water fills, over the share that fixed solids leave free. At the surface the wet share
 //! grows from 0 to 1 over about a smoothing length. The water and the surfaces of the solids are constant during a step.
 
+use rayon::prelude::*;
+
 use super::Interval;
 use crate::{
     error::{Error, Result},
@@ -167,17 +169,17 @@ impl<const D: usize> Moorings<D> {
             ends: mooring.ends_after(now, next, dt),
             around: mooring.line.state.x.iter().map(|x| self.surroundings(system, x)).collect(),
         };
-        let steps: Vec<_> = lines.iter().map(step).collect();
+        let steps: Vec<_> = lines.par_iter().map(step).collect();
         let acting = lines.iter().filter(|mooring| mooring.water_impulses().is_some());
         let places: Vec<_> = acting.flat_map(|mooring| mooring.line.state.x.iter().copied()).collect();
         let mut all: Vec<_> = lines.iter_mut().map(|mooring| &mut mooring.line).collect();
         if !self.junctions.is_empty() {
             self.junctions.advance(&mut all, &steps, dt, &gravity);
         }
-        let alone = all.iter_mut().zip(&steps).enumerate();
-        for (_, (line, step)) in alone.filter(|(i, (line, _))| line.state.acts && !self.junctions.joins(*i)) {
+        let alone = all.par_iter_mut().zip(&steps).enumerate();
+        alone.filter(|(i, (line, _))| line.state.acts && !self.junctions.joins(*i)).for_each(|(_, (line, step))| {
             line.advance(step.ends, dt, &step.around, &gravity);
-        }
+        });
         let from_water = lines.iter().filter_map(Mooring::water_impulses).flatten();
         self.on_water = places.into_iter().zip(from_water.map(|impulse| -impulse)).collect();
         let mut loads = vec![Load::zero(); now.len()];

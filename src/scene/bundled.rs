@@ -32,6 +32,7 @@ pub fn bundled_scenes() -> &'static [BundledScene] {
         scene!("harbour"),
         scene!("moored-box"),
         scene!("moored-barge"),
+        scene!("cylinder"),
         scene!("focused-box"),
         scene!("solitary-runup"),
         scene!("still-tank"),

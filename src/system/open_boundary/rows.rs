@@ -14,7 +14,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::{BufferTag, OpenBoundary, buffer_length};
-use crate::{math::Vector, system::System};
+use crate::{math::Vector, solid::Role, system::System};
 
 /// Height of the middle of a row above the level beyond which the row is removed, over dp. A new row is placed if its middle is
 /// not above the level.
@@ -149,13 +149,19 @@ pub(super) fn spread<const D: usize>(system: &System<D>, number: usize) -> Vec<(
         let place = r[*i] + way * (farthest / way.norm().max(farthest));
         let mut row = row_of(system, number, &place);
         let is_beside_row = rows.contains(&row) || {
-            // The surface of the water that leaves may be above the level.
+            // The surface of the water that leaves may be above the level, but a wall may also be there.
             row[D - 2] -= 1;
-            rows.contains(&row)
+            rows.contains(&row) && !is_in_wall(system, &place)
         };
         (way.norm() > 0.0 && is_beside_row && face.beyond(&place) > 0.0).then_some((*i, place))
     };
     own.iter().enumerate().filter_map(push).collect()
+}
+
+/// Whether `x` (m) is inside a fixed solid.
+fn is_in_wall<const D: usize>(system: &System<D>, x: &Vector<D>) -> bool {
+    let mut fixed = system.solids.iter().filter(|solid| matches!(solid.spec.role, Role::Fixed));
+    fixed.any(|solid| solid.spec.shape.signed_distance(&solid.kinematics.pose.local(x)) < 0.0)
 }
 
 /// The positions (m) of the rows of face number `number` at the present level: the initial rows below it and, above each column

@@ -10,7 +10,7 @@ use pontoon::{
     solid::Dim,
 };
 
-use crate::common::{on_threads, run_to, scene_simulation, steps, time_mean, water_momentum};
+use crate::common::{on_threads, preflight_report, run_to, scene_simulation, steps, time_mean, water_momentum};
 
 /// A box on two slack chains in a small tank.
 const MOORED: &str = r#"
@@ -64,6 +64,20 @@ fn the_fairlead_bears_what_hangs() -> Result<()> {
     }
     let [west, east] = [0, 1].map(|line| sim.mooring_reading(line).end_forces[0]);
     assert!((west[0] + east[0]).abs() < 1e-6 * east.norm(), "both pull alike: {west} {east}");
+    Ok(())
+}
+
+/// A clump weight and a float on a line change the vertical force on the fairlead by their weight less buoyancy, within the weight of a
+/// segment.
+#[test]
+fn the_fairlead_bears_clumps_and_floats() -> Result<()> {
+    for (mass, volume) in [(0.1, 1e-5), (0.02, 8e-5)] {
+        let keys = format!("length = 0.75\nclumps = [{{ at = 0.1, mass = {mass}, volume = {volume} }}]");
+        let now = scene_simulation::<2>(&MOORED.replacen("length = 0.75", &keys, 1))?.mooring_reading(0);
+        let (lift, hung): (f64, f64) = (-now.end_forces[0][1], (mass - 1000.0 * volume) * 9.81);
+        assert!(hung.abs() > 5.0 * WEIGHT * 0.75 / 20.0, "{hung} N are more than a segment");
+        assert!(((lift - hung) / WEIGHT - (0.75 - now.on_bed)).abs() < 0.75 / 20.0, "{lift} N, of which {hung} N hang");
+    }
     Ok(())
 }
 
@@ -153,6 +167,61 @@ fn a_line_acts_from_since_until() -> Result<()> {
     assert!(probe.sample(&sim).iter().all(|x| *x == 0.0), "it has ended");
     let events: Vec<String> = sim.events().iter().map(ToString::to_string).collect();
     assert!(events.len() == 2 && events.iter().all(|event| event.contains("west")), "{events:?}");
+    Ok(())
+}
+
+/// A line that a winch hauls in breaks at the fairlead, where its tension is largest, once that exceeds its strength, and then bears half a
+/// segment there.
+#[test]
+fn a_hauled_line_breaks_at_its_strength() -> Result<()> {
+    let keys = "length = 0.75\npaid_out = { formula = \"-0.1*t\" }\nbreaks = { tension = 1.5 }";
+    let mut sim = scene_simulation::<2>(&standing().replacen("length = 0.75", keys, 1))?;
+    let mut largest: f64 = 0.0;
+    while sim.time() < 1.0 {
+        sim.step_to(1.0)?;
+        let now = sim.mooring_reading(0);
+        if now.broken.is_none() {
+            largest = now.tensions.iter().copied().fold(largest, f64::max);
+        }
+    }
+    let now = sim.mooring_reading(0);
+    assert_eq!((now.broken, now.tensions[0]), (Some(0), 0.0));
+    assert!((1.3..=1.5).contains(&largest), "{largest} N before it breaks");
+    assert!(now.end_forces[0].norm() < 0.1, "{} N at the fairlead", now.end_forces[0]);
+    let events: Vec<String> = sim.events().iter().map(ToString::to_string).collect();
+    assert!(events.len() == 1 && events[0].contains("west"), "{events:?}");
+    Ok(())
+}
+
+/// Pre-flight has the tensions of the static lines, the touchdown point at the end of the part that lies, the step of the line, and the
+/// period of surge on two catenaries, within 4 % (found: 2.5 %).
+#[test]
+fn preflight_tells_pretension_touchdown_and_surge_period() -> Result<()> {
+    let report = preflight_report(&Scene::parse(MOORED, Path::new(""), &[])?);
+    let sim = scene_simulation::<2>(MOORED)?;
+    for (i, line) in report.moorings.iter().enumerate() {
+        let now = sim.mooring_reading(i);
+        let ends = now.end_forces.map(|force| force.norm());
+        assert!(
+            (line.fairlead_n / ends[0] - 1.0).abs() < 1e-9 && (line.anchor_n / ends[1] - 1.0).abs() < 1e-9,
+            "{line:?}"
+        );
+        let [x, y] = line.touchdown_m.as_ref().expect("part of it lies")[..] else { panic!("{line:?}") };
+        let anchor = now.nodes[20];
+        assert!(((x - anchor[0]).abs() - line.on_bed_m).abs() < 0.75 / 20.0 && y.abs() < 1e-3, "{line:?}");
+        assert!(line.shape_m.len() == 21 && line.step_s > 0.0 && line.step_s < 1e-3, "{line:?}");
+    }
+    // A catenary with the horizontal tension H = a w reaches over L − s + a acosh(1 + z/a), with the hanging length s = √(z² + 2 z a).
+    let z = 0.3;
+    let a = report.moorings[0].fairlead_n / WEIGHT - z;
+    let stiffness = 2.0 * WEIGHT / ((1.0 + z / a).acosh() - 2.0 * z / (z * z + 2.0 * z * a).sqrt());
+    let [surge] = &report.moored_surge[..] else { panic!("{:?}", report.moored_surge) };
+    // A box of 0.3 m by 0.12 m and half the density of water.
+    let period = std::f64::consts::TAU * (0.3 * 0.12 * 500.0 / stiffness).sqrt();
+    assert!(
+        (surge.period_s.expect("it returns") / period - 1.0).abs() < 0.04,
+        "{surge:?}, {stiffness} N/m², {period} s"
+    );
     Ok(())
 }
 
@@ -253,6 +322,27 @@ fn a_towed_line_and_the_water_hold_the_impulse_that_it_is_given() -> Result<()> 
     assert!(in_water > 0.2 && gap < 0.01 * in_water, "{text}");
     let [given, _, in_water] = towed(&TOWED.replace("acts_on_water = true", ""))?;
     assert!(given > 0.3 && in_water.abs() < 1e-2 * given, "{given} N s given, {in_water} N s in the water");
+    Ok(())
+}
+
+/// The energy that a towed line gives to the water is in the budget as `coupling`, and the budget closes within 2 % of it. A line that does
+/// not act on the water gives nothing.
+#[test]
+fn the_energy_that_a_line_gives_to_the_water_is_in_the_budget() -> Result<()> {
+    for acts in [true, false] {
+        let mut sim =
+            scene_simulation::<2>(&TOWED.replace("acts_on_water = true", &format!("acts_on_water = {acts}")))?;
+        sim.enable_energy_budget();
+        let probe = EnergyBudgetProbe::new(sim.system());
+        run_to(&mut sim, 0.9)?;
+        let (given, row) = (sim.energy_budget().unwrap().coupling, probe.sample(&sim));
+        let residual = row.last().unwrap().abs();
+        if acts {
+            assert!(given > 5e-3 && residual < 0.02 * given, "{given} J/m given, {residual} J/m remain");
+        } else {
+            assert!(given == 0.0, "{given} J/m given");
+        }
+    }
     Ok(())
 }
 

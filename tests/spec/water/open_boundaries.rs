@@ -76,6 +76,11 @@ fn a_uniform_flow_keeps_its_level_and_speed_and_its_books_close_exactly() {
         assert!((level - 1.0).abs() < 0.03, "{pair_loop:?}: the volume is {level} of that at the start");
         let mean = fluid.v.iter().map(|v| v[0]).sum::<f64>() / fluid.len() as f64;
         assert!((mean - speed).abs() < 0.01 * speed, "{pair_loop:?}: {mean} m/s");
+        // Level and bed exert no force along the channel: the momentum changes by what passes the faces (kg/s).
+        let mass = sim.system().particle_mass();
+        let gained = mass * (fluid.v.iter().map(|v| v[0]).sum::<f64>() - start as f64 * speed);
+        let through = sim.system().face_exchange().iter().map(|face| face.momentum[0]).sum::<f64>();
+        assert!((gained - through).abs() < 0.005 * entered * mass * speed, "{pair_loop:?}: {gained} of {through} kg/s");
         let mut ids = fluid.id.to_vec();
         ids.sort_unstable();
         assert!(ids.windows(2).all(|pair| pair[0] < pair[1]), "every name is there once");

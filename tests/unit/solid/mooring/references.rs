@@ -179,6 +179,14 @@ fn lines_follow_moordyn() {
 /// (s) and tension (N).
 fn deck_error(text: &str) -> f64 {
     let rows = table(text);
+    match rows[0][..] {
+        [.., 0.0] => deck_error_in::<2>(&rows),
+        _ => deck_error_in::<3>(&rows),
+    }
+}
+
+/// The same in two dimensions, without the sway of the deck, or in three.
+fn deck_error_in<const D: usize>(rows: &[Vec<f64>]) -> f64 {
     let [
         depth,
         top,
@@ -195,6 +203,7 @@ fn deck_error(text: &str) -> f64 {
         surge,
         heave,
         period,
+        sway,
     ] = rows[0][..]
     else {
         panic!("{} columns", rows[0].len())
@@ -204,15 +213,19 @@ fn deck_error(text: &str) -> f64 {
     (kind.bed_stiffness, kind.bed_damping) = (1e5, 1e4);
     kind.damping = LineDamping::OfCritical(zeta);
     let material = kind.material(length / segments, 1025.0);
-    let gravity = Vector::from([0.0, -9.81]);
-    let around = |x: &Vector<2>| NodeSurroundings { wet: 1.0, ..sea(x, -depth) };
-    let ends = [[0.0, top].into(), [x, -depth].into()];
-    let mut line = MooringLine::<2>::straight(material, length, segments as usize, ends);
+    let point = |[x, y, z]: [f64; 3]| {
+        let along = |i: usize| if i == D - 1 { z } else { [x, y][i] };
+        Vector::<D>::from_fn(|i, _| along(i))
+    };
+    let gravity = point([0.0, 0.0, -9.81]);
+    let around = |x: &Vector<D>| NodeSurroundings { wet: 1.0, ..sea(x, -depth) };
+    let ends = [point([0.0, 0.0, top]), point([x, 0.0, -depth])];
+    let mut line = MooringLine::<D>::straight(material, length, segments as usize, ends);
     assert!(line.find_rest(&around, &gravity) < 1e-6);
     let place = |t: f64| {
         let ramp = (t / period).min(1.0);
         let (ramp, phase) = (ramp * ramp * (3.0 - 2.0 * ramp), std::f64::consts::TAU * t / period);
-        Vector::from([surge * ramp * phase.sin(), top + heave * ramp * (1.0 - phase.cos())])
+        point([surge * ramp * phase.sin(), sway * ramp * phase.cos(), top + heave * ramp * (1.0 - phase.cos())])
     };
     let (mut worst, mut low, mut high) = (0.0f64, f64::INFINITY, f64::NEG_INFINITY);
     for pair in rows[1..].windows(2) {
