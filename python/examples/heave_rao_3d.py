@@ -20,7 +20,7 @@ import pontoon as pt
 from pontoon import potential_flow
 
 #: Radius of the sphere and its place, depth of the water, half the width and length of the channel, m.
-RADIUS, PLACE, DEPTH, HALF, LENGTH = 0.15, 1.1, 0.375, 0.45, 2.6
+RADIUS, PLACE, DEPTH, HALF, LENGTH = 0.15, 1.1, 0.375, 0.375, 2.6
 #: Height of the waves, m, and the times between which their amplitude is measured, s.
 WAVE, START, UNTIL = 0.05, 4.0, 6.0
 
@@ -66,6 +66,9 @@ driven = {{ along = [1.0, 0.0, 0.0], wave = {{ regular = {{ height = {WAVE}, per
 [[damping]]
 from = [{PLACE + 0.4}, 0.0, 0.0]
 to = [{LENGTH}, 0.0, 0.0]
+
+[model]
+c0_factor = 7.0
 
 [[probe]]
 elevation = {{ x = {PLACE}, y = 0.0 }}
