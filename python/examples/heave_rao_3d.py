@@ -6,7 +6,7 @@ side walls change the heave by less than 2 % (an infinite row of spheres stands 
 
     python heave_rao_3d.py [--periods 1.0 1.2] [--dp 0.0375] [--panels 800] [--out FOLDER] [--plot FILE]
 
-The default takes about two minutes on one core and is coarse, with eight particles in a diameter.
+The default takes about two minutes of one core and is coarse, with eight particles in a diameter.
 """
 
 import argparse
@@ -22,7 +22,7 @@ from pontoon import potential_flow
 #: Radius of the sphere and its place, depth of the water, half the width and length of the channel, m.
 RADIUS, PLACE, DEPTH, HALF, LENGTH = 0.15, 1.1, 0.375, 0.375, 2.6
 #: Height of the waves, m, and the times between which their amplitude is measured, s.
-WAVE, START, UNTIL = 0.05, 4.0, 6.0
+WAVE, START, UNTIL = 0.05, 4.0, 7.0
 
 
 def channel(period: float, dp: float, sphere: bool) -> pt.Scene:
@@ -136,6 +136,7 @@ def main() -> None:
         comparison.plot(axes)
         figure.savefig(given.plot, dpi=120)
 
+    # Amplitudes over two periods differ by 7 % among themselves from 4 s to 6 s, while the free heave of the start dies away.
     assert abs(comparison.difference).max() < 0.15
     assert abs(measured.phase - computed.phase).max() < 25.0, "degrees"
 
