@@ -204,15 +204,16 @@ impl BodyStep {
         Self { names, step, commands: Commands::default(), is_over: false }
     }
 
-    /// Makes this the object of a later step.
-    pub fn renew(&mut self, step: StepData) {
-        (self.step, self.is_over) = (step, false);
+    /// Makes this the object of a later step, and leaves the memory of the last one in `step`.
+    pub fn renew(&mut self, step: &mut StepData) {
+        std::mem::swap(&mut self.step, step);
+        self.is_over = false;
     }
 
-    /// Returns the commands of the callback, which has returned.
-    pub fn finish(&mut self) -> Commands {
+    /// Exchanges `none`, empty commands, for those of the callback, which has returned.
+    pub fn finish(&mut self, none: &mut Commands) {
         self.is_over = true;
-        std::mem::take(&mut self.commands)
+        std::mem::swap(&mut self.commands, none);
     }
 
     /// Returns the commands of the present step.

@@ -18,7 +18,7 @@ use pontoon::{
 use pyo3::{
     exceptions::PyRuntimeError,
     prelude::*,
-    types::{PyBytes, PyDict},
+    types::{PyBytes, PyDict, PyTuple},
 };
 
 use crate::{
@@ -199,11 +199,11 @@ pub fn hash(parts: &[&[u8]]) -> u64 {
     parts.iter().fold(0xcbf2_9ce4_8422_2325, of)
 }
 
-/// Whether nothing else refers to `object`.
+/// How many references to `object` there are.
 #[expect(unsafe_code, reason = "the count of references of the interpreter")]
-fn is_alone<T>(_py: Python<'_>, object: &Py<T>) -> bool {
+fn references<T>(_py: Python<'_>, object: &Py<T>) -> isize {
     // SAFETY: the object is alive while `object` refers to it, and the interpreter's lock is held.
-    unsafe { pyo3::ffi::Py_REFCNT(object.as_ptr()) == 1 }
+    unsafe { pyo3::ffi::Py_REFCNT(object.as_ptr()) }
 }
 
 fn busy(py: Python<'_>) -> PyErr {
@@ -215,39 +215,46 @@ fn busy(py: Python<'_>) -> PyErr {
 struct CallBack {
     call: Py<PyAny>,
     names: Arc<Names>,
-    /// The object of the last call. The next call gets it too, unless the function has kept it.
-    object: Option<Py<BodyStep>>,
+    /// The arguments of the last call and the object in them. The next call gets both too, unless the function has kept one.
+    last: Option<(Py<PyTuple>, Py<BodyStep>)>,
     /// The exception of the function.
     raised: Option<PyErr>,
 }
 
 impl CallBack {
     fn new(call: Py<PyAny>, names: Arc<Names>) -> Self {
-        Self { call, names, object: None, raised: None }
+        Self { call, names, last: None, raised: None }
     }
 
-    /// Calls the function with `step`, and keeps its exception.
-    fn run(&mut self, step: StepData) -> Commands {
-        Python::attach(|py| self.call(py, step)).unwrap_or_else(|why| {
+    /// Calls the function with `step`, writes its `commands`, and keeps its exception.
+    fn run(&mut self, step: &mut StepData, commands: &mut Commands) {
+        if let Err(why) = Python::attach(|py| self.call(py, step, commands)) {
             self.raised = Some(why);
-            Commands { failed: true, ..Commands::default() }
-        })
+            *commands = Commands { failed: true, ..Commands::default() };
+        }
     }
 
-    fn call(&mut self, py: Python<'_>, step: StepData) -> PyResult<Commands> {
-        let object = match self.object.take().filter(|object| is_alone(py, object)) {
-            Some(object) => {
-                object.borrow_mut(py).renew(step);
-                object
-            }
-            None => Py::new(py, BodyStep::new(self.names.clone(), step))?,
+    fn call(&mut self, py: Python<'_>, step: &mut StepData, commands: &mut Commands) -> PyResult<()> {
+        // The arguments refer to the object, too.
+        let unused = |(arguments, object): &(Py<PyTuple>, Py<BodyStep>)| {
+            references(py, arguments) == 1 && references(py, object) == 2
         };
-        let answer = self.call.call1(py, (&object,));
+        let (arguments, object) = match self.last.take().filter(unused) {
+            Some(last) => {
+                last.1.borrow_mut(py).renew(step);
+                last
+            }
+            None => {
+                let object = Py::new(py, BodyStep::new(self.names.clone(), std::mem::take(step)))?;
+                (PyTuple::new(py, [&object])?.unbind(), object)
+            }
+        };
+        let answer = self.call.bind(py).call1(arguments.bind(py));
         // Another thread may hold it.
-        let commands = object.try_borrow_mut(py)?.finish();
+        object.try_borrow_mut(py)?.finish(commands);
         answer?;
-        self.object = Some(object);
-        Ok(commands)
+        self.last = Some((arguments, object));
+        Ok(())
     }
 }
 
@@ -309,7 +316,7 @@ impl NativeSimulation {
             match &mut callback {
                 None => world.advance(end, single, &stop, None),
                 Some(callback) => {
-                    let mut call = |step: StepData| callback.run(step);
+                    let mut call = |step: &mut StepData, commands: &mut Commands| callback.run(step, commands);
                     world.advance(end, single, &stop, Some(Control { call: &mut call, every }))
                 }
             }

@@ -79,8 +79,19 @@ pub struct Commands {
     pub failed: bool,
 }
 
-/// A callback of a step.
-pub type Callback<'a> = dyn FnMut(StepData) -> Commands + Send + 'a;
+impl Commands {
+    /// Removes all commands and keeps their memory.
+    pub fn clear(&mut self) {
+        self.pushes.clear();
+        self.motors.clear();
+        self.springs.clear();
+        self.motions.clear();
+        self.failed = false;
+    }
+}
+
+/// A callback of a step: reads the step and writes its commands, which are empty before. It may leave other memory in their place.
+pub type Callback<'a> = dyn FnMut(&mut StepData, &mut Commands) + Send + 'a;
 
 /// A callback and the interval of its calls, s; 0 for each step.
 pub struct Control<'a> {
@@ -191,6 +202,9 @@ struct Running<const D: usize> {
     /// Whether the scene has a probe of load balances, of the energy budget.
     accounted: [bool; 2],
     pushes: Vec<Push>,
+    /// What a callback sees, and its commands. All steps use the same memory.
+    data: StepData,
+    commands: Commands,
     /// When the callback was called last in this advance, s.
     called: Option<f64>,
     calls: Duration,
@@ -255,6 +269,18 @@ fn role<const D: usize>(solid: &Solid<D>) -> &'static str {
     }
 }
 
+/// Coordinate, rate, motor force and energy that the motor took of joint number `joint`.
+fn joint_numbers<const D: usize>(sim: &Simulation<D>, joint: usize) -> [f64; 4] {
+    let reading = sim.joint_reading(joint);
+    [reading.position, reading.rate, reading.motor_force, reading.absorbed_energy]
+}
+
+/// Length (m) and tension (N; N/m in 2-D) of spring number `spring`.
+fn spring_numbers<const D: usize>(sim: &Simulation<D>, spring: usize) -> [f64; 2] {
+    let reading = sim.spring_reading(spring);
+    [reading.length, reading.tension]
+}
+
 /// Changes those of stiffness, damping and rest length that are given.
 fn change_spring(now: &mut SpringParameters, [stiffness, damping, rest_length]: [Option<f64>; 3]) {
     now.stiffness = stiffness.unwrap_or(now.stiffness);
@@ -290,8 +316,9 @@ where
         let names = sim.system().solids().iter().map(|solid| solid.spec.name.clone());
         let motions = names.map(|name| Ok((name.clone(), MotionProbe::new(sim.system(), &name)?)));
         let motions = motions.collect::<Result<_>>()?;
-        let (pushes, calls) = (Vec::new(), Duration::ZERO);
-        Ok(Self { sim, probes, motions, constraints, accounted, pushes, called: None, calls })
+        let (pushes, data, commands) = (Vec::new(), StepData::default(), Commands::default());
+        let (called, calls) = (None, Duration::ZERO);
+        Ok(Self { sim, probes, motions, constraints, accounted, pushes, data, commands, called, calls })
     }
 }
 
@@ -299,43 +326,31 @@ impl<const D: usize> Running<D>
 where
     Dim<D>: Dimension<D>,
 {
-    /// Returns what a callback sees at the start of a step, without time and loads.
-    fn at_start(&mut self) -> StepData {
-        let [joints, springs] = self.constraints.each_ref().map(Vec::len);
-        let spring = |i| {
-            let ([length, tension], [stiffness, damping, rest_length]) =
-                (self.spring(i), self.set_spring(i, [None; 3]));
-            [length, tension, stiffness, damping, rest_length]
-        };
-        let springs = (0..springs).map(spring).collect();
-        let joints = (0..joints).map(|i| self.joint(i)).collect();
-        StepData { bodies: self.bodies(), joints, springs, ..StepData::default() }
+    /// Writes what a callback sees at the start of a step, without time and loads. In the step itself the solids are already half
+    /// a step on.
+    fn read_start(&mut self) {
+        let Self { sim, data, constraints: [joints, springs], .. } = self;
+        data.bodies.clear();
+        data.bodies.extend(sim.system().solids().iter().map(|solid| body_data(&solid.kinematics, &solid.load)));
+        data.joints.clear();
+        data.joints.extend((0..joints.len()).map(|i| joint_numbers(sim, i)));
+        data.springs.clear();
+        data.springs.extend((0..springs.len()).map(|i| {
+            let ([length, tension], now) = (spring_numbers(sim, i), sim.spring_parameters(i));
+            [length, tension, now.stiffness, now.damping, now.rest_length]
+        }));
     }
 
-    /// Calls the callback with what it sees at the `start` of the step, if it is due, and applies the forces that it asked for.
-    fn between(
-        step: &mut BodyStep<D>,
-        start: Option<StepData>,
-        call: &mut Callback<'_>,
-        pushes: &mut Vec<Push>,
-    ) -> Result<Commands> {
-        let mut commands = Commands::default();
-        if let Some(mut start) = start {
-            for (body, load) in start.bodies.iter_mut().zip(step.loads()) {
-                (body.force, body.torque) = (three(&load.force), axial(&load.torque));
-            }
-            (start.time, start.dt) = (step.time(), step.dt());
-            commands = call(start);
-            *pushes = std::mem::take(&mut commands.pushes);
-            for (solid, motion) in &commands.motions {
-                step.solids[*solid] = kinematics(motion);
-            }
+    /// Calls the callback with the loads of the step, and takes the motions of bodies that another program moves.
+    fn call(step: &mut BodyStep<D>, data: &mut StepData, commands: &mut Commands, call: &mut Callback<'_>) {
+        for (body, load) in data.bodies.iter_mut().zip(step.loads()) {
+            (body.force, body.torque) = (three(&load.force), axial(&load.torque));
         }
-        for push in pushes.iter() {
-            let load = Load { force: vector(push.force), torque: Bivector::from_axial(&push.torque) };
-            step.push(push.solid, &load);
+        (data.time, data.dt) = (step.time(), step.dt());
+        call(data, commands);
+        for (solid, motion) in &commands.motions {
+            step.solids[*solid] = kinematics(motion);
         }
-        Ok(commands)
     }
 
     /// Goes one step on with a callback; returns whether the callback failed.
@@ -343,32 +358,37 @@ where
         let now = self.sim.time();
         // A rollback takes the clock back, and a call is due again.
         let after = (1.0 - 1e-9) * control.every;
-        let due = self.called.is_none_or(|last| now < last || now >= last + after);
+        let mut due = self.called.is_none_or(|last| now < last || now >= last + after);
         if due {
             self.called = Some(now);
+            self.read_start();
         }
-        let mut start = due.then(|| self.at_start());
-        let (hosted, mut failed) = (self.sim.has_external_bodies(), false);
-        let (mut commands, mut spent, pushes) = (Commands::default(), Duration::ZERO, &mut self.pushes);
-        let outcome = self.sim.step_with(end, |step| {
-            let begun = Instant::now();
-            commands = Self::between(step, start.take(), control.call, pushes)?;
-            spent += begun.elapsed();
-            failed = commands.failed;
-            if failed && hosted {
+        self.commands.clear();
+        let Self { sim, data, commands, pushes, calls, .. } = self;
+        let hosted = sim.has_external_bodies();
+        sim.step_with(end, |step| {
+            let begun = due.then(Instant::now);
+            if std::mem::take(&mut due) {
+                Self::call(step, data, commands, control.call);
+                std::mem::swap(pushes, &mut commands.pushes);
+            }
+            for push in pushes.iter() {
+                let load = Load { force: vector(push.force), torque: Bivector::from_axial(&push.torque) };
+                step.push(push.solid, &load);
+            }
+            *calls += begun.map_or(Duration::ZERO, |begun| begun.elapsed());
+            if commands.failed && hosted {
                 return Err(Error::new(ErrorKind::Usage, "the callback failed: the bodies have no motion"));
             }
             Ok(())
-        });
-        self.calls += spent;
-        outcome?;
-        for (joint, command) in commands.motors {
-            self.sim.set_motor(joint, command);
+        })?;
+        for (joint, command) in commands.motors.drain(..) {
+            sim.set_motor(joint, command);
         }
-        for (spring, changes) in commands.springs {
-            change_spring(self.sim.spring_parameters(spring), changes);
+        for (spring, changes) in commands.springs.drain(..) {
+            change_spring(sim.spring_parameters(spring), changes);
         }
-        Ok(failed)
+        Ok(commands.failed)
     }
 }
 
@@ -388,7 +408,8 @@ where
 
     fn advance(&mut self, end: f64, single: bool, stop: &AtomicBool, control: Option<Control<'_>>) -> Result<()> {
         let mut control = control;
-        (self.called, self.pushes) = (None, Vec::new());
+        self.called = None;
+        self.pushes.clear();
         while self.sim.time() < end && !stop.load(Ordering::Relaxed) {
             let failed = match &mut control {
                 Some(control) => self.step_with(end, control)?,
@@ -511,8 +532,7 @@ where
     }
 
     fn joint(&self, joint: usize) -> [f64; 4] {
-        let reading = self.sim.joint_reading(joint);
-        [reading.position, reading.rate, reading.motor_force, reading.absorbed_energy]
+        joint_numbers(&self.sim, joint)
     }
 
     fn set_motor(&mut self, joint: usize, command: Option<MotorCommand>) {
@@ -520,8 +540,7 @@ where
     }
 
     fn spring(&self, spring: usize) -> [f64; 2] {
-        let reading = self.sim.spring_reading(spring);
-        [reading.length, reading.tension]
+        spring_numbers(&self.sim, spring)
     }
 
     fn set_spring(&mut self, spring: usize, changes: [Option<f64>; 3]) -> [f64; 3] {

@@ -1,5 +1,7 @@
 """Bodies of another program: forces out, motions in."""
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 
@@ -55,6 +57,41 @@ def test_a_body_without_motion_is_named() -> None:
         sim.step(lambda h: {"crat": pt.Motion([0.0, 0.0], [0.0, 0.0])})
     with pytest.raises(pt.UsageError, match="velocity"):
         sim.step(lambda h: {"crate": pt.Motion(h["crate"].position, [0.0, 0.0, 0.0])})
+
+
+def test_an_advance_takes_the_steps_of_single_ones(tank: pt.Scene) -> None:
+    single, whole = tank.build_hosted(), tank.build_hosted()
+    start = single["crate"].position
+    times: tuple[list[float], list[float]] = ([], [])
+
+    def host(seen: list[float]) -> Callable[[pt.BodyStep], dict[str, pt.Motion]]:
+        def heave(h: pt.BodyStep) -> dict[str, pt.Motion]:
+            seen.append(h.time)
+            end = h.time + h.dt
+            return {"crate": pt.Motion(start + [0.0, 0.01 * np.sin(9.0 * end)], [0.0, 0.09 * np.cos(9.0 * end)])}
+
+        return heave
+
+    while single.time < 0.05:
+        single.step(host(times[0]), until=0.05)
+    whole.advance(0.05, host(times[1]))
+    assert times[0] == times[1] and single.time == whole.time == 0.05
+    assert single.save() == whole.save()
+
+
+def test_an_exception_of_the_host_ends_an_advance(tank: pt.Scene) -> None:
+    sim, calls = tank.build_hosted(), 0
+
+    def host(h: pt.BodyStep) -> dict[str, pt.Motion]:
+        nonlocal calls
+        calls += 1
+        if calls == 3:
+            raise LookupError("in the host")
+        return {"crate": pt.Motion(h["crate"].position, [0.0, 0.0])}
+
+    with pytest.raises(LookupError, match="in the host"):
+        sim.advance(0.1, host)
+    assert calls == 3 and sim.steps == 2
 
 
 def test_hosted_is_an_option_of_build(tank: pt.Scene) -> None:

@@ -389,6 +389,70 @@ def test_a_step_that_a_function_keeps_stays_as_it_was(tank: pt.Scene) -> None:
     assert all(h["crate"].name == "crate" and h["crate"].role == "free" for h in kept)
 
 
+@pytest.mark.parametrize("keeps", ["steps", "arguments", "nothing"])
+def test_each_call_gets_its_own_step(tank: pt.Scene, keeps: str) -> None:
+    kept: list[Any] = []
+    times: list[float] = []
+
+    def control(*arguments: pt.BodyStep) -> None:
+        times.append(arguments[0].time)
+        kept.append({"steps": arguments[0], "arguments": arguments}.get(keeps))
+
+    sim = tank.build()
+    sim.advance(0.05, control=control)
+    assert times == sorted(set(times)) and len(times) == sim.steps
+    if keeps != "nothing":
+        steps = kept if keeps == "steps" else [arguments[0] for arguments in kept]
+        assert [h.time for h in steps] == times
+        assert len({id(h) for h in steps}) == len(steps)
+    # A function of C gets the tuple of the arguments itself.
+    appended: list[pt.BodyStep] = []
+    tank.build().advance(0.05, control=appended.append)
+    assert [h.time for h in appended] == times
+
+
+def test_commands_of_a_call_do_not_come_again(tank: pt.Scene) -> None:
+    tank["gravity"] = 0.0
+    tank["model.c0"] = 20.0
+    tank["solid.crate.at"] = {"x": 0.5, "bottom": 0.7}
+    tank["spring"] = [
+        {"name": "line", "between": ["crate"], "from": [0.5, 0.9], "to": [0.5, 0.95], "stiffness": 1.0, "length": 0.05}
+    ]
+    mass, pushed, calls = 500.0 * 0.3 * 0.2, 0.0, 0
+
+    def control(h: pt.BodyStep) -> None:
+        nonlocal pushed, calls
+        calls += 1
+        if calls % 2:
+            h.push("crate", [3.0, 0.0])
+            pushed += h.dt
+        if calls == 1:
+            h.set_spring("line", stiffness=0.0)
+
+    sim = tank.build()
+    sim.step(control)
+    sim.set_spring("line", stiffness=1e-6)
+    sim.advance(0.05, control=control)
+    assert calls > 6 and sim["crate"].velocity[0] == pytest.approx(3.0 / mass * pushed, rel=1e-6)
+    assert sim.spring("line").stiffness == 1e-6, "the command of the first call acted once"
+
+
+def test_a_call_sees_the_start_of_the_step_and_its_loads(tank: pt.Scene) -> None:
+    tank["solid.crate.at"] = {"x": 0.5, "bottom": 0.45}
+    sim, seen = tank.build(), []
+    for _ in range(10):
+        before = sim["crate"]
+        sim.step(lambda h: seen.append((h["crate"], h.loads["crate"], h.time)))
+        crate, load, _ = seen[-1]
+        for own, other in ((crate.centre, before.centre), (crate.velocity, before.velocity)):
+            assert np.array_equal(own, other)
+        assert crate.rotation == before.rotation and crate.spin == before.spin
+        assert np.array_equal(crate.load.force, load.force) and crate.load.torque == load.torque
+        # The force of this step, with the weight, makes the velocity at its end.
+        change = (load.force / 30.0 + [0.0, -9.81]) * sim.dt
+        assert sim["crate"].velocity - before.velocity == pytest.approx(change, rel=1e-3, abs=1e-6)
+
+
 def test_vectors_are_taken_from_lists_arrays_and_views(tank: pt.Scene) -> None:
     def pushed(force: Any) -> tuple[bytes, bytes]:
         sim = tank.build()

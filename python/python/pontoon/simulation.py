@@ -524,6 +524,20 @@ class HostedSimulation(_Stepped):
         Raises:
             UsageError: a free solid has no motion, or one that is not finite.
         """
+        self._native.advance(float(until), True, self._exchange(host), 0.0)
+
+    def advance(self, until: float, host: Callable[[BodyStep], Mapping[str, Motion]]) -> None:
+        """Steps with `host` to the time `until` (s). Signals and exceptions are those of `Simulation.advance`.
+
+        Raises:
+            UsageError: as `step`.
+        """
+        if math.isnan(until):
+            raise usage("until = nan is no time", "give seconds")
+        self._native.advance(float(until), False, self._exchange(host), 0.0)
+
+    def _exchange(self, host: Callable[[BodyStep], Mapping[str, Motion]]) -> Callable[[BodyStep], None]:
+        """Returns the function that calls `host` in a step and sets the motions that it returns."""
 
         def exchange(step: BodyStep) -> None:
             motions = host(step)
@@ -532,14 +546,7 @@ class HostedSimulation(_Stepped):
             for name, motion in motions.items():
                 self._set(step, name, motion)
 
-        self._native.advance(float(until), True, exchange, 0.0)
-
-    def advance(self, until: float, host: Callable[[BodyStep], Mapping[str, Motion]]) -> None:
-        """Steps with `host` to the time `until` (s)."""
-        if math.isnan(until):
-            raise usage("until = nan is no time", "give seconds")
-        while self.time < until:
-            self.step(host, until=until)
+        return exchange
 
     def _set(self, step: BodyStep, name: str, motion: Motion) -> None:
         dimension = self.dimension
