@@ -3,7 +3,14 @@
 
 use rayon::prelude::*;
 
-use super::{Shape, fill::Lattice, packing, wall::is_closed};
+use super::{
+    Shape,
+    fill::Lattice,
+    hollow::may_enclose,
+    packing,
+    thin::{has_thin_parts, thin_place},
+    wall::is_closed,
+};
 use crate::{
     math::{Bounds, Pose, Vector},
     particles::PARTICLES_PER_TASK,
@@ -19,7 +26,12 @@ const GAP: f64 = 0.1;
 /// Least distance of packed water from a face, dp: a nearer point lies in a narrow gap between two faces.
 const NARROW: f64 = 0.35;
 
-/// A solid that displaces water.
+/// Distance from a face, dp, within which a thin part displaces water as a part dp thick does.
+const NEAR: f64 = 1.5;
+
+/// A solid that displaces water. Parts thinner than dp have a single layer of boundary particles, which keeps water off as a part dp
+/// thick does; their faces are taken where those of such a part would be. This does not apply to solids with hollows, whose water is a
+/// fixed amount.
 pub(super) struct Obstacle<'a, const D: usize> {
     shape: &'a Shape<D>,
     pose: &'a Pose<D>,
@@ -32,6 +44,8 @@ pub(super) struct Obstacle<'a, const D: usize> {
     lines: Vec<Vec<Vector<D>>>,
     /// Whether the solid has polyline walls.
     has_walls: bool,
+    /// Whether it has parts thinner than dp, and no hollow.
+    is_thin: bool,
     /// Volume of the solid less the volume of the cells taken so far, on each side, in cells.
     owed: Vec<f64>,
     /// Whether water on the lattice would be too near to the solid's face, or too far from it.
@@ -44,6 +58,11 @@ impl<'a, const D: usize> Obstacle<'a, D> {
         let mut lines = Vec::new();
         let has_walls = collect_lines(shape, pose, &mut lines);
         lines.truncate(if has_ground { lines.len() } else { 0 });
+        let is_thin = !may_enclose(shape, true)
+            && match shape {
+                Shape::Polygon { .. } | Shape::Compound(_) => has_thin_parts(shape, dp, dp),
+                _ => shape.bounds().size().min() < dp,
+            };
         let around = bounds.grown((ZONE + packing::SUPPORT_RADIUS_DP + 1.0) * dp);
         Self {
             shape,
@@ -53,13 +72,20 @@ impl<'a, const D: usize> Obstacle<'a, D> {
             around,
             lines,
             has_walls,
+            is_thin,
             owed: vec![0.0; 2 * D],
             needs_packing: false,
         }
     }
 
     fn distance(&self, x: &Vector<D>) -> f64 {
-        self.shape.signed_distance(&self.pose.local(x))
+        let x = self.pose.local(x);
+        let distance = self.shape.signed_distance(&x);
+        if !self.is_thin || distance > NEAR * self.dp {
+            return distance;
+        }
+        let thin = thin_place(self.shape, &x, self.dp, 1e-3 * self.dp);
+        distance - thin.map_or(0.0, |thin| 0.5 * (self.dp - thin.thickness))
     }
 
     fn outward(&self, x: &Vector<D>) -> Vector<D> {

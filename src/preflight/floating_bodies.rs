@@ -54,13 +54,6 @@ const LARGEST_ESTIMATE: f64 = 45.0;
 /// homogeneous ball a small one; its true one is 0.
 const NEUTRAL: f64 = 1e-3;
 
-/// Mass of a part over that of a layer of water dp thick, –, below which a free plate under water may leap. With the density of water,
-/// plates of 0.2 and 0.3 dp leap, one of 0.4 dp gains energy, and those of 0.6 dp and more do neither.
-const LEAPING: f64 = 0.5;
-
-/// Courant number at which they do not.
-const STEADY_CFL: f64 = 0.1;
-
 /// Error of the buoyancy of a part thinner than dp over its area, dp (record 147).
 const THIN_ERROR: f64 = 0.15;
 
@@ -524,20 +517,17 @@ impl<const D: usize> PreflightContext<'_, D> {
         let density = body.density_ratio * model.rho0;
         let reach = model.support_radius();
         if body.thinnest_m < reach * (1.0 - 1e-6) {
-            let leaps = body.thinnest_dp * body.density_ratio < LEAPING && model.cfl > STEADY_CFL;
             let what = format!(
-                "\"{name}\" is {} m thin, {} dp, and the kernel reaches {} dp: water on its two sides interacts{}{}",
+                "\"{name}\" is {} m thin, {} dp, and the kernel reaches {} dp: water on its two sides interacts{}",
                 three_digits(body.thinnest_m),
                 three_digits(body.thinnest_dp),
                 three_digits(self.support_radius_dp()),
-                self.thin_buoyancy_error(body),
-                if leaps { "; with so little mass for its area it may leap" } else { "" }
+                self.thin_buoyancy_error(body)
             );
             let mend = format!(
-                "make it {} m thick, or dp = {}{}",
+                "make it {} m thick, or dp = {}",
                 two_digits_up(reach),
-                two_digits_down(body.thinnest_m / self.support_radius_dp()),
-                if leaps { format!("; time.cfl = {STEADY_CFL} keeps it from leaping") } else { String::new() }
+                two_digits_down(body.thinnest_m / self.support_radius_dp())
             );
             findings.push(Finding::warning("thin_body", what, mend));
         }

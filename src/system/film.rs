@@ -196,13 +196,15 @@ fn films_between<const D: usize>(system: &System<D>, i: usize, j: usize, r: &[Ve
         near
     };
     let around: Vec<Vec<usize>> = (0..points.len()).map(neighbours).collect();
+    // Water beside the film stands half a row above the other solid, also beside a part so thin that its particle is lower.
+    let beside = |x: &Vector<D>| x + normal(x) * (0.5 * dp - distance(x)).max(0.0);
     let rim = |k: usize| {
         let arms = around[k].iter().map(|&m| points[k] - points[m]);
         let (sum, length) = arms.fold((Vector::zeros(), 0.0), |(sum, length), arm| (sum + arm, length + arm.norm()));
         let outwards: Option<Vector<D>> = sum.try_normalize(ONE_SIDED * length);
         match outwards {
             None if around[k].is_empty() => Rim::Around(normal(&points[k])),
-            Some(outwards) if has_room(system, &(points[k] + outwards * (OUTSIDE * dp)), poses) => {
+            Some(outwards) if has_room(system, &(beside(&points[k]) + outwards * (OUTSIDE * dp)), poses) => {
                 Rim::Towards(outwards)
             }
             _ => Rim::Elsewhere,

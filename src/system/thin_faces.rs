@@ -8,6 +8,9 @@
 //! with the signed distance d from the face, negative inside the part, and its outward normal n. To reach the middle of a part of
 //! thickness t, a particle needs the energy ½ A c₀² (¼ + t/2dp)² a mass, which is 6 % of c₀² for the thinnest part. At rest, water
 //! lies about half a dp from a face and is not pushed. The solid receives the opposite impulse as a load in the same step.
+//!
+//! Where a thin part ends at another solid, a particle could pass its end within the face of that solid. The distance d of a particle
+//! nearer than ½ dp to the face of a fixed or driven solid is therefore that of the place ½ dp before this face.
 
 use rayon::prelude::*;
 
@@ -196,7 +199,7 @@ fn pushes<const D: usize>(system: &System<D>, beside: &[Vec<u32>], dt: f64) -> V
         let push = |particle: &u32| {
             let particle = *particle as usize;
             let on_solid = system.fluid.particles.r[particle] - way;
-            let x = kinematics.pose.local(&on_solid);
+            let x = kinematics.pose.local(&before_others(system, number, on_solid));
             let near = RANGE * dp - shape.signed_distance(&x).max(-DEEPEST * dp);
             if near <= 0.0 {
                 return None;
@@ -208,4 +211,22 @@ fn pushes<const D: usize>(system: &System<D>, beside: &[Vec<u32>], dt: f64) -> V
         particles.par_iter().with_min_len(PARTICLES_PER_TASK).filter_map(push).collect::<Vec<_>>()
     };
     copies(system).zip(beside).flat_map(by_copy).collect()
+}
+
+/// The place `x` (m) beside solid number `number`, or the place half a dp before the face of another solid that is not free if `x` is
+/// nearer to that face.
+fn before_others<const D: usize>(system: &System<D>, number: usize, mut x: Vector<D>) -> Vector<D> {
+    let dp = system.model.dp;
+    for (other, solid) in system.solids.iter().enumerate().filter(|(other, solid)| *other != number && !solid.is_free())
+    {
+        let (shape, pose) = (&solid.spec.shape, &solid.kinematics.pose);
+        let local = pose.local(&x);
+        if system.boundary.local_bounds[other].grown(dp).contains(&local) {
+            let missing = 0.5 * dp - shape.signed_distance(&local);
+            if missing > 0.0 {
+                x += pose.rotation * shape.outward_normal(&local, 1e-3 * dp) * missing;
+            }
+        }
+    }
+    x
 }

@@ -416,20 +416,6 @@ fn a_current_too_slow_for_its_surface_is_noted() {
     assert_eq!([held(0.3), held(0.4), towed(0.6), towed(0.8)], [true, false, true, false]);
 }
 
-/// A free plate of 0.2 dp with the density of water leaps at the usual steps. One of 0.6 dp does not (`docs/measurements/thin-plate.toml`).
-#[test]
-fn a_plate_with_too_little_mass_for_its_area_is_told_to_leap() {
-    let told = |sets: &[(&str, &str)]| {
-        let sets: Vec<_> = sets.iter().map(|(key, value)| (key.to_string(), value.to_string())).collect();
-        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/measurements/thin-plate.toml");
-        let findings = preflight_report(&Scene::read(&file, &sets).unwrap()).findings;
-        let thin = findings.iter().find(|finding| finding.topic == "thin_body").expect("the plate is thin");
-        thin.what.contains("may leap")
-    };
-    let thicker = ("solid.plate.shape.box.size", "[0.2, 0.2, 0.012]");
-    assert_eq!([told(&[]), told(&[thicker]), told(&[("time.cfl", "0.1")])], [true, false, false]);
-}
-
 /// Waves that enter through a face: their length and speeds are those of linear waves on the current, with which and against which
 /// ω = k U + √(g k tanh kd).
 #[test]
