@@ -13,6 +13,9 @@
 //! solid, and on the other solid with the opposite force at the same place. The force of the film falls to zero as the gap grows
 //! from half a dp to one dp, and is zero where there are water particles.
 //!
+//! Through a body thinner than the kernel's support, water above it acts on the solid below, too. With a film between them it cannot:
+//! the forces of the water on the boundary particles that the film covers act on the body instead.
+//!
 //! A gap g that opens at the speed V draws water in through its rim. With N particles in the film and M at its rim, this water
 //! has the speed u = V N dp/(M g), which lowers the pressure by ½ ρ₀ u². In this formula g is at least half a dp.
 
@@ -21,7 +24,8 @@ use rayon::prelude::*;
 use super::{Boundary, System};
 use crate::{
     geometry::cells::PointCells,
-    math::{Pose, Vector},
+    interaction::PairSums,
+    math::{Bounds, Pose, Vector},
     model::{Model, Walls},
     particles::PARTICLES_PER_TASK,
     solid::{Kinematics, Load, Solid},
@@ -40,6 +44,9 @@ const NEIGHBOURS: f64 = 1.6;
 /// Length of the vector sum of the distances to the neighbours, over the sum of their lengths, above which a particle is at the
 /// rim, –. The ratio is 0 inside, 0.5 at a straight rim, and 1 at the end of a strip.
 const ONE_SIDED: f64 = 0.25;
+
+/// Distance along a face, dp, up to which a particle of a film covers what is below it: half a diagonal between particles.
+const COVERS: f64 = 0.75;
 
 /// Distance from a rim, away from the film, at which water or air must have room, dp.
 const OUTSIDE: f64 = 1.25;
@@ -87,6 +94,26 @@ struct Film<const D: usize> {
     solid: usize,
     other: usize,
     particles: Vec<FilmParticle<D>>,
+    covered: Vec<Covered>,
+}
+
+/// A boundary particle of the other solid that sees water through the solid of a film.
+#[derive(Clone, Copy)]
+struct Covered {
+    /// Its place among the boundary particles near water.
+    near_water: u32,
+    /// Number of the particle of the film that covers it.
+    by: u32,
+}
+
+/// What a film does at one of its particles.
+struct FilmForce<const D: usize> {
+    /// The place on the solid and on the other one, m.
+    at: [Vector<D>; 2],
+    /// The force on the solid, N (N/m in 2-D).
+    force: Vector<D>,
+    /// How far the gap is closed to water, 0 to 1.
+    share: f64,
 }
 
 /// The water near a boundary particle.
@@ -216,9 +243,47 @@ fn films_between<const D: usize>(system: &System<D>, i: usize, j: usize, r: &[Ve
         near_water: wet.binary_search(&(found[k] as u32)).ok().map(|place| place as u32),
         rim: rim(k),
     };
-    let connected = connected_parts(&around).into_iter();
-    let film = |part: Vec<usize>| Film { solid: i, other: j, particles: part.into_iter().map(particle).collect() };
-    connected.map(film).collect()
+    let places = system.home_boundary_at(j, &poses[j]);
+    let [first, end] = [places.start, places.end].map(|end| wet.partition_point(|&b| (b as usize) < end));
+    let support = system.model.support_radius();
+    // The point of the film that covers the boundary particle at `x`, if water above the solid sees it.
+    let covers = |x: &Vector<D>| {
+        let mut nearest = (COVERS * dp, None);
+        cells.visit_near(x, support, |m, y| {
+            let (n, way) = (normal(y), x - y);
+            let down = -n.dot(&way);
+            let aside = (way + n * down).norm();
+            if down > 0.0 && down < support && aside < nearest.0 {
+                let lowest_water = y + n * (support - down - 0.5 * dp);
+                if (lowest_water - y).dot(&n) > 0.0
+                    && solid.spec.shape.signed_distance(&pose.local(&lowest_water)) > 0.0
+                {
+                    nearest = (aside, Some(m));
+                }
+            }
+        });
+        nearest.1
+    };
+    let covered: Vec<(usize, usize)> = match points.is_empty() {
+        true => Vec::new(),
+        false => {
+            let near = Bounds::around(&points).grown(support);
+            let of = |place: usize| {
+                let x = &r[wet[place] as usize];
+                near.contains(x).then(|| covers(x)).flatten().map(|m| (place, m))
+            };
+            (first..end).into_par_iter().with_min_len(PARTICLES_PER_TASK).filter_map(of).collect()
+        }
+    };
+    let film = |part: Vec<usize>| {
+        let by = |&(place, m): &(usize, usize)| {
+            let by = part.binary_search(&m).ok()? as u32;
+            Some(Covered { near_water: place as u32, by })
+        };
+        let covered = covered.iter().filter_map(by).collect();
+        Film { solid: i, other: j, particles: part.iter().map(|&k| particle(k)).collect(), covered }
+    };
+    connected_parts(&around).into_iter().map(film).collect()
 }
 
 /// Whether `x` (m) is in no solid at its pose of `poses`, nor beyond a symmetry plane.
@@ -232,28 +297,34 @@ fn has_room<const D: usize>(system: &System<D>, x: &Vector<D>, poses: &[Pose<D>]
     system.symmetry_planes().axes_beyond(x) == 0 && !system.solids.iter().enumerate().any(is_in)
 }
 
-/// The loads of the films on the computed part of each solid, about its centre; an empty list without a film.
-pub(crate) fn loads<const D: usize>(system: &System<D>) -> Vec<Load<D>> {
+/// The loads of the films on the computed part of each solid, about its centre; an empty list without a film. `sums` are those of the
+/// boundary particles near water.
+pub(crate) fn loads<const D: usize>(system: &System<D>, sums: &[PairSums<D>]) -> Vec<Load<D>> {
     if system.boundary.films.films.is_empty() {
         return Vec::new();
     }
     let mut loads = vec![Load::zero(); system.solids.len()];
     for (film, water) in system.boundary.films.films.iter().zip(&system.boundary.films.water) {
         let (solid, other) = (&system.solids[film.solid], &system.solids[film.other]);
-        for (at, force) in forces(system, film, water) {
+        let mut act = |at: [Vector<D>; 2], force: Vector<D>| {
             loads[film.solid] += Load::from_force_at(&(at[0] - solid.kinematics.centre), force);
             loads[film.other] += Load::from_force_at(&(at[1] - other.kinematics.centre), -force);
+        };
+        let forces = forces(system, film, water);
+        forces.iter().for_each(|FilmForce { at, force, .. }| act(*at, *force));
+        let (r, mass) = (&system.boundary.particles.r, system.particle_mass());
+        let near = system.neighbours.boundary_near_fluid();
+        for Covered { near_water, by } in film.covered.iter().filter(|covered| (covered.by as usize) < forces.len()) {
+            let (place, cover) = (*near_water as usize, &forces[*by as usize]);
+            let aside = r[near[place] as usize] - r[film.particles[*by as usize].boundary as usize];
+            act(cover.at.map(|at| at + aside), sums[place].acceleration * (mass * cover.share));
         }
     }
     loads
 }
 
-/// The forces (N; N/m in 2-D) of `film` on its solid, with the place (m) of each on the solid and on the other one.
-fn forces<const D: usize>(
-    system: &System<D>,
-    film: &Film<D>,
-    water: &[WaterNearby<D>],
-) -> Vec<([Vector<D>; 2], Vector<D>)> {
+/// What `film` does at each of its particles; an empty list if its rim is dry.
+fn forces<const D: usize>(system: &System<D>, film: &Film<D>, water: &[WaterNearby<D>]) -> Vec<FilmForce<D>> {
     let (dp, rho0, gravity) = (system.model.dp, system.properties.rho0, system.properties.gravity);
     let (solid, other) = (&system.solids[film.solid], &system.solids[film.other]);
     let Boundary { particles, depths, .. } = &system.boundary;
@@ -295,7 +366,7 @@ fn forces<const D: usize>(
         let still = if particle.at_rim() { water.pressure } else { inside(&x) };
         let pressure = (still - 0.5 * inflow * inflow).max(0.0);
         let size = dp.powi(D as i32 - 1);
-        ([on_solid, on_other], normal * (rho0 * pressure * share * size))
+        FilmForce { at: [on_solid, on_other], force: normal * (rho0 * pressure * share * size), share }
     };
     film.particles.par_iter().zip(water).with_min_len(PARTICLES_PER_TASK).map(force).collect()
 }

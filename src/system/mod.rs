@@ -554,7 +554,7 @@ impl<const D: usize> System<D> {
     /// chunks of fixed size, in order.
     fn loads(&self, sums: &[PairSums<D>]) -> Vec<Load<D>> {
         let (mass, wet, r) = (self.particle_mass(), self.neighbours.boundary_near_fluid(), &self.boundary.particles.r);
-        let beside = [film::loads(self), thin_layers::loads(self)];
+        let beside = [film::loads(self, sums), thin_layers::loads(self)];
         let place = |end: usize| wet.partition_point(|&i| (i as usize) < end);
         let of_copy = |solid: &Solid<D>, (range, way): (Range<usize>, Vector<D>)| {
             let centre = solid.kinematics.centre + way;
