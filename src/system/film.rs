@@ -276,12 +276,14 @@ fn films_between<const D: usize>(system: &System<D>, i: usize, j: usize, r: &[Ve
         }
     };
     let film = |part: Vec<usize>| {
+        let particles: Vec<_> = part.iter().map(|&k| particle(k)).collect();
+        // What lies below the rim sees the water beside the film.
         let by = |&(place, m): &(usize, usize)| {
-            let by = part.binary_search(&m).ok()? as u32;
+            let by = part.binary_search(&m).ok().filter(|&by| !particles[by].at_rim())? as u32;
             Some(Covered { near_water: place as u32, by })
         };
         let covered = covered.iter().filter_map(by).collect();
-        Film { solid: i, other: j, particles: part.iter().map(|&k| particle(k)).collect(), covered }
+        Film { solid: i, other: j, particles, covered }
     };
     connected_parts(&around).into_iter().map(film).collect()
 }
