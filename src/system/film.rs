@@ -277,9 +277,8 @@ fn films_between<const D: usize>(system: &System<D>, i: usize, j: usize, r: &[Ve
     };
     let film = |part: Vec<usize>| {
         let particles: Vec<_> = part.iter().map(|&k| particle(k)).collect();
-        // What lies below the rim sees the water beside the film.
         let by = |&(place, m): &(usize, usize)| {
-            let by = part.binary_search(&m).ok().filter(|&by| !particles[by].at_rim())? as u32;
+            let by = part.binary_search(&m).ok()? as u32;
             Some(Covered { near_water: place as u32, by })
         };
         let covered = covered.iter().filter_map(by).collect();
@@ -317,9 +316,11 @@ pub(crate) fn loads<const D: usize>(system: &System<D>, sums: &[PairSums<D>]) ->
         let (r, mass) = (&system.boundary.particles.r, system.particle_mass());
         let near = system.neighbours.boundary_near_fluid();
         for Covered { near_water, by } in film.covered.iter().filter(|covered| (covered.by as usize) < forces.len()) {
-            let (place, cover) = (*near_water as usize, &forces[*by as usize]);
-            let aside = r[near[place] as usize] - r[film.particles[*by as usize].boundary as usize];
-            act(cover.at.map(|at| at + aside), sums[place].acceleration * (mass * cover.share));
+            let (place, cover, by) = (*near_water as usize, &forces[*by as usize], &film.particles[*by as usize]);
+            let aside = r[near[place] as usize] - r[by.boundary as usize];
+            // What lies below the rim sees as much water beside the film as through the solid.
+            let share = if by.at_rim() { 0.5 * cover.share } else { cover.share };
+            act(cover.at.map(|at| at + aside), sums[place].acceleration * (mass * share));
         }
     }
     loads

@@ -337,9 +337,9 @@ fn thin_plates_have_the_buoyancy_of_their_volume_in_3d() -> Result<()> {
     Ok(())
 }
 
-/// Water gets under a thin plate that lies on the bed, whose buoyancy is then that of its volume. Bound: 0.5 dp of its area, a twentieth
-/// of the water above it. Where the film between plate and bed had no rim, the water pressed the plate down with 58 N; where it had one but
-/// the water above acted on the bed through the plate, it lifted the plate with 18 N.
+/// Water gets under a thin plate that is held on the bed, whose buoyancy is then that of its volume. Bound: 0.6 dp of its area, 6 % of the
+/// water above it. Where the film between plate and bed had no rim, the water pressed the plate down with 7.7 dp; where it had one but the
+/// water above acted on the bed through the plate, it lifted the plate with 2.3 dp.
 #[test]
 fn water_gets_under_a_thin_plate_on_the_bed() -> Result<()> {
     for thickness in [0.002, 0.006, 0.012, 0.02] {
@@ -347,13 +347,13 @@ fn water_gets_under_a_thin_plate_on_the_bed() -> Result<()> {
         let sets = [
             ("solid.plate.shape.box.size", size.as_str()),
             ("solid.plate.at.z", z.as_str()),
-            ("solid.plate.free.density", "7800.0"),
+            ("solid.plate.free.locked", r#"["x", "y", "z", "turn_x", "turn_y", "turn_z"]"#),
         ];
         let mut sim = measurement("thin-plate", &sets)?;
         let [force] = time_mean(&mut sim, 0.3, 0.6, |sim| [sim.system().solids()[1].load.force[2]])?;
         let off = (force / (1000.0 * G * 0.04) - thickness) / 0.02;
         println!("{thickness} m: {force} N, off by {off} dp");
-        assert!(off.abs() < 0.5, "{thickness} m: {force} N, off by {off} dp of its area");
+        assert!(off.abs() < 0.6, "{thickness} m: {force} N, off by {off} dp of its area");
     }
     Ok(())
 }
