@@ -23,7 +23,7 @@ use rayon::prelude::*;
 
 use super::{Boundary, System};
 use crate::{
-    geometry::cells::PointCells,
+    geometry::{cells::PointCells, thin::thin_place},
     interaction::PairSums,
     math::{Bounds, Pose, Vector},
     model::{Model, Walls},
@@ -37,6 +37,9 @@ const FADING: [f64; 2] = [0.5, 1.0];
 
 /// Depth below the face of the particles that have the face's size, dp: the first row.
 const FIRST_ROW: f64 = 0.75;
+
+/// Depth below the face of the particles of a part thinner than dp, dp.
+const THIN: f64 = 0.499;
 
 /// Distance between neighbours in a film, dp: along the axes and the diagonals of a face.
 const NEIGHBOURS: f64 = 1.6;
@@ -224,14 +227,17 @@ fn films_between<const D: usize>(system: &System<D>, i: usize, j: usize, r: &[Ve
     };
     let around: Vec<Vec<usize>> = (0..points.len()).map(neighbours).collect();
     // Water beside the film stands half a row above the other solid, also beside a part so thin that its particle is lower.
-    let beside = |x: &Vector<D>| x + normal(x) * (0.5 * dp - distance(x)).max(0.0);
+    let beside = |k: usize| {
+        let lower = if depths[found[k]] < THIN * dp { (0.5 * dp - distance(&points[k])).max(0.0) } else { 0.0 };
+        points[k] + normal(&points[k]) * lower
+    };
     let rim = |k: usize| {
         let arms = around[k].iter().map(|&m| points[k] - points[m]);
         let (sum, length) = arms.fold((Vector::zeros(), 0.0), |(sum, length), arm| (sum + arm, length + arm.norm()));
         let outwards: Option<Vector<D>> = sum.try_normalize(ONE_SIDED * length);
         match outwards {
             None if around[k].is_empty() => Rim::Around(normal(&points[k])),
-            Some(outwards) if has_room(system, &(beside(&points[k]) + outwards * (OUTSIDE * dp)), poses) => {
+            Some(outwards) if has_room(system, &(beside(k) + outwards * (OUTSIDE * dp)), poses) => {
                 Rim::Towards(outwards)
             }
             _ => Rim::Elsewhere,
@@ -246,27 +252,29 @@ fn films_between<const D: usize>(system: &System<D>, i: usize, j: usize, r: &[Ve
     let places = system.home_boundary_at(j, &poses[j]);
     let [first, end] = [places.start, places.end].map(|end| wet.partition_point(|&b| (b as usize) < end));
     let support = system.model.support_radius();
-    // The point of the film that covers the boundary particle at `x`, if water above the solid sees it.
+    // The height of the solid above each point of the film, where its faces are parallel and nearer than the support.
+    let height = |&b: &usize| {
+        let thin = thin_place(&solid.spec.shape, &pose.local(&r[b]), support, 1e-3 * dp)?;
+        Some(thin.thickness - depths[b])
+    };
+    let heights: Vec<Option<f64>> = found.par_iter().with_min_len(PARTICLES_PER_TASK).map(height).collect();
+    // The point of the film that covers the boundary particle at `x`, if a row of water on the solid sees it.
     let covers = |x: &Vector<D>| {
         let mut nearest = (COVERS * dp, None);
         cells.visit_near(x, support, |m, y| {
             let (n, way) = (normal(y), x - y);
             let down = -n.dot(&way);
             let aside = (way + n * down).norm();
-            if down > 0.0 && down < support && aside < nearest.0 {
-                let lowest_water = y + n * (support - down - 0.5 * dp);
-                if (lowest_water - y).dot(&n) > 0.0
-                    && solid.spec.shape.signed_distance(&pose.local(&lowest_water)) > 0.0
-                {
-                    nearest = (aside, Some(m));
-                }
+            let sees = heights[m].is_some_and(|height| down + height + 0.5 * dp < support);
+            if sees && down > 0.0 && aside < nearest.0 {
+                nearest = (aside, Some(m));
             }
         });
         nearest.1
     };
-    let covered: Vec<(usize, usize)> = match points.is_empty() {
-        true => Vec::new(),
-        false => {
+    let covered: Vec<(usize, usize)> = match heights.iter().any(Option::is_some) {
+        false => Vec::new(),
+        true => {
             let near = Bounds::around(&points).grown(support);
             let of = |place: usize| {
                 let x = &r[wet[place] as usize];
