@@ -313,7 +313,10 @@ fn light_thin_plates_move_alike_at_all_steps() -> Result<()> {
         println!("{density} kg/m³: z = {usual} and {short} m");
         assert!((usual - short).abs() < 0.05 * 0.02, "{density} kg/m³: z = {usual} m, with short steps {short} m");
         let rises = usual - 0.1;
-        assert!(if density == "1000.0" { rises.abs() < 0.2 * 0.02 } else { rises > 0.02 }, "{density} kg/m³: {rises} m");
+        assert!(
+            if density == "1000.0" { rises.abs() < 0.2 * 0.02 } else { rises > 0.02 },
+            "{density} kg/m³: {rises} m"
+        );
     }
     Ok(())
 }
