@@ -74,11 +74,11 @@ pub struct Division {
     /// Water particles of this rank.
     own: IndexRanges,
     /// Whether the water particle is this rank's; empty if all in its range are.
-    is_own: Vec<bool>,
+    is_own: Box<[bool]>,
     /// Boundary particles near water of each rank, by their place among all of these.
     boundary: Vec<IndexRanges>,
     /// Those of this rank.
-    own_boundary: Vec<u32>,
+    own_boundary: Box<[u32]>,
     /// Number of list entries of each slab.
     entries: Vec<u32>,
 }
@@ -121,9 +121,8 @@ impl Division {
     /// Makes `own` the water of this rank, in ascending order, of `count` particles.
     pub(crate) fn set_own_water(&mut self, own: Vec<u32>, count: usize) {
         self.own = IndexRanges::new(own);
-        self.is_own = Vec::new();
-        if self.own.0.len() > 1 {
-            self.is_own = vec![false; count];
+        self.is_own = vec![false; if self.own.0.len() > 1 { count } else { 0 }].into();
+        if !self.is_own.is_empty() {
             self.own.iter().for_each(|i| self.is_own[i as usize] = true);
         }
     }
