@@ -18,8 +18,8 @@ use super::{
 };
 use crate::math::{Matrix, Vector};
 
-/// Length of an inner step times the highest frequency of the line, –. Steps are stable up to 2.
-const INNER_STEP: f64 = 1.2;
+/// Length of an inner step times the highest frequency of the line, –. Steps are stable up to 2, but at 1.2 a free line gains 1 % of energy.
+const INNER_STEP: f64 = 0.7;
 
 /// The state of a line in a checkpoint.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
