@@ -123,8 +123,12 @@ impl<const D: usize> SimdPairLoop<D> {
         }
         // The first slab has no slab before it: rows of zeros replace it.
         self.at.iter_mut().take_while(|at| at[1] == u32::MAX).for_each(|at| at[1] = offset as u32);
-        self.sums.reserve_exact((offset + rows).saturating_sub(self.sums.len()));
-        self.sums.resize(offset + rows, LaneRow::default());
+        let count = offset + rows;
+        if self.sums.capacity() < count {
+            // No copy of the last sums beside the next ones.
+            self.sums = Vec::with_capacity(count);
+        }
+        self.sums.resize(count, LaneRow::default());
         self.sums[offset..].fill(LaneRow::default());
         lengths
     }
@@ -276,10 +280,6 @@ impl<const D: usize> PairLoop<D> for SimdPairLoop<D> {
             self.packed.pack_rows(input, clusters, &self.units, needs);
         }
         let lengths = self.lay_out(clusters, needs.requested_rows(D, requested));
-        if clusters.division.by_owner {
-            // The extrapolation to the walls had more rows, and a rank needs their memory for the sums of all boundary particles.
-            self.sums.shrink_to_fit();
-        }
         let start = Instant::now();
         let works = works(clusters, &lengths, &mut self.sums);
         let closing = sum_slabs(&*self.laws, self.level, &self.packed, requested, works);
