@@ -19,26 +19,6 @@ import pontoon as pt
 #: Runs of a measurement.
 REPEATS = 10
 
-SMALL = """
-dimension = 2
-dp = 0.05
-until = 1.5
-
-[[water]]
-fill = { box = { min = [0.0, 0.0], max = [1.0, 0.5] } }
-
-[[solid]]
-name = "tank"
-fixed = true
-shape = { tank = { size = [1.0, 1.0] } }
-
-[[solid]]
-name = "crate"
-free = { density = 500.0 }
-shape = { box = { size = [0.3, 0.2] } }
-at = { x = 0.5, draft = "equilibrium" }
-"""
-
 
 def nothing(h: pt.BodyStep) -> None:
     """The control function."""
@@ -57,7 +37,8 @@ def main() -> None:
     options.add_argument("--count", action="store_true", help="make the steps of a count of instructions")
     options.add_argument("--without", action="store_true", help="without the function")
     given = options.parse_args()
-    small = pt.Scene.from_toml(SMALL)
+    small = pt.Scene.read("buoyancy")
+    small["dp"], small["until"] = 0.04, 1.5
     if given.count:
         with small.build(threads=1) as sim:
             sim.advance(control=None if given.without else nothing)

@@ -9,21 +9,10 @@ import argparse
 import tempfile
 from pathlib import Path
 
-import numpy as np
-
 import pontoon as pt
 
 #: Period (s) of the wave of the scene.
 PERIOD = 1.2
-
-
-def amplitude(t: np.ndarray, x: np.ndarray, period: float) -> float:
-    """Returns the amplitude of the harmonic of this period, by least squares over whole periods at the end."""
-    chosen = t >= t[-1] - np.floor((t[-1] - 5.0) / period) * period
-    phase = 2.0 * np.pi * t[chosen] / period
-    basis = np.stack([np.cos(phase), np.sin(phase), np.ones_like(phase), t[chosen]], axis=1)
-    cosine, sine, *_ = np.linalg.lstsq(basis, x[chosen], rcond=None)[0]
-    return float(np.hypot(cosine, sine))
 
 
 def main() -> None:
@@ -46,7 +35,7 @@ def main() -> None:
     print(table[["buoy.heave_m", "buoy.surge_m", "elevation.eta_m"]].describe().round(4))
 
     heave, wave = run.series["heave"], run.series["elevation.eta"]
-    ratio = amplitude(heave.t, heave.values, PERIOD) / amplitude(wave.t, wave.values, PERIOD)
+    ratio = abs(heave.harmonic(PERIOD, since=5.0) / wave.harmonic(PERIOD, since=5.0))
     period = run.stats(start=4.0).value("heave", "T_z")
     print(f"heave over wave {ratio:.2f}, period {period:.3f} s of {PERIOD} s")
 

@@ -96,17 +96,6 @@ free = {{ density = 500.0 }}
     return potential_flow.export_bodies(scene, folder, panels=panels)
 
 
-def amplitude(series: pt.Series, period: float) -> float:
-    """Returns the amplitude (m) of the harmonic of this period over whole periods at the end."""
-    whole = math.floor((UNTIL - START) / period) * period
-    chosen = series.t >= UNTIL - whole
-    t, x = series.t[chosen], series.values[chosen]
-    phase = 2.0 * np.pi * t / period
-    basis = np.stack([np.cos(phase), np.sin(phase), np.ones_like(phase), t], axis=1)
-    cosine, sine, *_ = np.linalg.lstsq(basis, x, rcond=None)[0]
-    return float(np.hypot(cosine, sine))
-
-
 def main() -> None:
     """Runs the waves, prints both RAOs and checks the difference."""
     options = argparse.ArgumentParser(description=__doc__)
@@ -126,7 +115,7 @@ def main() -> None:
             pt.run(flume(period, given.dp, box), out=out / f"{period:g}-{box}", report=False) for box in (False, True)
         ]
         names = ("elevation.eta", "heave")
-        wave, answer = (amplitude(run.series[name], period) for run, name in zip(runs, names, strict=True))
+        wave, answer = (abs(run.series[name].harmonic(period, START)) for run, name in zip(runs, names, strict=True))
         print(f"period {period:g} s: wave {1e3 * wave:.1f} mm, heave {1e3 * answer:.1f} mm")
         heave.append(answer / wave)
     measured = pt.Rao(

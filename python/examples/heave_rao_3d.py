@@ -77,17 +77,6 @@ every = 0.01
     )
 
 
-def harmonic(series: pt.Series, period: float) -> complex:
-    """Returns amplitude (m) and phase of the harmonic of this period, as the factor of exp(iωt), over whole periods at the end."""
-    whole = math.floor((UNTIL - START) / period) * period
-    chosen = series.t >= UNTIL - whole
-    t, x = series.t[chosen], series.values[chosen]
-    angle = 2.0 * np.pi * t / period
-    basis = np.stack([np.cos(angle), np.sin(angle), np.ones_like(angle), t], axis=1)
-    cosine, sine, *_ = np.linalg.lstsq(basis, x, rcond=None)[0]
-    return complex(cosine, -sine)
-
-
 def main() -> None:
     """Runs the waves, prints both RAOs and checks the difference."""
     options = argparse.ArgumentParser(description=__doc__)
@@ -109,7 +98,7 @@ def main() -> None:
             for sphere in (False, True)
         ]
         names = ("elevation.eta", "heave")
-        wave, answer = (harmonic(run.series[name], period) for run, name in zip(runs, names, strict=True))
+        wave, answer = (run.series[name].harmonic(period, START) for run, name in zip(runs, names, strict=True))
         print(f"period {period:g} s: wave {1e3 * abs(wave):.1f} mm, heave {1e3 * abs(answer):.1f} mm")
         heave.append(answer / wave)
     measured = pt.Rao(

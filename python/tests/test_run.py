@@ -81,6 +81,17 @@ def test_a_stopped_run_goes_on_to_the_same_bits(tank: pt.Scene, tmp_path: Path, 
         pt.resume(done.folder)
 
 
+def test_a_harmonic_is_found_beside_a_mean_and_a_trend() -> None:
+    t = np.linspace(0.0, 4.3, 431)
+    values = 0.2 * np.cos(2.0 * np.pi * t / 1.2 + 0.7) + 0.05 + 0.01 * t
+    series = pt.Series("box.heave_m", t, values, "m")
+    found = series.harmonic(1.2, since=1.0)
+    assert abs(found) == pytest.approx(0.2, abs=1e-9) and np.angle(found) == pytest.approx(0.7, abs=1e-9)
+    for period in (5.0, 0.0, -1.0):
+        with pytest.raises(pt.UsageError, match="whole period"):
+            series.harmonic(period)
+
+
 def test_results_are_arrays_with_units(tank: pt.Scene, tmp_path: Path) -> None:
     run = pt.run(tank, out=tmp_path / "run", report=False)
     heave = run.series["heave"]

@@ -240,7 +240,7 @@ impl<const D: usize> Moorings<D> {
         let distance = |(i, bounds): &(usize, Bounds<D>)| {
             let solid = &solids[*i];
             let there = bounds.contains(&at) && !solid.boundary.is_empty();
-            there.then(|| (*i, solid.spec.shape.signed_distance(&solid.kinematics.pose.local(&at))))
+            there.then(|| (*i, solid.distance(&at)))
         };
         let nearest = self.fixed.iter().filter_map(distance).min_by(|a, b| a.1.total_cmp(&b.1));
         let bed = nearest.filter(|(_, distance)| *distance < self.bed_reach).map(|(i, distance)| {

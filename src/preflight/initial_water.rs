@@ -68,10 +68,7 @@ fn check_support<const D: usize>(
     let is_carried = |x: &&Vector<D>| {
         let mut below = **x;
         below[D - 1] -= CARRIED * dp;
-        let by_solid = context
-            .solids()
-            .iter()
-            .any(|solid| solid.spec.shape.signed_distance(&solid.kinematics.pose.local(&below)) < 0.5 * dp);
+        let by_solid = context.solids().iter().any(|solid| solid.distance(&below) < 0.5 * dp);
         let mut by_water = false;
         context.system.visit_fluid_near(x, &mut |_, y, _| by_water |= y[D - 1] < x[D - 1] - 0.5 * dp);
         by_solid || by_water

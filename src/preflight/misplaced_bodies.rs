@@ -78,7 +78,7 @@ impl<const D: usize> PreflightContext<'_, D> {
 
     fn distant_attachment(&self, kind: &str, name: &str, solid: &Solid<D>, at: &Vector<D>) -> Option<Finding> {
         let size = solid.spec.shape.bounds().size().norm();
-        let off = solid.spec.shape.signed_distance(&solid.kinematics.pose.local(at));
+        let off = solid.distance(at);
         (matches!(solid.spec.role, Role::Free(_)) && off > size).then(|| {
             let body = &solid.spec.name;
             let what = format!("{kind} \"{name}\" is made fast to \"{body}\" {} m off it", three_digits(off));

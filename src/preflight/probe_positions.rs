@@ -70,7 +70,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         let at = coordinates(&x);
         let inside = |solid: &&Solid<D>| {
             // A probe may lie on a face.
-            solid.spec.shape.signed_distance(&solid.kinematics.pose.local(&x)) < -1e-9
+            solid.distance(&x) < -1e-9
         };
         if let Some(solid) = self.solids().iter().find(inside) {
             let what = format!("probe \"{name}\" at {at} m is inside solid \"{}\"", solid.spec.name);

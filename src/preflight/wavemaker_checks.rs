@@ -105,9 +105,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         let deep = site.thickness();
         let heights = (under / (0.25 * dp)).round() as usize;
         let across = (deep / (0.25 * dp)).ceil() as usize;
-        let is_wall = |x: &Vector<D>| {
-            others().any(|other| other.spec.shape.signed_distance(&other.kinematics.pose.local(x)) < 1e-6 * dp)
-        };
+        let is_wall = |x: &Vector<D>| others().any(|other| other.distance(x) < 1e-6 * dp);
         let is_open = |k: &usize| {
             let mut x = site.face;
             x[D - 1] = bottom - (*k as f64 + 0.5) * under / heights as f64;
@@ -130,7 +128,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         let (dp, r) = (self.dp(), self.system.fluid().r);
         let ahead = |x: &Vector<D>| site.distance_ahead(x).filter(|ahead| *ahead > 0.0);
         let nearest = r.iter().filter_map(ahead).fold(f64::INFINITY, f64::min);
-        let off = |x: &Vector<D>| paddle.spec.shape.signed_distance(&paddle.kinematics.pose.local(x));
+        let off = |x: &Vector<D>| paddle.distance(x);
         let near = r.iter().filter(|x| ahead(x).is_some_and(|ahead| ahead < 4.0 * dp));
         let nearest = near.map(off).reduce(f64::min).unwrap_or(nearest);
         let gap = nearest - 0.5 * dp;

@@ -414,16 +414,16 @@ impl<const D: usize> SceneParts<D> {
         };
         let origins = || filled.r.iter().zip(&home).map(nearest);
         let levels = origins().map(|body| body.map_or(still.level, |body| body.level)).collect();
-        let flow =
-            |(x, body): (&Vector<D>, Option<&WaterBody<D>>)| body.map_or((Vector::zeros(), 0.0), |b| b.flow.at(x));
         let moves = scene.water.iter().any(|water| water.velocity.is_some() || water.pressure.is_some());
-        let moving = || filled.r.iter().zip(origins()).take(if moves { filled.r.len() } else { 0 });
-        let (velocity, pressure): (Vec<Vector<D>>, Vec<f64>) = moving().map(flow).unzip();
-        for (x, body) in moving() {
+        let (mut velocity, mut pressure) = (Vec::new(), Vec::new());
+        for (x, body) in filled.r.iter().zip(origins()).take(if moves { filled.r.len() } else { 0 }) {
             let number = body.and_then(|body| water.iter().position(|own| std::ptr::eq(own, body)));
             if let Some(number) = number.filter(|number| *number < scene.water.len()) {
                 water[number].flow.require_possible(ctx, &format!("water.{number}"), x, model.c0)?;
             }
+            let (v, p) = body.map_or((Vector::zeros(), 0.0), |body| body.flow.at(x));
+            velocity.push(v);
+            pressure.push(p);
         }
         if let Some(towed) = &driving.towed {
             note_start_of_tow(ctx, towed, &velocity);

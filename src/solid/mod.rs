@@ -200,6 +200,11 @@ impl<const D: usize> Solid<D> {
         matches!(self.spec.role, Role::Free(_))
     }
 
+    /// Signed distance (m) of `x` (m) from its face, negative inside.
+    pub(crate) fn distance(&self, x: &Vector<D>) -> f64 {
+        self.spec.shape.signed_distance(&self.kinematics.pose.local(x))
+    }
+
     /// Number of copies of its boundary particles.
     pub(crate) fn copies(&self) -> usize {
         1 << self.copied_axes.count_ones()

@@ -21,7 +21,7 @@
 
 use rayon::prelude::*;
 
-use super::{Boundary, System};
+use super::{Boundary, System, thin_layers::THICK};
 use crate::{
     geometry::{cells::PointCells, thin::thin_place},
     interaction::PairSums,
@@ -37,9 +37,6 @@ const FADING: [f64; 2] = [0.5, 1.0];
 
 /// Depth below the face of the particles that have the face's size, dp: the first row.
 const FIRST_ROW: f64 = 0.75;
-
-/// Depth below the face of the particles of a part thinner than dp, dp.
-const THIN: f64 = 0.499;
 
 /// Distance between neighbours in a film, dp: along the axes and the diagonals of a face.
 const NEIGHBOURS: f64 = 1.6;
@@ -84,6 +81,8 @@ struct FilmParticle<const D: usize> {
     /// Its place among the boundary particles near water, if it is one of them.
     near_water: Option<u32>,
     rim: Rim<D>,
+    /// The boundary particles of the other solid below it that see water through the solid, by their places among those near water.
+    covered: Vec<u32>,
 }
 
 impl<const D: usize> FilmParticle<D> {
@@ -97,16 +96,6 @@ struct Film<const D: usize> {
     solid: usize,
     other: usize,
     particles: Vec<FilmParticle<D>>,
-    covered: Vec<Covered>,
-}
-
-/// A boundary particle of the other solid that sees water through the solid of a film.
-#[derive(Clone, Copy)]
-struct Covered {
-    /// Its place among the boundary particles near water.
-    near_water: u32,
-    /// Number of the particle of the film that covers it.
-    by: u32,
 }
 
 /// What a film does at one of its particles.
@@ -228,7 +217,7 @@ fn films_between<const D: usize>(system: &System<D>, i: usize, j: usize, r: &[Ve
     let around: Vec<Vec<usize>> = (0..points.len()).map(neighbours).collect();
     // Water beside the film stands half a row above the other solid, also beside a part so thin that its particle is lower.
     let beside = |k: usize| {
-        let lower = if depths[found[k]] < THIN * dp { (0.5 * dp - distance(&points[k])).max(0.0) } else { 0.0 };
+        let lower = if depths[found[k]] < THICK * dp { (0.5 * dp - distance(&points[k])).max(0.0) } else { 0.0 };
         points[k] + normal(&points[k]) * lower
     };
     let rim = |k: usize| {
@@ -244,11 +233,6 @@ fn films_between<const D: usize>(system: &System<D>, i: usize, j: usize, r: &[Ve
         }
     };
     let wet = system.neighbours.boundary_near_fluid();
-    let particle = |k: usize| FilmParticle {
-        boundary: found[k] as u32,
-        near_water: wet.binary_search(&(found[k] as u32)).ok().map(|place| place as u32),
-        rim: rim(k),
-    };
     let places = system.home_boundary_at(j, &poses[j]);
     let [first, end] = [places.start, places.end].map(|end| wet.partition_point(|&b| (b as usize) < end));
     let support = system.model.support_radius();
@@ -272,27 +256,25 @@ fn films_between<const D: usize>(system: &System<D>, i: usize, j: usize, r: &[Ve
         });
         nearest.1
     };
-    let covered: Vec<(usize, usize)> = match heights.iter().any(Option::is_some) {
-        false => Vec::new(),
-        true => {
-            let near = Bounds::around(&points).grown(support);
-            let of = |place: usize| {
-                let x = &r[wet[place] as usize];
-                near.contains(x).then(|| covers(x)).flatten().map(|m| (place, m))
-            };
-            (first..end).into_par_iter().with_min_len(PARTICLES_PER_TASK).filter_map(of).collect()
+    let mut covered = vec![Vec::new(); points.len()];
+    if heights.iter().any(Option::is_some) {
+        let near = Bounds::around(&points).grown(support);
+        for place in first..end {
+            let x = &r[wet[place] as usize];
+            if let Some(by) = near.contains(x).then(|| covers(x)).flatten() {
+                covered[by].push(place as u32);
+            }
         }
+    }
+    let mut particle = |k: usize| FilmParticle {
+        boundary: found[k] as u32,
+        near_water: wet.binary_search(&(found[k] as u32)).ok().map(|place| place as u32),
+        rim: rim(k),
+        covered: std::mem::take(&mut covered[k]),
     };
-    let film = |part: Vec<usize>| {
-        let particles: Vec<_> = part.iter().map(|&k| particle(k)).collect();
-        let by = |&(place, m): &(usize, usize)| {
-            let by = part.binary_search(&m).ok()? as u32;
-            Some(Covered { near_water: place as u32, by })
-        };
-        let covered = covered.iter().filter_map(by).collect();
-        Film { solid: i, other: j, particles, covered }
-    };
-    connected_parts(&around).into_iter().map(film).collect()
+    let mut film =
+        |part: Vec<usize>| Film { solid: i, other: j, particles: part.into_iter().map(&mut particle).collect() };
+    connected_parts(&around).into_iter().map(&mut film).collect()
 }
 
 /// Whether `x` (m) is in no solid at its pose of `poses`, nor beyond a symmetry plane.
@@ -319,16 +301,16 @@ pub(crate) fn loads<const D: usize>(system: &System<D>, sums: &[PairSums<D>]) ->
             loads[film.solid] += Load::from_force_at(&(at[0] - solid.kinematics.centre), force);
             loads[film.other] += Load::from_force_at(&(at[1] - other.kinematics.centre), -force);
         };
-        let forces = forces(system, film, water);
-        forces.iter().for_each(|FilmForce { at, force, .. }| act(*at, *force));
-        let (r, mass) = (&system.boundary.particles.r, system.particle_mass());
-        let near = system.neighbours.boundary_near_fluid();
-        for Covered { near_water, by } in film.covered.iter().filter(|covered| (covered.by as usize) < forces.len()) {
-            let (place, cover, by) = (*near_water as usize, &forces[*by as usize], &film.particles[*by as usize]);
-            let aside = r[near[place] as usize] - r[by.boundary as usize];
+        let (r, mass, near) =
+            (&system.boundary.particles.r, system.particle_mass(), system.neighbours.boundary_near_fluid());
+        for (particle, FilmForce { at, force, share }) in film.particles.iter().zip(forces(system, film, water)) {
+            act(at, force);
             // What lies below the rim sees as much water beside the film as through the solid.
-            let share = if by.at_rim() { 0.5 * cover.share } else { cover.share };
-            act(cover.at.map(|at| at + aside), sums[place].acceleration * (mass * share));
+            let share = if particle.at_rim() { 0.5 * share } else { share };
+            for &place in &particle.covered {
+                let aside = r[near[place as usize] as usize] - r[particle.boundary as usize];
+                act(at.map(|at| at + aside), sums[place as usize].acceleration * (mass * share));
+            }
         }
     }
     loads

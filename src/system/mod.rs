@@ -135,7 +135,7 @@ pub(crate) struct FluidRates<'a, const D: usize> {
 
 impl<'a, const D: usize> FluidRates<'a, D> {
     /// Acceleration and density rate of water particle `i`.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn of(&self, i: usize) -> PairSums<D> {
         let original = self.original(i);
         if original >= self.water {

@@ -92,8 +92,6 @@ impl SlipRates {
         let task = PARTICLES_PER_TASK;
         let water_rates: Vec<f64> = self.water.par_iter().with_min_len(task).map(of_water).collect();
         let boundary_rates: Vec<f64> = self.boundary.par_iter().with_min_len(task).map(of_boundary).collect();
-        self.rates.clear();
-        self.rates.resize(water.len(), 0.0);
         self.water.iter().zip(water_rates).for_each(|(these, rate)| self.rates[these.particle as usize] = rate);
         for (these, rate) in self.boundary.iter().zip(boundary_rates) {
             sums[these.particle as usize].compression_rate += rate;
@@ -119,6 +117,7 @@ pub(super) fn find<const D: usize>(system: &mut System<D>, r: &[Vector<D>]) {
     };
     let all = (0..water.len()).into_par_iter().with_min_len(PARTICLES_PER_TASK);
     slip.water = all.filter_map(beside).collect();
+    slip.rates = vec![0.0; water.len()];
     let near = neighbours.boundary_near_fluid();
     let mut waters = vec![Vec::new(); near.len()];
     for Neighbourhood { particle, others } in &slip.water {

@@ -27,7 +27,7 @@ use crate::{
 };
 
 /// Depth of a particle below its face, dp, from which on its part is not thinner than dp.
-const THICK: f64 = 0.499;
+pub(super) const THICK: f64 = 0.499;
 
 /// Distance between neighbours in a layer, dp: along the axes and the diagonals of its faces.
 const NEIGHBOURS: f64 = 1.6;

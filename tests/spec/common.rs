@@ -71,6 +71,13 @@ where
     Simulation::new(Scene::parse(text, Path::new(""), &[])?.build::<D>()?.setup)
 }
 
+/// The simulation of the 3-D scene `docs/measurements/NAME.toml` with these values set.
+pub fn measurement(name: &str, sets: &[(&str, &str)]) -> Result<Simulation<3>> {
+    let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("docs/measurements/{name}.toml"));
+    let sets: Vec<_> = sets.iter().map(|(key, value)| (key.to_string(), value.to_string())).collect();
+    Simulation::new(Scene::read(&scene, &sets)?.build::<3>()?.setup)
+}
+
 /// Makes `n` steps.
 pub fn steps<const D: usize>(sim: &mut Simulation<D>, n: usize)
 where

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import html
 import json
+import math
 import os
 import sys
 import time as clock
@@ -65,6 +66,24 @@ class Series:
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> NDArray[Any]:
         return np.array(self.values, dtype=dtype)
+
+    def harmonic(self, period: float, since: float = 0.0) -> complex:
+        """Returns the harmonic of `period` (s) as the factor of exp(iωt), in the unit of the values, beside a mean and a trend.
+
+        Least squares over the whole periods at the end that begin at or after the time `since` (s).
+
+        Raises:
+            UsageError: there is no whole period.
+        """
+        whole = math.floor((self.t[-1] - since) / period) * period if period > 0.0 and len(self) else 0.0
+        if not whole > 0.0:
+            raise usage(f"{self.name} has no whole period of {period:g} s after {since:g} s", "give a shorter period")
+        chosen = self.t >= self.t[-1] - whole
+        t, x = self.t[chosen], self.values[chosen]
+        phase = 2.0 * np.pi * t / period
+        basis = np.stack([np.cos(phase), np.sin(phase), np.ones_like(phase), t], axis=1)
+        cosine, sine, *_ = np.linalg.lstsq(basis, x, rcond=None)[0]
+        return complex(cosine, -sine)
 
     def __len__(self) -> int:
         return len(self.values)

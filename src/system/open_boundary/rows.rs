@@ -161,7 +161,7 @@ pub(super) fn spread<const D: usize>(system: &System<D>, number: usize) -> Vec<(
 /// Whether `x` (m) is inside a fixed solid.
 fn is_in_wall<const D: usize>(system: &System<D>, x: &Vector<D>) -> bool {
     let mut fixed = system.solids.iter().filter(|solid| matches!(solid.spec.role, Role::Fixed));
-    fixed.any(|solid| solid.spec.shape.signed_distance(&solid.kinematics.pose.local(x)) < 0.0)
+    fixed.any(|solid| solid.distance(x) < 0.0)
 }
 
 /// The positions (m) of the rows of face number `number` at the present level: the initial rows below it and, above each column

@@ -1,7 +1,7 @@
 //! Thin parts. One layer of boundary particles stands for those thinner than dp, which have the buoyancy of their volume. In 3-D the
 //! faces of parts thinner than 2.5 dp keep water out where the layers have gaps.
 
-use std::{fs, path::Path};
+use std::fs;
 
 use pontoon::{
     Result,
@@ -11,7 +11,7 @@ use pontoon::{
     solid::Dim,
 };
 
-use crate::common::{TestFolder, run_to, scene_simulation, time_mean, water_momentum};
+use crate::common::{TestFolder, measurement, run_to, scene_simulation, time_mean, water_momentum};
 
 const G: f64 = 9.81;
 
@@ -290,13 +290,6 @@ fn a_thin_vessel_carries_the_weight_of_its_water() -> Result<()> {
         assert!((force / (-1000.0 * G * 0.008) - 1.0).abs() < 0.02, "{thickness} m: {force} N for 78.5 N of water");
     }
     Ok(())
-}
-
-/// The simulation of `docs/measurements/NAME.toml` with these values set.
-fn measurement(name: &str, sets: &[(&str, &str)]) -> Result<Simulation<3>> {
-    let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("docs/measurements/{name}.toml"));
-    let sets: Vec<_> = sets.iter().map(|(key, value)| (key.to_string(), value.to_string())).collect();
-    Simulation::new(Scene::read(&scene, &sets)?.build::<3>()?.setup)
 }
 
 /// A free plate of 0.2 dp moves alike at the usual steps and at steps of a quarter, to 0.05 dp in 0.6 s. A neutral one stays within 0.2 dp,

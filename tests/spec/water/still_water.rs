@@ -1,12 +1,9 @@
 //! Still water: hydrostatic pressure, constant level and small spurious velocities.
 
-use std::path::Path;
-
 use pontoon::{
     Result,
     math::Vector,
     model::{Model, PairLoopKind, PressureGradient, Shifting, Slip, TimeScheme, Viscosity, Walls},
-    scene::Scene,
     simulation::{Setup, Simulation},
     sph::{particle_shifting::Shift, viscosity::Artificial},
 };
@@ -131,9 +128,7 @@ fn without_viscosity_water_slips_whatever_the_slip() {
 #[test]
 fn water_that_sticks_to_its_tank_stays_at_rest_in_3d() -> Result<()> {
     let energy = |slip: &str| -> Result<f64> {
-        let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/measurements/no-slip-corner.toml");
-        let sets = [("model.slip".to_string(), format!("\"{slip}\""))];
-        let mut sim = Simulation::new(Scene::read(&scene, &sets)?.build::<3>()?.setup)?;
+        let mut sim = common::measurement("no-slip-corner", &[("model.slip", &format!("\"{slip}\""))])?;
         let kinetic = |sim: &Simulation<3>| [sim.system().fluid().v.iter().map(|v| v.norm_squared()).sum::<f64>()];
         Ok(common::time_mean(&mut sim, 1.5, 2.4, kinetic)?[0])
     };
