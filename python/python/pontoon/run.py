@@ -77,7 +77,7 @@ class Series:
         """
         whole = math.floor((self.t[-1] - since) / period) * period if period > 0.0 and len(self) else 0.0
         if not whole > 0.0:
-            raise usage(f"{self.name} has no whole period of {period:g} s after {since:g} s", "give a shorter period")
+            raise usage(f"{self.name} has no whole period of {period:g} s after {since:g} s", "give a period above 0 s that the series holds")
         chosen = self.t >= self.t[-1] - whole
         t, x = self.t[chosen], self.values[chosen]
         phase = 2.0 * np.pi * t / period
