@@ -12,7 +12,7 @@ use nalgebra::DVector;
 
 use super::{
     catenary::{Catenary, CatenarySpan},
-    forces::{BedPlane, NodeSurroundings, bed_reaction, bending_forces, node_load},
+    forces::{BedPlane, NodeSurroundings, bed_load, bed_reaction, bending_forces, water_load},
     line::MooringLine,
     segment::{SegmentPull, segment_pulls},
 };
@@ -183,9 +183,10 @@ impl<const D: usize> MooringLine<D> {
         let pulls = segment_pulls(self, around, gravity);
         let at = |i: usize| {
             let here = NodeSurroundings { water_velocity: still, ..around[i] };
-            let load = (self.share(i), &self.bodies[i]);
-            let hold = self.hold(i, &here, &pulls);
-            node_load(&self.material, load, (&self.state.x[i], &still, &still), &here, (gravity, &hold)).force
+            let (share, hold) = (self.share(i), self.hold(i, &here, &pulls));
+            let water = water_load(&self.material, (share, &self.bodies[i]), (&still, &still), &here, gravity);
+            let bed = bed_load(&self.material, share, (&self.state.x[i], &still), &here, (gravity, &hold));
+            water.force + bed.map_or(still, |bed| bed.normal * bed.reaction)
         };
         let mut forces: Vec<Vector<D>> = (0..=n).map(at).collect();
         for s in 0..n {

@@ -107,17 +107,26 @@ impl LineMaterial {
     }
 }
 
-/// The force on a node, and the resistance to its motion.
+/// The load of weight and water on a node.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct NodeLoad<const D: usize> {
+pub(super) struct WaterLoad<const D: usize> {
     /// Force at zero velocity of the node, N.
     pub(super) force: Vector<D>,
     /// Resistance of the water, N s/m: the force is −C v.
     pub(super) drag: Matrix<D>,
-    /// Resistance of the bed, N s/m.
-    pub(super) bed: Matrix<D>,
     /// Mass with added mass, kg.
     pub(super) mass: Matrix<D>,
+}
+
+/// The load of a bed on a node without its friction.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct BedLoad<const D: usize> {
+    /// Unit vector out of the bed.
+    pub(super) normal: Vector<D>,
+    /// Force along `normal` at zero velocity of the node, N.
+    pub(super) reaction: f64,
+    /// Resistance to motion along `normal`, N s/m.
+    pub(super) damping: f64,
 }
 
 /// How a node is held.
@@ -129,11 +138,6 @@ pub(super) enum NodeHold<const D: usize> {
     Between(Vector<D>),
     /// An end that something holds, with the pull (N) of its segment on it.
     Held(Vector<D>),
-}
-
-/// Projection on the direction of the unit vector `t`; zero if `t` is.
-fn along<const D: usize>(t: &Vector<D>) -> Matrix<D> {
-    t * t.transpose()
 }
 
 /// Height above a bed over which the bed takes up the load of a held end, over the half segment of this end, –.
@@ -191,51 +195,49 @@ pub(super) fn touchdown(material: &LineMaterial, segment: f64, weight: f64, pull
     [0.5 * share * weight * segment * left * left, share * left * slope]
 }
 
-/// The load of weight, water and bed on a node at `x` (m) with the velocity `v` (m/s), the length `share` (m) of line and a point
-/// mass `body`. `t` is the tangent there, and `gravity` is in m/s². `hold` says what holds the node.
-pub(super) fn node_load<const D: usize>(
+/// The load of weight and water on a node with the velocity `v` (m/s), the length `share` (m) of line and a point mass `body`.
+/// `t` is the tangent there, and `gravity` is in m/s².
+pub(super) fn water_load<const D: usize>(
     material: &LineMaterial,
     (share, body): (f64, &NodeBody),
-    (x, v, t): (&Vector<D>, &Vector<D>, &Vector<D>),
+    (v, t): (&Vector<D>, &Vector<D>),
     around: &NodeSurroundings<D>,
-    (gravity, hold): (&Vector<D>, &NodeHold<D>),
-) -> NodeLoad<D> {
+    gravity: &Vector<D>,
+) -> WaterLoad<D> {
     let m = material;
-    let (tangential, identity) = (along(t), Matrix::<D>::identity());
-    let across = identity - tangential;
+    let tangential = t * t.transpose();
+    let tensor = |across: f64, along: f64| Matrix::identity() * across + tangential * (along - across);
     let displaced = around.wet * m.displaced() * share;
     let dry = m.mass * share + body.mass;
     let afloat = around.wet * m.water_density * body.volume;
-    let mass = identity * (dry + afloat * body.added_mass)
-        + across * (displaced * m.added_mass[0])
-        + tangential * (displaced * m.added_mass[1]);
+    let all = dry + afloat * body.added_mass;
+    let mass = tensor(all + displaced * m.added_mass[0], all + displaced * m.added_mass[1]);
     let relative = around.water_velocity - v;
     let axial = t.dot(&relative);
     let normal = (relative - t * axial).norm();
     let pressure = 0.5 * m.water_density * around.wet;
     let side = pressure * m.diameter * share;
-    let drag = across * (side * m.drag[0] * normal)
-        + tangential * (side * PI * m.drag[1] * axial.abs())
-        + identity * (pressure * body.drag_area * relative.norm());
-    let mut load = NodeLoad {
-        force: gravity * (dry - displaced - afloat) + drag * around.water_velocity,
-        drag,
-        bed: Matrix::zeros(),
-        mass,
-    };
-    let Some(bed) = around.bed else { return load };
-    let depth = m.depth(&bed, x);
-    let [reaction, _] = bed_reaction(m, share, (&bed, depth), around.wet, (gravity, hold));
-    if reaction > 0.0 {
-        load.force += bed.normal * reaction;
-    }
-    if depth > 0.0 && !matches!(hold, NodeHold::Held(_)) {
-        let damping = m.bed_damping * m.contact_width * share;
-        // The bed does not hold back what leaves it.
-        let pressed = reaction - damping * v.dot(&bed.normal);
-        load.bed += along(&bed.normal) * if pressed > 0.0 { damping } else { 0.0 };
-    }
-    load
+    let ball = pressure * body.drag_area * relative.norm();
+    let drag = tensor(ball + side * m.drag[0] * normal, ball + side * PI * m.drag[1] * axial.abs());
+    WaterLoad { force: gravity * (dry - displaced - afloat) + drag * around.water_velocity, drag, mass }
+}
+
+/// The load of the bed on a node at `x` (m) with the velocity `v` (m/s) and the length `share` (m) of line; `None` without a bed.
+/// `gravity` is in m/s², and `hold` says what holds the node.
+pub(super) fn bed_load<const D: usize>(
+    material: &LineMaterial,
+    share: f64,
+    (x, v): (&Vector<D>, &Vector<D>),
+    around: &NodeSurroundings<D>,
+    (gravity, hold): (&Vector<D>, &NodeHold<D>),
+) -> Option<BedLoad<D>> {
+    let bed = around.bed?;
+    let depth = material.depth(&bed, x);
+    let [reaction, _] = bed_reaction(material, share, (&bed, depth), around.wet, (gravity, hold));
+    let damping = material.bed_damping * material.contact_width * share;
+    // The bed does not hold back what leaves it.
+    let damps = depth > 0.0 && !matches!(hold, NodeHold::Held(_)) && reaction > damping * v.dot(&bed.normal);
+    Some(BedLoad { normal: bed.normal, reaction: reaction.max(0.0), damping: if damps { damping } else { 0.0 } })
 }
 
 /// The force (N) with which `bed` supports a node with the length `share` (m) of line, `depth` (m) inside the bed, and the

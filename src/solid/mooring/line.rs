@@ -7,19 +7,30 @@
 //!   (M + h/2 C + h C_bed) Δv = h (f − (C + C_bed) v)
 //!
 //! Damping of any strength is therefore stable, and elasticity only requires h ω < 2. The step is h = 0.7/ω, with which a line
-//! without losses keeps its energy within 1 %. Axial damping couples neighbouring nodes along their segment, so that the
-//! block-tridiagonal matrix has couplings of rank one.
+//! without losses keeps its energy within 1 %. M and C of the water change slowly: they are taken anew every eight inner steps.
+//!
+//! Axial damping couples neighbouring nodes along their segment. Its impulses λ on the segments are the unknowns: with the inverse
+//! A of the matrix of each node, its other impulse r, and the half damping b = h BA/(2 l₀),
+//!
+//!   Δvᵢ = Aᵢ (rᵢ + qᵢ λᵢ − qᵢ₋₁ λᵢ₋₁),  λᵢ = bᵢ qᵢ·(Δvᵢ₊₁ − Δvᵢ)
+//!
+//! which is a tridiagonal system of numbers.
 
 use serde::{Deserialize, Serialize};
 
 use super::{
-    forces::{LineMaterial, NodeBody, NodeHold, NodeLoad, NodeSurroundings, bending_forces, friction, node_load},
+    forces::{
+        LineMaterial, NodeBody, NodeHold, NodeSurroundings, WaterLoad, bed_load, bending_forces, friction, water_load,
+    },
     segment::{SegmentPull, segment_pull, segment_pulls},
 };
 use crate::math::{Matrix, Vector};
 
 /// Length of an inner step times the highest frequency of the line, –. Steps are stable up to 2, but at 1.2 a free line gains 1 % of energy.
 const INNER_STEP: f64 = 0.7;
+
+/// Inner steps for which mass and resistance of the water are constant. The fastest motion of a line takes nine.
+const WATER_STEPS: usize = 8;
 
 /// The state of a line in a checkpoint.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -59,14 +70,21 @@ pub(crate) struct MooringLine<const D: usize> {
 /// Arrays of an inner step, kept from one to the next.
 #[derive(Clone, Default)]
 pub(super) struct Workspace<const D: usize> {
+    /// Inner steps since the begin of the step.
+    inner_steps: usize,
     /// Pull of each segment.
     pub(super) pulls: Vec<SegmentPull<D>>,
-    /// Matrix of each node, and its inverse after the elimination.
+    /// The water around each node.
+    nodes: Vec<NodeInWater<D>>,
+    /// Matrix M + h/2 C + h C_bed of each node, kg, and its inverse.
     pub(super) matrix: Vec<Matrix<D>>,
-    /// Impulse on each node, N s.
+    inverse: Vec<Matrix<D>>,
+    /// Impulse on each node without that of the axial damping by the change of the velocities, N s.
     pub(super) impulse: Vec<Vector<D>>,
-    /// Direction of each segment, and its coupling of both ends, kg.
-    pub(super) coupling: Vec<(Vector<D>, f64)>,
+    /// Coupling of the ends of each segment by its damping.
+    pub(super) coupling: Vec<AxialCoupling<D>>,
+    /// λ of each segment, N s.
+    lambda: Vec<f64>,
     /// Change of the velocity of each node, m/s.
     pub(super) change: Vec<Vector<D>>,
     /// Change of the velocity of each node for a unit change of the velocity of each end along its segment, –; for joined lines.
@@ -74,6 +92,28 @@ pub(super) struct Workspace<const D: usize> {
     /// Impulse (N s) of the water on each node at constant velocity, and its decrease for a unit change of the velocity, kg;
     /// empty unless the line acts on the water.
     pub(super) from_water: Vec<(Vector<D>, Matrix<D>)>,
+}
+
+/// What the water does to a node for some inner steps.
+#[derive(Clone, Copy)]
+struct NodeInWater<const D: usize> {
+    load: WaterLoad<D>,
+    /// M + h/2 C, kg, and its inverse.
+    matrix: Matrix<D>,
+    inverse: Matrix<D>,
+}
+
+/// How the axial damping of a segment couples its ends.
+#[derive(Clone, Copy)]
+pub(super) struct AxialCoupling<const D: usize> {
+    /// Direction of the segment.
+    pub(super) q: Vector<D>,
+    /// b, kg.
+    pub(super) b: f64,
+    /// A q of its first and its second node, 1/kg; zero at a node whose change of velocity is given.
+    sides: [Vector<D>; 2],
+    /// Coefficient of the λ before, inverse of the pivot, and coefficient of the λ behind, –.
+    factors: [f64; 3],
 }
 
 impl<const D: usize> MooringLine<D> {
@@ -180,14 +220,15 @@ impl<const D: usize> MooringLine<D> {
         gravity: &Vector<D>,
     ) -> [Vector<D>; 2] {
         let mut impulses = [Vector::zeros(); 2];
-        let pulls = segment_pulls(self, around, gravity);
+        self.work.inner_steps = 0;
+        self.work.pulls = segment_pulls(self, around, gravity);
         if let Some(from_water) = &mut self.water_impulses {
             from_water.fill(Vector::zeros());
         }
         for k in (0..2).filter(|k| self.held[*k]) {
             let i = self.end_node(k);
             let velocity = (ends[k] - self.state.x[i]) / dt;
-            let (mass, change) = (self.load(i, around, gravity, &pulls).mass, velocity - self.state.v[i]);
+            let (mass, change) = (self.water_load(i, &around[i], gravity).mass, velocity - self.state.v[i]);
             impulses[k] -= mass * change;
             self.state.v[i] = velocity;
             let added = mass - Matrix::identity() * self.dry_mass(i);
@@ -233,16 +274,10 @@ impl<const D: usize> MooringLine<D> {
         self.material.mass * self.share(i) + self.bodies[i].mass
     }
 
-    fn load(
-        &self,
-        i: usize,
-        around: &[NodeSurroundings<D>],
-        gravity: &Vector<D>,
-        pulls: &[SegmentPull<D>],
-    ) -> NodeLoad<D> {
-        let (x, v, hold) = (&self.state.x[i], &self.state.v[i], self.hold(i, &around[i], pulls));
-        let place = (x, v, &self.tangent(i));
-        node_load(&self.material, (self.share(i), &self.bodies[i]), place, &around[i], (gravity, &hold))
+    /// The load of weight and water on node `i`.
+    fn water_load(&self, i: usize, around: &NodeSurroundings<D>, gravity: &Vector<D>) -> WaterLoad<D> {
+        let motion = (&self.state.v[i], &self.tangent(i));
+        water_load(&self.material, (self.share(i), &self.bodies[i]), motion, around, gravity)
     }
 
     /// How node `i` is held near a bed, with the `pulls` of the segments.
@@ -261,26 +296,53 @@ impl<const D: usize> MooringLine<D> {
     pub(super) fn assemble(&mut self, h: f64, around: &[NodeSurroundings<D>], gravity: &Vector<D>) {
         let n = self.segments();
         let mut work = std::mem::take(&mut self.work);
-        let Workspace { matrix, impulse, coupling, from_water, pulls, .. } = &mut work;
-        pulls.clear();
-        pulls.extend((0..n).map(|s| segment_pull(self, s, around, gravity)));
+        let Workspace { inner_steps, nodes, pulls, matrix, inverse, impulse, coupling, from_water, .. } = &mut work;
+        if *inner_steps % WATER_STEPS == 0 {
+            let in_water = |i: usize| {
+                let load = self.water_load(i, &around[i], gravity);
+                let matrix = load.mass + load.drag * (0.5 * h);
+                NodeInWater { load, matrix, inverse: inverted(matrix) }
+            };
+            nodes.clear();
+            nodes.extend((0..=n).map(in_water));
+        }
+        *inner_steps += 1;
+        for (s, pull) in pulls.iter_mut().enumerate() {
+            *pull = segment_pull(self, s, around, gravity, pull.tension);
+        }
         matrix.clear();
+        inverse.clear();
         impulse.clear();
         coupling.clear();
         from_water.clear();
-        for i in 0..=n {
-            let load = self.load(i, around, gravity, pulls);
-            matrix.push(load.mass + load.drag * (0.5 * h) + load.bed * h);
+        for (i, NodeInWater { load, matrix: in_water, inverse: its_inverse }) in nodes.iter().enumerate() {
+            let (x, v, share) = (&self.state.x[i], &self.state.v[i], self.share(i));
             if self.water_impulses.is_some() {
                 let added = load.mass - Matrix::identity() * self.dry_mass(i);
-                let steady = load.drag * (around[i].water_velocity - self.state.v[i]) * h;
+                let steady = load.drag * (around[i].water_velocity - v) * h;
                 from_water.push((steady, added + load.drag * (0.5 * h)));
             }
-            let mut force = load.force - (load.drag + load.bed) * self.state.v[i];
-            if self.material.bed_friction > 0.0 {
-                let (x, grip) = (&self.state.x[i], &mut self.state.grips[i]);
-                let share = if i == 0 || i == n { 0.5 } else { 1.0 } * self.state.segment;
-                force += friction(&self.material, share, x, around[i].bed, grip);
+            let mut force = load.force - load.drag * v;
+            let hold = self.hold(i, &around[i], pulls);
+            let bed = bed_load(&self.material, share, (x, v), &around[i], (gravity, &hold));
+            let damping = bed.map_or(0.0, |bed| bed.damping);
+            if let Some(bed) = bed {
+                force += bed.normal * (bed.reaction - damping * bed.normal.dot(v));
+                if self.material.bed_friction > 0.0 {
+                    force += friction(&self.material, share, x, around[i].bed, &mut self.state.grips[i]);
+                }
+            } else {
+                self.state.grips[i] = None;
+            }
+            match bed.filter(|_| damping > 0.0) {
+                Some(bed) => {
+                    matrix.push(in_water + bed.normal * bed.normal.transpose() * (damping * h));
+                    inverse.push(inverted(matrix[i]));
+                }
+                None => {
+                    matrix.push(*in_water);
+                    inverse.push(*its_inverse);
+                }
             }
             impulse.push(force * h);
         }
@@ -291,11 +353,7 @@ impl<const D: usize> MooringLine<D> {
             let pull = (segment.pull + q * (damping * rate)) * h;
             impulse[s] += pull;
             impulse[s + 1] -= pull;
-            let half = 0.5 * h * damping;
-            let block = q * q.transpose() * half;
-            matrix[s] += block;
-            matrix[s + 1] += block;
-            coupling.push((q, half));
+            coupling.push(AxialCoupling { q, b: 0.5 * h * damping, sides: [Vector::zeros(); 2], factors: [0.0; 3] });
         }
         if self.material.bending > 0.0 {
             let energy = self.material.bending / self.state.segment;
@@ -314,12 +372,9 @@ impl<const D: usize> MooringLine<D> {
         self.assemble(h, around, gravity);
         let n = self.segments();
         let inner = [usize::from(self.held[0]), if self.held[1] { n - 1 } else { n }];
-        let Workspace { matrix, impulse, coupling, change, .. } = &mut self.work;
-        change.clear();
-        change.resize(n + 1, Vector::zeros());
-        eliminate(matrix, coupling, inner);
-        substitute(matrix, impulse, coupling, inner, change);
-        self.state.v.iter_mut().zip(&*change).for_each(|(v, change)| *v += change);
+        self.work.eliminate(inner);
+        self.work.solve(inner);
+        self.state.v.iter_mut().zip(&self.work.change).for_each(|(v, change)| *v += change);
         self.add_end_impulses(impulses);
         self.add_water_impulses();
     }
@@ -335,13 +390,9 @@ impl<const D: usize> MooringLine<D> {
     /// Adds the impulses (N s) of the last change of the velocities on the supports of the ends.
     pub(super) fn add_end_impulses(&self, impulses: &mut [Vector<D>; 2]) {
         let (n, Workspace { impulse, coupling, change, .. }) = (self.segments(), &self.work);
-        if self.held[0] {
-            let (q, half) = coupling[0];
-            impulses[0] += impulse[0] + q * (half * q.dot(&change[1]));
-        }
-        if self.held[1] {
-            let (q, half) = coupling[n - 1];
-            impulses[1] += impulse[n] + q * (half * q.dot(&change[n - 1]));
+        let sides = [(0, 1, 0), (n - 1, n - 1, n)];
+        for (k, (s, beside, end)) in sides.into_iter().enumerate().filter(|(k, _)| self.held[*k]) {
+            impulses[k] += impulse[end] + coupling[s].along(&change[beside]);
         }
     }
 
@@ -351,7 +402,7 @@ impl<const D: usize> MooringLine<D> {
         let mass = |i: usize| self.material.mass * self.share(i) + self.bodies[i].mass;
         let nodes = || self.state.x.iter().zip(&self.state.v).enumerate();
         let stretch = |s: usize| {
-            let SegmentPull { tension, sag, .. } = segment_pull(self, s, around, gravity);
+            let SegmentPull { tension, sag, .. } = segment_pull(self, s, around, gravity, 0.0);
             // What sags has lost height.
             let lost = if sag > 0.0 { sag / (12.0 * tension) } else { 0.0 };
             self.state.segment * (0.5 * tension * tension / self.material.stiffness - lost)
@@ -368,43 +419,66 @@ impl<const D: usize> MooringLine<D> {
     }
 }
 
-/// Eliminates the nodes from `first` to `last`: replaces their diagonal blocks `matrix` by the inverses that [`substitute`]
-/// needs. The blocks beside the diagonal are −b q qᵀ of `coupling`.
-pub(super) fn eliminate<const D: usize>(
-    matrix: &mut [Matrix<D>],
-    coupling: &[(Vector<D>, f64)],
-    [first, last]: [usize; 2],
-) {
-    for i in first..=last {
-        if i > first {
-            let (q, b) = coupling[i - 1];
-            let y = matrix[i - 1] * q;
-            matrix[i] -= q * q.transpose() * (b * b * q.dot(&y));
-        }
-        matrix[i] = matrix[i].try_inverse().unwrap_or_else(Matrix::zeros);
+/// The inverse of a node's `matrix`; zero if there is none.
+fn inverted<const D: usize>(matrix: Matrix<D>) -> Matrix<D> {
+    matrix.try_inverse().unwrap_or_else(Matrix::zeros)
+}
+
+impl<const D: usize> AxialCoupling<D> {
+    /// The impulse (N s) on one end for the `change` of the velocity of the other, m/s.
+    pub(super) fn along(&self, change: &Vector<D>) -> Vector<D> {
+        self.q * (self.b * self.q.dot(change))
     }
 }
 
-/// Solves for the changes of velocity of the nodes from `first` to `last` by their impulses, with the `matrix` of [`eliminate`].
-pub(super) fn substitute<const D: usize>(
-    matrix: &[Matrix<D>],
-    impulse: &mut [Vector<D>],
-    coupling: &[(Vector<D>, f64)],
-    [first, last]: [usize; 2],
-    change: &mut [Vector<D>],
-) {
-    for i in first + 1..=last {
-        let (q, b) = coupling[i - 1];
-        let along = b * (matrix[i - 1] * q).dot(&impulse[i - 1]);
-        impulse[i] += q * along;
-    }
-    for i in (first..=last).rev() {
-        let mut right = impulse[i];
-        if i < last {
-            let (q, b) = coupling[i];
-            right += q * (b * q.dot(&change[i + 1]));
+impl<const D: usize> Workspace<D> {
+    /// Factorises the system of λ. The velocities of the nodes from `first` to `last` change; those of the others are given.
+    pub(super) fn eliminate(&mut self, [first, last]: [usize; 2]) {
+        let Self { inverse, coupling, .. } = self;
+        let times =
+            |i: usize, q: &Vector<D>| if (first..=last).contains(&i) { inverse[i] * q } else { Vector::zeros() };
+        for (s, own) in coupling.iter_mut().enumerate() {
+            own.sides = [times(s, &own.q), times(s + 1, &own.q)];
         }
-        change[i] = matrix[i] * right;
+        let [mut before, mut behind] = [0.0; 2];
+        for s in 0..coupling.len() {
+            let AxialCoupling { q, b, sides: [low, high], .. } = coupling[s];
+            let next = coupling.get(s + 1).map_or(0.0, |next| next.q.dot(&high));
+            let pivot = 1.0 + b * (q.dot(&(low + high)) - before * behind);
+            coupling[s].factors = [b * before, 1.0 / pivot, b * next / pivot];
+            (before, behind) = (next, b * next / pivot);
+        }
+    }
+
+    /// Solves for `change` by `impulse`, after [`Workspace::eliminate`] for the same nodes.
+    pub(super) fn solve(&mut self, nodes: [usize; 2]) {
+        let mut change = std::mem::take(&mut self.change);
+        let impulse = std::mem::take(&mut self.impulse);
+        self.solve_for(&impulse, nodes, &mut change);
+        (self.change, self.impulse) = (change, impulse);
+    }
+
+    /// Solves for the changes of velocity `change` (m/s) of the nodes from `first` to `last` by the `impulse` (N s) on each node.
+    pub(super) fn solve_for(&mut self, impulse: &[Vector<D>], [first, last]: [usize; 2], change: &mut Vec<Vector<D>>) {
+        let Self { inverse, coupling, lambda, .. } = self;
+        change.clear();
+        change.resize(impulse.len(), Vector::zeros());
+        for i in first..=last {
+            change[i] = inverse[i] * impulse[i];
+        }
+        lambda.clear();
+        let mut before = 0.0;
+        for (own, ends) in coupling.iter().zip(change.windows(2)) {
+            let [coefficient, inverse_pivot, _] = own.factors;
+            before = (own.b * own.q.dot(&(ends[1] - ends[0])) + coefficient * before) * inverse_pivot;
+            lambda.push(before);
+        }
+        let mut behind = 0.0;
+        for (s, own) in coupling.iter().enumerate().rev() {
+            behind = lambda[s] + own.factors[2] * behind;
+            change[s] += own.sides[0] * behind;
+            change[s + 1] -= own.sides[1] * behind;
+        }
     }
 }
 

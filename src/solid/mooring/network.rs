@@ -12,7 +12,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::{
     forces::{NodeBody, NodeSurroundings},
-    line::{MooringLine, Workspace, eliminate, substitute},
+    line::{MooringLine, Workspace},
     specification::MooringSpec,
 };
 use crate::math::{Matrix, Vector};
@@ -47,28 +47,25 @@ impl<const D: usize> MooringLine<D> {
     fn condense(&mut self) -> CondensedEnds<D> {
         let n = self.segments();
         let inner = [1, n - 1];
-        let Workspace { matrix, impulse, coupling, change, responses, .. } = &mut self.work;
-        change.clear();
-        change.resize(n + 1, Vector::zeros());
-        eliminate(matrix, coupling, inner);
-        substitute(matrix, impulse, coupling, inner, change);
-        let sides = [(coupling[0], 1, 0), (coupling[n - 1], n - 1, n)];
-        for (response, ((q, b), beside, _)) in responses.iter_mut().zip(sides) {
+        self.work.eliminate(inner);
+        self.work.solve(inner);
+        let mut responses = std::mem::take(&mut self.work.responses);
+        let sides = [(self.work.coupling[0], 1, 0), (self.work.coupling[n - 1], n - 1, n)];
+        for (response, (coupling, beside, _)) in responses.iter_mut().zip(sides) {
             let mut unit = vec![Vector::zeros(); n + 1];
-            unit[beside] = q * b;
-            response.clear();
-            response.resize(n + 1, Vector::zeros());
-            substitute(matrix, &mut unit, coupling, inner, response);
+            unit[beside] = coupling.q * coupling.b;
+            self.work.solve_for(&unit, inner, response);
         }
+        let Workspace { matrix, impulse, change, .. } = &self.work;
         let block = |i: usize, j: usize| {
-            let ((q, b), beside, end) = sides[i];
-            let along = q * (b * q.dot(&responses[j][beside]));
-            let ((other, _), ..) = sides[j];
-            let own = if i == j { matrix[end] } else { Matrix::zeros() };
-            own - along * other.transpose()
+            let ((own, beside, end), (other, ..)) = (sides[i], sides[j]);
+            let at_end = if i == j { matrix[end] + own.q * own.q.transpose() * own.b } else { Matrix::zeros() };
+            at_end - own.along(&responses[j][beside]) * other.q.transpose()
         };
-        let impulse = sides.map(|((q, b), beside, end)| impulse[end] + q * (b * q.dot(&change[beside])));
-        CondensedEnds { matrix: [[block(0, 0), block(0, 1)], [block(1, 0), block(1, 1)]], impulse }
+        let impulse = sides.map(|(coupling, beside, end)| impulse[end] + coupling.along(&change[beside]));
+        let matrix = [[block(0, 0), block(0, 1)], [block(1, 0), block(1, 1)]];
+        self.work.responses = responses;
+        CondensedEnds { matrix, impulse }
     }
 
     /// Changes the velocities of all nodes for the changes `ends` (m/s) at the ends; adds the impulses (N s) on the supports of
@@ -76,7 +73,7 @@ impl<const D: usize> MooringLine<D> {
     fn expand(&mut self, ends: [Vector<D>; 2], impulses: &mut [Vector<D>; 2]) {
         let n = self.segments();
         let Workspace { coupling, change, responses, .. } = &mut self.work;
-        let along = [coupling[0].0.dot(&ends[0]), coupling[n - 1].0.dot(&ends[1])];
+        let along = [coupling[0].q.dot(&ends[0]), coupling[n - 1].q.dot(&ends[1])];
         for i in 1..n {
             change[i] += responses[0][i] * along[0] + responses[1][i] * along[1];
         }

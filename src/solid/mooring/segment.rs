@@ -27,8 +27,11 @@ const ROUNDS: usize = 3;
 /// Most iterations for a tension.
 const ITERATIONS: usize = 100;
 
-/// Change of a tension over itself at which the iteration ends, –.
+/// Change of a tension over itself at which the iteration by a table ends, –.
 const TOLERANCE: f64 = 1e-14;
+
+/// Change of a tension over itself at which Newton's method ends, –: the error is then of the order of its square.
+const NEWTON_TOLERANCE: f64 = 1e-8;
 
 /// What a segment does to its nodes.
 #[derive(Clone, Copy, Debug)]
@@ -48,12 +51,14 @@ pub(super) struct SegmentPull<const D: usize> {
     pub(super) sag: f64,
 }
 
-/// The pull of segment `s` of `line` without damping. `around` are the surroundings of each node, and `gravity` is in m/s².
+/// The pull of segment `s` of `line` without damping. `around` are the surroundings of each node, and `gravity` is in m/s². `last`
+/// is its last tension (N), which saves iterations if it is near; 0 if it is unknown.
 pub(super) fn segment_pull<const D: usize>(
     line: &MooringLine<D>,
     s: usize,
     around: &[NodeSurroundings<D>],
     gravity: &Vector<D>,
+    last: f64,
 ) -> SegmentPull<D> {
     let (material, l0) = (&line.material, line.state.segment);
     let (q, length) = line.direction_and_length(s);
@@ -63,15 +68,16 @@ pub(super) fn segment_pull<const D: usize>(
     let along = weight.dot(&q);
     let across = weight - q * along;
     let (strain, full, hold) = (length / l0 - 1.0, across.norm_squared() * l0 * l0, beam_hold(material, l0));
-    let mut share = 1.0;
-    let mut law = if whole { catenary_law(material, strain, full, hold) } else { [0.0; 2] };
-    if let Some(rise) = rise_from_bed(line, s, around, &weight) {
+    let rise = if whole { rise_from_bed(line, s, around, &weight) } else { None };
+    let mut share = if rise.as_ref().is_some_and(RiseFromBed::lies) { 0.0 } else { 1.0 };
+    let mut law = if whole { catenary_law(material, strain, full * share, (hold, last)) } else { [0.0; 2] };
+    if let Some(rise) = rise.filter(|rise| !rise.lies()) {
         for _ in 0..ROUNDS {
-            share = rise.hanging_share(law[0], &q, l0);
-            if share == 1.0 {
+            let before = std::mem::replace(&mut share, rise.hanging_share(law[0], &q, l0));
+            if share == before {
                 break;
             }
-            law = catenary_law(material, strain, full * share, hold);
+            law = catenary_law(material, strain, full * share, (hold, law[0]));
         }
     }
     let [tension, slope] = law;
@@ -94,7 +100,7 @@ pub(super) fn segment_pulls<const D: usize>(
     around: &[NodeSurroundings<D>],
     gravity: &Vector<D>,
 ) -> Vec<SegmentPull<D>> {
-    (0..line.segments()).map(|s| segment_pull(line, s, around, gravity)).collect()
+    (0..line.segments()).map(|s| segment_pull(line, s, around, gravity, 0.0)).collect()
 }
 
 /// The heights of the ends of segment `s` of `line` above the bed below it; `None` if no bed can bear its `weight` (N/m).
@@ -129,6 +135,11 @@ struct RiseFromBed<const D: usize> {
 }
 
 impl<const D: usize> RiseFromBed<D> {
+    /// Whether the whole segment lies on the bed.
+    fn lies(&self) -> bool {
+        self.heights[1] == 0.0
+    }
+
     /// The shortening by sag of a segment along `q` with the length `l0` (m) and this `tension` (N), over the shortening if the
     /// whole segment hung, –.
     fn hanging_share(&self, tension: f64, q: &Vector<D>, l0: f64) -> f64 {
@@ -150,13 +161,13 @@ fn beam_hold(material: &LineMaterial, l0: f64) -> f64 {
     48.0 * material.bending / (l0 * l0)
 }
 
-/// Tension (N) at the strain of the chord, and its slope dT/dε (N). `sag` is (w_n l₀)² (N²), and `hold` (N) is the addition by
-/// bending.
-fn catenary_law(material: &LineMaterial, strain: f64, sag: f64, hold: f64) -> [f64; 2] {
+/// Tension (N) at the strain of the chord, and its slope dT/dε (N). `sag` is (w_n l₀)² (N²), `hold` (N) is the addition by
+/// bending, and `last` (N) a tension that may be near.
+fn catenary_law(material: &LineMaterial, strain: f64, sag: f64, (hold, last): (f64, f64)) -> [f64; 2] {
     if sag == 0.0 {
         return elastic_law(material, strain);
     }
-    let linear = held_straight(material.stiffness, strain, sag, hold);
+    let linear = held_straight(material.stiffness, strain, sag, (hold, last));
     let (held, modulus) = match &material.table {
         None => (linear, material.stiffness),
         Some(_) => held_straight_by_table(material, strain, (sag, hold), linear),
@@ -168,18 +179,25 @@ fn catenary_law(material: &LineMaterial, strain: f64, sag: f64, hold: f64) -> [f
     [held - hold, modulus / (1.0 + softening)]
 }
 
-/// T + `hold` (N) of ε = T/EA − s/(24 (T + hold)²) with EA = `stiffness` (N) and s = `sag` (N²), by Newton's method from above.
-fn held_straight(stiffness: f64, strain: f64, sag: f64, hold: f64) -> f64 {
+/// T + `hold` (N) of ε = T/EA − s/(24 (T + hold)²) with EA = `stiffness` (N) and s = `sag` (N²), by Newton's method: from `last`
+/// (N) if it is near the solution, otherwise from above.
+fn held_straight(stiffness: f64, strain: f64, sag: f64, (hold, last): (f64, f64)) -> f64 {
     let (taut, cubed) = (stiffness * strain + hold, stiffness * sag / 24.0);
-    let mut held = match taut.powi(3) {
-        t if t > cubed => taut + cubed / (taut * taut),
-        t if t < -cubed => (cubed / -taut).sqrt(),
-        _ => taut.max(0.0) + cubed.cbrt(),
+    let (near, third) = (last + hold, taut * taut * taut);
+    let there = near * near * (near - taut);
+    let mut held = if there > 0.5 * cubed && there < 2.0 * cubed {
+        near
+    } else if third > cubed {
+        taut + cubed / (taut * taut)
+    } else if third < -cubed {
+        (cubed / -taut).sqrt()
+    } else {
+        taut.max(0.0) + cubed.cbrt()
     };
     for _ in 0..ITERATIONS {
         let step = (held * held * (held - taut) - cubed) / (held * (3.0 * held - 2.0 * taut));
         held -= step;
-        if step <= TOLERANCE * held {
+        if step.abs() <= NEWTON_TOLERANCE * held {
             break;
         }
     }

@@ -74,6 +74,49 @@ fn a_pendulum_has_its_period() {
     assert!((period / exact - 1.0).abs() < 1e-3, "{period} s, not {exact} s");
 }
 
+/// J₀(x) of Bessel by its series.
+fn bessel(x: f64) -> f64 {
+    let terms = (1..20).scan(1.0, |term, k| {
+        *term *= -0.25 * x * x / f64::from(k * k);
+        Some(*term)
+    });
+    1.0 + terms.sum::<f64>()
+}
+
+/// Relative error of the period of the slowest swing of a chain of 1 m that hangs in air, in `segments` segments.
+///
+/// Its shape is J₀(j √(s/L)) at the height s above its lower end, with J₀(j) = 0 (Daniel Bernoulli 1738); its period is
+/// 4π/j √(L/g).
+fn swing_error(segments: usize) -> f64 {
+    const ROOT: f64 = 2.404_825_557_695_773;
+    let material = LineMaterial { stiffness: 2e4, ..material() };
+    let mut line = MooringLine::<2>::straight(material, 1.0, segments, [Vector::zeros(), [0.0, -1.0].into()]);
+    line.held = [true, false];
+    for x in &mut line.state.x {
+        x[0] = 1e-3 * bessel(ROOT * (1.0 + x[1]).max(0.0).sqrt());
+    }
+    let (near, dt, mut crossings) = (air(&line), 2e-3, Vec::new());
+    for k in 1..2000 {
+        let before = line.state.x[segments][0];
+        line.advance([[0.0, 0.0].into(), Vector::zeros()], dt, &near, &down());
+        let now = line.state.x[segments][0];
+        if before > 0.0 && now <= 0.0 {
+            crossings.push(dt * (f64::from(k) - now / (now - before)));
+        }
+    }
+    let exact = 2.0 * std::f64::consts::TAU / ROOT / GRAVITY.sqrt();
+    (crossings[1] - crossings[0]) / exact - 1.0
+}
+
+/// A hanging chain swings with its period, in second order in the length of a segment.
+#[test]
+fn a_hanging_chain_swings_with_its_period() {
+    let [coarse, fine] = [10, 20].map(swing_error);
+    let order = (coarse / fine).log2();
+    println!("errors {coarse:.2e} and {fine:.2e}, order {order:.2}");
+    assert!(fine.abs() < 1e-3 && order > 1.7, "errors {coarse}, {fine}, order {order}");
+}
+
 /// Change of the energy of a swinging chain over its motion, with steps of `part` of the limit.
 fn energy_error(part: f64) -> f64 {
     let mut line = MooringLine::<2>::straight(material(), 1.0, 10, [Vector::zeros(), [0.7, -0.7].into()]);

@@ -19,7 +19,7 @@ fn the_tension_belongs_to_the_strain() {
                     };
                     elastic - sag / (24.0 * tension * tension)
                 };
-                let [tension, slope] = catenary_law(&line, strain, sag, 0.0);
+                let [tension, slope] = catenary_law(&line, strain, sag, (0.0, 0.0));
                 let error = (chord(tension) - strain).abs();
                 assert!(error < 1e-12 * (1.0 + sag / (tension * tension)), "{strain}, {sag}: {error}");
                 let way = 1e-5 * tension;
@@ -34,14 +34,14 @@ fn the_tension_belongs_to_the_strain() {
 /// Without weight across it a slack segment carries nothing.
 #[test]
 fn without_sag_the_law_is_elastic() {
-    assert_eq!(catenary_law(&material(), -0.1, 0.0, 0.0), [0.0, 0.0]);
-    assert_eq!(catenary_law(&material(), 0.1, 0.0, 0.0), [50.0, 500.0]);
+    assert_eq!(catenary_law(&material(), -0.1, 0.0, (0.0, 0.0)), [0.0, 0.0]);
+    assert_eq!(catenary_law(&material(), 0.1, 0.0, (0.0, 0.0)), [50.0, 500.0]);
 }
 
 /// A stiff beam does not sag between its nodes, and does not push when its chord is short.
 #[test]
 fn bending_holds_the_sag_back() {
-    let [tension, ..] = catenary_law(&material(), 0.01, 1.0, 1e4);
+    let [tension, ..] = catenary_law(&material(), 0.01, 1.0, (1e4, 0.0));
     assert!((tension - 5.0).abs() < 1e-3, "{tension} N");
-    assert_eq!(catenary_law(&material(), -0.01, 1.0, 1e4), [0.0, 0.0]);
+    assert_eq!(catenary_law(&material(), -0.01, 1.0, (1e4, 0.0)), [0.0, 0.0]);
 }
