@@ -91,7 +91,8 @@ pub struct PrismConfig {
 }
 
 impl PrismConfig {
-    fn outline(&self) -> PolylineConfig {
+    /// Its outline as a polygon.
+    pub(crate) fn outline(&self) -> PolylineConfig {
         let Self { points, file, id, scale, unit, .. } = self.clone();
         PolylineConfig { points, file, id, scale, unit, thickness: None, closed: None }
     }
