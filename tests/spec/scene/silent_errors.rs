@@ -400,6 +400,14 @@ fn lists_in_place_of_tables_and_longer_lists_are_refused_with_the_form() {
 }
 
 #[test]
+fn a_table_of_points_without_names_has_two_columns() {
+    let shape = scene(REST, "").replace("{ box = { size = [0.5, 0.3] } }", "{ polygon = { file = \"r.csv\" } }");
+    let message = inspected("points", &shape, &[("r.csv", "1,0,0\n2,.2,0\n3,.2,.1\n")]).unwrap_err();
+    assert!(message.contains("no row of names") && message.contains("two columns, x and y"), "{message}");
+    assert!(!message.contains("column = 2"), "{message}");
+}
+
+#[test]
 fn names_of_other_programs_propose_those_of_a_scene() {
     let shaped = |shape: &str| scene(REST, "").replace("{ box = { size = [0.5, 0.3] } }", shape);
     let driven = |wave: &str| {
