@@ -125,12 +125,10 @@ fn around(i: usize, expected: f64, shells: &[Shell], points: &[Vector<3>]) -> Op
         ((turns - turns.round()).abs() < ROUND_OFF).then_some((x, turns.round()))
     };
     let middles = || shells[i].facets.iter().map(middle);
-    let extreme = |direction: usize| {
-        let (axis, sign) = (direction / 2, if direction % 2 == 0 { 1.0 } else { -1.0 });
-        middles().max_by(|a, b| (sign * a[axis]).total_cmp(&(sign * b[axis])))
-    };
+    let extreme = |(axis, sign): (usize, f64)| middles().max_by(|a, b| (sign * a[axis]).total_cmp(&(sign * b[axis])));
+    let directions = (0..3).flat_map(|axis| [(axis, 1.0), (axis, -1.0)]);
     let mut first = None;
-    for found in (0..6).filter_map(extreme).filter_map(turns) {
+    for found in directions.filter_map(extreme).filter_map(turns) {
         if found.1 == expected {
             return Some(found);
         }
