@@ -15,7 +15,9 @@ use super::time_series::TimeSeries;
 use crate::error::{Error, ErrorCode, Result, suggestion};
 pub use column_name::ColumnName;
 use layout::Layout;
-pub(crate) use unit::{Conversion, conversion, is_degree, is_without_size, of_series, si_factor};
+pub(crate) use unit::{
+    Conversion, Meant, conversion, is_assumed, is_degree, is_time_span, is_without_size, of_series, si_factor,
+};
 
 /// The name of the column of times in the tables of a run.
 const OWN_TIME: &str = "t_s";
@@ -84,6 +86,11 @@ impl TableReader {
     /// # Errors
     /// As [`TableReader::columns`], if there is no such column; `Scene` if it has two units that contradict each other.
     pub fn unit(&self, column: impl Into<ColumnName>) -> Result<Option<String>> {
+        self.unit_as(column, None)
+    }
+
+    /// As [`TableReader::unit`], of a column whose values are meant in a known unit: more names have one then, as `x_in`.
+    pub(crate) fn unit_as(&self, column: impl Into<ColumnName>, meant: Option<Meant>) -> Result<Option<String>> {
         let i = self.index(&column.into())?;
         let name = self.layout.names.get(i).map_or("", String::as_str);
         let row = self.layout.units.get(i).map(String::as_str);
@@ -92,7 +99,7 @@ impl TableReader {
                 let what = format!("column \"{name}\" of {} has two units, {one} and {other}", self.file);
                 Err(Error::scene(what).help("keep the one in which its values are"))
             }
-            None => Ok(unit::of_column(name, row)),
+            None => Ok(unit::of_column(name, row, meant).map(String::from)),
         }
     }
 

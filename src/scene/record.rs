@@ -20,9 +20,8 @@ const MUCH_LONGER: f64 = 20.0;
 /// Largest difference between the spacings of even samples, over their mean, –.
 const UNEVEN: f64 = 0.01;
 
-/// Units of time, which do not occur in columns of values. `v_ms` is a speed.
-const TIME_UNITS: [&str; 15] =
-    ["ms", "msec", "us", "µs", "min", "minute", "minutes", "h", "hr", "hrs", "hour", "hours", "d", "day", "days"];
+/// Largest difference between a scale and the factor from degrees to radians, over it, –: 0.0175 is this factor.
+const SAME_FACTOR: f64 = 0.005;
 
 /// Values by which loggers mark missing ones.
 const MISSING: [f64; 6] = [-999.0, -9999.0, -99999.0, 999.0, 9999.0, 99999.0];
@@ -107,13 +106,13 @@ impl Record<'_> {
         let series = self.table.series(time.clone(), self.column.clone())?;
         note_layout(self.ctx, self.key, self.file, &self.table);
         self.note_missing(&series);
-        let unit = self.table.unit(time.clone())?;
+        let unit = self.table.unit_as(time.clone(), Some(("s", self.ctx.dimension)))?;
         if self.scaling.time_factor == 1.0 {
             self.note_unit(&time, unit.as_deref(), Some("s"), "time_factor");
         }
-        let unit = self.table.unit(self.column.clone())?;
+        let unit = self.table.unit_as(self.column.clone(), self.unit.map(|unit| (unit, self.ctx.dimension)))?;
         if self.scaling.scale == 1.0 {
-            let value = unit.as_deref().filter(|unit| !TIME_UNITS.contains(unit));
+            let value = unit.as_deref().filter(|unit| !table::is_time_span(unit));
             self.note_unit(&self.column, value, self.unit, "scale");
         }
         if self.table.is_one_column(&time, &self.column) {
@@ -180,23 +179,45 @@ impl Record<'_> {
     }
 
     /// Takes the unit in which a law is meant, and returns the factor from the column's values to those of the run. The name or
-    /// the row of units shows that a column is in degrees.
+    /// the row of units shows that a column is in degrees. Adds notes on their conversion.
     ///
     /// # Errors
     /// `Scene` if there is no such column.
     pub(super) fn take_unit(&mut self, law: CoordinateUnit) -> Result<f64> {
-        let unit = self.table.unit(self.column.clone())?;
-        let degrees = match law {
-            CoordinateUnit::Degrees => true,
-            CoordinateUnit::Radians => unit.as_deref().is_some_and(table::is_degree),
-            CoordinateUnit::Si(_) => false,
-        };
-        self.unit = Some(match law {
-            CoordinateUnit::Si(unit) => unit,
-            _ if degrees => "deg",
-            _ => "rad",
-        });
-        Ok(if degrees { 1f64.to_radians() } else { 1.0 })
+        if let CoordinateUnit::Si(unit) = law {
+            self.unit = Some(unit);
+            return Ok(1.0);
+        }
+        let meant = if law == CoordinateUnit::Degrees { "deg" } else { "rad" };
+        let unit = self.table.unit_as(self.column.clone(), Some((meant, self.ctx.dimension)))?;
+        let named = unit.as_deref().filter(|unit| table::is_degree(unit));
+        if law == CoordinateUnit::Radians && named.is_none() {
+            self.unit = Some("rad");
+            return Ok(1.0);
+        }
+        self.unit = Some("deg");
+        let factor = 1f64.to_radians();
+        let (scale, column) = (self.scaling.scale, self.named_column());
+        if (scale.abs() / factor - 1.0).abs() < SAME_FACTOR {
+            self.ctx.add_note(FileNote::warning(
+                "record_unit",
+                format!("{column} is converted from degrees to radians, and again by scale = {scale}"),
+                "remove scale".into(),
+            ));
+        }
+        if let Some(unit) = named.filter(|unit| law == CoordinateUnit::Radians && table::is_assumed(unit)) {
+            self.ctx.add_note(FileNote::note(
+                "record_unit",
+                format!("{column} is in \"{unit}\", which is taken as degrees"),
+                "give values in radians a name that ends in _rad".into(),
+            ));
+        }
+        Ok(factor)
+    }
+
+    /// Returns the column with its file and key, for messages.
+    fn named_column(&self) -> String {
+        format!("column \"{}\" of {} ({})", self.column, self.file, self.ctx.shown_key(self.key))
     }
 
     /// Adds the warning that a column is in another `unit` than the one in which its values are `meant`.
@@ -206,7 +227,11 @@ impl Record<'_> {
         let conversion = meant.and_then(|meant| Some((meant, table::conversion(unit, meant, self.ctx.dimension)?)));
         let (used, remedy) = match conversion {
             Some((_, Conversion::Factor(factor))) if (factor - 1.0).abs() < 1e-9 => return,
-            Some((meant, Conversion::Factor(factor))) => (format!("used as if in {meant}"), write(factor)),
+            Some((meant, Conversion::Factor(factor))) => {
+                let assumed = format!("; 1 {unit} is taken as {} {meant}", three_digits(factor));
+                let assumed = if table::is_assumed(unit) { assumed } else { String::new() };
+                (format!("used as if in {meant}"), write(factor) + &assumed)
+            }
             Some((meant, Conversion::Weight(factor))) => {
                 let weight = format!("; the weight of 1 {unit} is {} {meant}", three_digits(factor));
                 (format!("a mass, where {meant} is meant"), write(factor) + &weight)
@@ -217,7 +242,7 @@ impl Record<'_> {
             }
             None => match table::si_factor(unit) {
                 Some(factor) => ("used as if in another unit".into(), write(factor)),
-                None => return self.note_unknown_unit(column, unit, key),
+                None => return self.note_unknown_unit(column, unit, meant, key),
             },
         };
         self.ctx.add_note(FileNote::warning(
@@ -232,18 +257,22 @@ impl Record<'_> {
     }
 
     /// Adds the note that a column is in a `unit` whose size is not known.
-    fn note_unknown_unit(&self, column: &ColumnName, unit: &str, key: &str) {
+    fn note_unknown_unit(&self, column: &ColumnName, unit: &str, meant: Option<&str>, key: &str) {
         if !table::is_without_size(unit) {
             return;
         }
         let (file, shown) = (self.file, self.ctx.shown_key(self.key));
+        let si = meant.unwrap_or("SI units");
         self.ctx.add_note(FileNote::note(
             "record_unit",
             format!(
                 "column \"{column}\" of {file} ({shown}) is in \"{unit}\", which has no one meaning as a unit; its \
-                     values are taken as those of the SI"
+                     values are taken as if in {si}"
             ),
-            format!("write the size of the unit, as in  {key} = 0.001,  beside the column"),
+            match meant {
+                Some(meant) => format!("write the size of the unit in {meant} as  {key} = ..  beside the column"),
+                None => format!("write the size of the unit, as in  {key} = 0.001,  beside the column"),
+            },
         ));
     }
 

@@ -183,7 +183,7 @@ impl Layout {
         let (lower, upper) = (fitting.next().flatten(), fitting.next().flatten());
         let mut end = self.first;
         match (lower, upper) {
-            (Some((line, units)), Some((upper, names))) if is_units(&units) && !is_units(&names) => {
+            (Some((line, units)), Some((upper, names))) if unit::is_unit_row(&units) && !unit::is_unit_row(&names) => {
                 self.remarks.push(format!("row of units in line {line}"));
                 (self.names, self.units, end) = (names, units, upper);
             }
@@ -210,7 +210,9 @@ impl Layout {
         let above = comments.iter().filter(|line| line.number < self.first).rev().take(2);
         let names_in = |line: &Line| Some((line.number, self.names_in(comment(line.text)?)?));
         let found = match above.map(names_in).collect::<Vec<_>>()[..] {
-            [Some((_, ref units)), Some((line, ref names))] if is_units(units) && !is_units(names) => {
+            [Some((_, ref units)), Some((line, ref names))]
+                if unit::is_unit_row(units) && !unit::is_unit_row(names) =>
+            {
                 Some((line, names.clone(), units.clone()))
             }
             [Some((line, ref names)), ..] | [None, Some((line, ref names))] => Some((line, names.clone(), Vec::new())),
@@ -270,17 +272,12 @@ impl Layout {
     }
 }
 
-/// Returns whether all cells are units.
-fn is_units(cells: &[String]) -> bool {
-    cells.iter().all(|cell| cell.is_empty() || unit::is_unit(cell))
-}
-
 /// Returns the cells of a row of names, each unit in brackets with the name before it.
 fn joined_units(cells: &[&str]) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
     for cell in cells {
         match names.last_mut() {
-            Some(name) if cell.starts_with(['(', '[']) => *name += &format!(" {cell}"),
+            Some(name) if unit::opens(cell) => *name += &format!(" {cell}"),
             _ => names.push((*cell).into()),
         }
     }

@@ -239,7 +239,12 @@ fn laws_checks_and_points_of_other_layouts_are_read_and_wrong_keys_are_refused()
 /// The warnings about units of a column of this name as the distance, the angle, the force and the torque, and of a
 /// check.
 fn unit_warnings(part: &str, column: &str) -> Vec<String> {
-    let record = format!("{{ file = \"record.csv\", column = \"{column}\" }}");
+    unit_warnings_beside(part, column, "")
+}
+
+/// The same of a law with these keys beside the column.
+fn unit_warnings_beside(part: &str, column: &str, keys: &str) -> Vec<String> {
+    let record = format!("{{ file = \"record.csv\", column = \"{column}\"{keys} }}");
     let own = "[[solid]]\nname = \"box\"\nshape = { box = { size = [0.2, 0.1] } }\nat = { x = 0.3, draft = \"equilibrium\" }\nfree = { density = 500.0 }\n";
     let still = SCENE.replace("distance = LAW", "distance = { formula = \"0\" }");
     let text = match part {
@@ -287,6 +292,14 @@ fn a_column_in_another_unit_or_of_another_quantity_is_told_with_both() {
         ("tank.vx_mps", "v_kmh", "used as if in mps", "scale = 0.27777777"),
         ("tank.vx_mps", "v (m min-1)", "used as if in mps", "scale = 0.01666666"),
         ("tank.surge_m", "p [Pa]", "another quantity than m", "name a column in m"),
+        ("tank.surge_m", "eta_inch", "used as if in m", "scale = 0.0254"),
+        ("distance", "v_ms", "another quantity than m", "name a column in m"),
+        ("distance", "a_ms2", "another quantity than m", "name a column in m"),
+        ("distance", "zmm", "used as if in m", "scale = 0.001"),
+        ("distance", "z_MM", "used as if in m", "scale = 0.001  beside the column; 1 MM is taken as 0.001 m"),
+        ("force", "FX_KN", "used as if in N", "scale = 1000  beside the column; 1 KN is taken as 1000 N"),
+        ("force", "fx_kN_per_m", "used as if in N", "scale = 1000"),
+        ("torque", "q_Nmm", "used as if in N m", "scale = 0.001"),
     ] {
         let found = unit_warnings(part, column);
         let [text] = &found[..] else { panic!("{column} as {part}: {found:?}") };
@@ -300,6 +313,10 @@ fn a_column_in_another_unit_or_of_another_quantity_is_told_with_both() {
         ("force", "F (N)"),
         ("force", "F (N/m)"),
         ("torque", "M_Nm"),
+        ("force", "fx_N_per_m"),
+        ("distance", "z_min"),
+        ("angle", "deg"),
+        ("angle", "pitch_DEG"),
         ("tank.pitch_deg", "pitch_deg"),
         ("tank.pitch_deg", "pitch (-)"),
         ("tank.vx_mps", "v (m s-1)"),
@@ -308,6 +325,30 @@ fn a_column_in_another_unit_or_of_another_quantity_is_told_with_both() {
     ] {
         assert_eq!(unit_warnings(part, column), [] as [String; 0], "{column} as {part}");
     }
+}
+
+#[test]
+fn times_in_minutes_days_and_microseconds_are_told_with_the_factor() {
+    for (column, factor) in
+        [("time_min", "60"), ("time_hours", "3600"), ("time_days", "86400"), ("time_us", "0.000001")]
+    {
+        let law = format!("{{ file = \"record.csv\", column = \"x_m\", time = \"{column}\" }}");
+        let rows: String = samples(0.0, 31).map(|(t, x)| format!("{t:.2},{x:.6}\n")).collect();
+        let found = findings(&folder("time-unit", &law, format!("{column},x_m\n{rows}")));
+        let [(Severity::Warning, "record_unit", text)] = &found[..] else { panic!("{column}: {found:?}") };
+        assert!(text.contains("used as if in s") && text.contains(&format!("time_factor = {factor}")), "{text}");
+    }
+}
+
+#[test]
+fn degrees_that_a_scale_converts_again_are_told() {
+    let warned = |part: &str, column: &str| unit_warnings_beside(part, column, ", scale = 0.0174532925");
+    for (part, column) in [("angle", "pitch_deg"), ("angle_deg", "pitch")] {
+        let found = warned(part, column);
+        let [text] = &found[..] else { panic!("{column} as {part}: {found:?}") };
+        assert!(text.contains("again by scale = 0.0174532925") && text.contains("remove scale"), "{text}");
+    }
+    assert_eq!(warned("angle", "pitch"), [] as [String; 0], "a column without unit is converted by its scale");
 }
 
 #[test]

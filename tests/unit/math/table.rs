@@ -222,6 +222,114 @@ fn units_come_from_the_row_of_units_or_the_name() -> Result<()> {
     Ok(())
 }
 
+/// The unit of a column of this name whose values are meant in a unit, in 2-D.
+fn unit_as(name: &str, meant: &str) -> Option<String> {
+    let file = TestFile::new("meant", format!("i,\"{name}\"\n0,1\n1,2\n"));
+    file.open().unwrap().unit_as(ColumnName::Number(2), Some((meant, 2))).unwrap()
+}
+
+#[test]
+fn names_hold_units_of_the_quantity_that_is_meant() {
+    for (name, meant, unit, factor) in [
+        ("time_min", "s", "min", 60.0),
+        ("time_h", "s", "h", 3600.0),
+        ("time_hours", "s", "hours", 3600.0),
+        ("hours", "s", "hours", 3600.0),
+        ("time_days", "s", "days", 86400.0),
+        ("t_d", "s", "d", 86400.0),
+        ("time_us", "s", "us", 1e-6),
+        ("T_MS", "s", "MS", 1e-3),
+        ("tms", "s", "ms", 1e-3),
+        ("q_Nmm", "N m", "Nmm", 1e-3),
+        ("q_Ncm", "N m", "Ncm", 1e-2),
+        ("m_g", "kg", "g", 1e-3),
+        ("gravity_g", "m/s²", "g", 9.806_65),
+        ("f_gf", "N", "gf", 9.806_65e-3),
+        ("z_in", "m", "in", 0.0254),
+        ("z_inch", "m", "inch", 0.0254),
+        ("z_MM", "m", "MM", 1e-3),
+        ("zmm", "m", "mm", 1e-3),
+        ("Fxmm", "m", "mm", 1e-3),
+        ("z.mm", "m", "mm", 1e-3),
+        ("z-mm", "m", "mm", 1e-3),
+        ("z {mm}", "m", "mm", 1e-3),
+        ("z / mm", "m", "mm", 1e-3),
+        ("z_millimetres", "m", "millimetres", 1e-3),
+        ("Fx (kN) filtered", "N", "kN", 1e3),
+        ("fx_kN_filt", "N", "kN", 1e3),
+        ("kN_fx", "N", "kN", 1e3),
+        ("kN", "N", "kN", 1e3),
+        ("FX_KN", "N", "KN", 1e3),
+        ("force_kn", "N", "kn", 1e3),
+        ("u_kn", "m/s", "kn", 1852.0 / 3600.0),
+        ("fx.kN", "N", "kN", 1e3),
+        ("fx-kN", "N", "kN", 1e3),
+        ("Fx <kN>", "N", "kN", 1e3),
+        ("Fx in kN", "N", "kN", 1e3),
+        ("Force, kN", "N", "kN", 1e3),
+        ("fx_N_per_m", "N", "N_per_m", 1.0),
+        ("fx (N per m)", "N", "N per m", 1.0),
+        ("fx_kN_per_m", "N", "kN_per_m", 1e3),
+        ("fx_kNpm", "N", "kNpm", 1e3),
+        ("deg", "rad", "deg", PI / 180.0),
+        ("pitch_DEG", "rad", "DEG", PI / 180.0),
+        ("pitch (Deg)", "rad", "Deg", PI / 180.0),
+        ("pitch (degs)", "rad", "degs", PI / 180.0),
+        ("w (degs)", "rad/s", "degs", PI / 180.0),
+        ("v_mm_s", "m/s", "mm_s", 1e-3),
+        ("v_mm/s", "m/s", "mm/s", 1e-3),
+        ("v_ms", "m/s", "ms", 1.0),
+        ("a_ms2", "m/s²", "ms2", 1.0),
+    ] {
+        assert_eq!(unit_as(name, meant).as_deref(), Some(unit), "{name} in {meant}");
+        let Some(Conversion::Factor(found)) = conversion(unit, meant, 2) else { panic!("{unit} in {meant}") };
+        assert!((found / factor - 1.0).abs() < 1e-12, "{unit} in {meant}: {found}");
+    }
+    for (name, meant) in [("v_ms", "m"), ("v_mps", "m"), ("a_ms2", "m"), ("v_m_s", "m"), ("fx_N_per_m", "m")] {
+        let unit = unit_as(name, meant).unwrap();
+        assert_eq!(conversion(&unit, meant, 2), Some(Conversion::OtherQuantity), "{name} in {meant}");
+    }
+    assert!(is_degree("DEG") && is_degree("degs") && !is_degree("rad") && is_assumed("degs") && !is_assumed("deg"));
+    assert_eq!(conversion("MNM", "N m", 2), None, "mN m or MN m");
+    assert_eq!(conversion("kN_per_m", "N", 3), Some(Conversion::OtherQuantity));
+}
+
+#[test]
+fn words_and_symbols_in_names_are_no_units() {
+    for (name, meant) in [
+        ("z_min", "m"),
+        ("z_max", "m"),
+        ("t_in", "kg"),
+        ("u_in", "m/s"),
+        ("F_in", "N"),
+        ("F_t", "N"),
+        ("F_g", "N"),
+        ("x_t", "m"),
+        ("x_d", "m"),
+        ("x_h", "m"),
+        ("p_1", "Pa"),
+        ("pitch_1", "rad"),
+        ("x_bar", "m"),
+        ("x_rev", "m"),
+        ("eta_m2", "m"),
+        ("x_s2", "m"),
+        ("H/d", "rad"),
+        ("in", "m"),
+        ("min", "s"),
+        ("left", "m"),
+        ("rms", "m"),
+        ("max_steps", "m"),
+        ("stroke_spm", "m"),
+        ("f_mpa", "Pa"),
+        ("pppppppppppppppppppppppppppppppppppppppppppppppppppppppppppp", "m"),
+        ("pppppppppppppppppppppppppp_ppp", "m"),
+    ] {
+        assert_eq!(unit_as(name, meant), None, "{name} in {meant}");
+    }
+    assert_eq!(of_series("b.fx_N_per_m"), Some("N_per_m"));
+    assert_eq!(of_series("g.eta_at_1.5_m"), Some("m"));
+}
+
 #[test]
 fn products_powers_and_rates_are_units() {
     // Size in the SI by hand.
