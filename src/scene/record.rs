@@ -6,7 +6,7 @@ use super::{
     untagged::CoordinateUnit,
 };
 use crate::{
-    error::Result,
+    error::{Error, ErrorCode, Result},
     math::{
         format::three_digits,
         table::{self, ColumnName, Conversion, TableReader},
@@ -78,9 +78,13 @@ pub(super) fn verify_scaling(ctx: &Context, key: &str, [scale, factor, offset]: 
 
 /// Returns the advice to name a column of this file, with its columns if it can be read.
 pub(super) fn column_help(ctx: &Context, file: &str) -> String {
-    let names = files::open_table(ctx.folder(), file).map(|table| table.column_names()).unwrap_or_default();
+    let table = files::open_table(ctx.folder(), file).ok();
+    let names = table.as_ref().map(TableReader::column_names).unwrap_or_default();
     match &names[..] {
         [] => "write  column = ..,  the name or the number of a column".into(),
+        [.., last] if table.is_some_and(|table| table.header().is_empty()) => {
+            format!("write  column = {last},  or another of its columns: {}", names.join(", "))
+        }
         [.., last] => format!("write  column = \"{last}\",  or another of its columns: {}", names.join(", ")),
     }
 }
@@ -94,6 +98,24 @@ pub(super) fn note_layout(ctx: &Context, key: &str, file: &str, table: &TableRea
         what: format!("{file} ({}) is read so: {remark}", ctx.shown_key(key)),
         remedy: "a table with commas, decimal points and the names in its first line needs no such note".into(),
     });
+}
+
+/// Returns the error of a law from the record at `key`, with the remedies of the notes on the record's units.
+pub(super) fn with_unit_notes(ctx: &Context, key: &str, error: Error) -> Error {
+    let place = format!("({})", ctx.shown_key(key));
+    let is_of_unit = |note: &&FileNote| match note.topic {
+        "record_unit" => note.is_warning,
+        "record_span" => note.remedy.contains("time_factor"),
+        _ => false,
+    };
+    let notes = ctx.file_notes.borrow();
+    let found = notes.iter().filter(|note| note.what.contains(&place)).filter(is_of_unit);
+    let mut help: Vec<String> = found.map(|note| format!("{}: {}", note.what, note.remedy)).collect();
+    if help.is_empty() {
+        return error;
+    }
+    help.extend(error.help.clone());
+    error.help(help.join("; else "))
 }
 
 impl Record<'_> {
@@ -163,10 +185,12 @@ impl Record<'_> {
     /// `Scene`, with a column that may be meant.
     pub(super) fn require_time(&mut self) -> Result<()> {
         let time = self.table.time_column(&self.time, &self.column);
-        let names = self.table.column_names();
+        let names = self.table.header();
         let value = self.column.to_string();
-        self.table.unit(time.clone()).map(|_| ()).map_err(|error| {
-            let other = names.iter().find(|name| **name != value).filter(|_| self.time == ColumnName::from("t_s"));
+        self.table.unit(time).map(|_| ()).map_err(|error| {
+            let is_missing = self.time == ColumnName::from("t_s") && error.code() == ErrorCode::UnknownName;
+            let is_other = |name: &&String| **name != value && !name.is_empty();
+            let other = names.iter().find(is_other).filter(|_| is_missing);
             match other {
                 Some(name) => {
                     let all = names.join(", ");

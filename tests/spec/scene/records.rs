@@ -160,6 +160,19 @@ fn an_elevation_of_uneven_samples_is_told() {
     // 40 intervals in 1.986 s.
     let found = notes(0.05);
     assert!(found.contains("record_uneven") && found.contains("every 0.0497 s"), "{found}");
+    // Of waves too high or too long the unit of the record is the probable reason.
+    let refused = |column: &str, factors: [f64; 2]| {
+        let rows = (0..41)
+            .map(|i| 0.25 * f64::from(i))
+            .map(|t| format!("{:.6},{:.6}\n", t * factors[0], 0.02 * (5.0 * t).sin() * factors[1]));
+        let folder = folder("wave-unit", "", format!("t_s,{column}\n{}", rows.collect::<String>()));
+        fs::write(folder.join("scene.toml"), scene.replace("eta_m", column)).unwrap();
+        inspected(&folder).map_or_else(|error| error.to_string(), |_| String::new())
+    };
+    let told = refused("eta_mm", [1.0, 1000.0]);
+    assert!(told.contains("is in mm") && told.contains("scale = 0.001"), "{told}");
+    let told = refused("eta_m", [1000.0, 1.0]);
+    assert!(told.contains("if its times are in ms, write  time_factor = 0.001"), "{told}");
 }
 
 #[test]
@@ -369,6 +382,11 @@ fn a_missing_column_of_times_or_values_is_told_at_its_key_with_the_columns() {
         let told = refused("{ formula = \"0\" }", check, &format!("{name},x_m"));
         assert!(told.contains("check.0.time") && told.contains(&proposal), "{told}");
     }
+    // A row of names that are too many: columns go by number.
+    let told = refused(law, "", "t_s,x_m,z_m");
+    assert!(told.contains("3 names over rows of 2 cells") && !told.contains("\"1\""), "{told}");
+    let told = refused("{ file = \"record.csv\" }", "", "t_s,x_m,z_m");
+    assert!(told.contains("write  column = 2,"), "{told}");
     let told = refused("{ file = \"record.csv\" }", "", "t_s,x_m");
     assert!(told.contains("distance.column") && told.contains("write  column = \"x_m\""), "{told}");
     // The record ends at 3 s.

@@ -66,6 +66,16 @@ fn errors_name_the_file_the_line_and_the_column() -> Result<()> {
 }
 
 #[test]
+fn complete_columns_refuse_a_row_without_a_value_and_skip_blank_rows() -> Result<()> {
+    let file = TestFile::new("complete", "a,b,note\n1,2,x\n,,\n3,,y\n");
+    let error = file.open()?.complete_columns(["a", "b"]).unwrap_err().to_string();
+    assert!(error.contains(&format!("a row has no value\n  in {}:4:1, b", file.0.display())), "{error}");
+    std::fs::write(&file.0, "a,b,note\n1,2,\n,,\n3,4,y\n").unwrap();
+    assert_eq!(file.open()?.complete_columns(["a", "b"])?, [vec![1.0, 3.0], vec![2.0, 4.0]]);
+    Ok(())
+}
+
+#[test]
 fn all_columns_leave_out_a_cut_row() -> Result<()> {
     let file = TestFile::new("cut", "t_s,x_m,f_N\n0.0,1.0,\n0.1,what,2.0\n0.2,3");
     let columns = file.open()?.all_columns();
@@ -109,6 +119,11 @@ fn tables_of_other_programs_are_read_and_the_remark_names_the_layout() -> Result
             "B1Surge",
             "row of units in line 8; lines 2 to 5 skipped",
         ),
+        ("upper-units", "t,x\nS,MM\n0.0,1.5\n0.5,2.5\n", "x", "row of units in line 2"),
+        ("words-as-units", "t,x\nsecs,millimetre\n0.0,1.5\n0.5,2.5\n", "x", "row of units in line 2"),
+        ("names-of-words", "Time (s)  Surge motion (m)\n0.0 1.5\n0.5 2.5\n", "Surge motion", "separator blanks"),
+        ("r-csv", "\"t_s\",\"x_m\"\n\"1\",0.0,1.5\n\"2\",0.5,2.5\n", "x_m", "no name for the first column"),
+        ("r-blanks", "\"t_s\" \"x_m\"\n\"1\" 0.0 1.5\n\"2\" 0.5 2.5\n", "x_m", "which numbers the rows"),
         (
             "openfast-blanks",
             "Test 3\nTime  Elev  Surge\n (s)   (m)   (m)\n 0.0  9.0  1.5\n 0.5  9.0  2.5\n",
@@ -178,7 +193,14 @@ fn columns_go_by_number_with_and_without_names() -> Result<()> {
     assert!(twice.contains("more than one column \"x_m\"") && twice.contains("2 or 3"), "{twice}");
     assert_eq!(read("twice", "t_s,x_m,x_m\n0.0,1.5,9\n0.5,2.5,9\n", ColumnName::Number(3))?.1, [9.0, 9.0]);
     let unfit = refused("t_s;x_m\n0.0;1.5;2\n0.5;2.5;2\n", "x_m".into());
-    assert!(unfit.contains("2 names over rows of 3 cells"), "{unfit}");
+    assert!(unfit.contains("2 names over rows of 3 cells") && unfit.contains("without quotation marks"), "{unfit}");
+    // The numbers of the rows are no times.
+    let counted = refused("t_s x_m\n1 0.0 1.5\n2 0.5 2.5\n", ColumnName::Number(3));
+    assert!(counted.contains("the first of which numbers the rows"), "{counted}");
+    let rows = "\"t_s\" \"x_m\"\n\"1\" 0 1.5\n\"2\" 0.5 2.5\n";
+    assert_eq!(read("r", rows, ColumnName::Number(3))?.0, [0.0, 0.5]);
+    let quoted = refused("t_s,x_m\n0.0,1.5\n0.5,2.5\n", "2".into());
+    assert!(quoted.contains("write 2 without quotation marks; its columns: t_s, x_m"), "{quoted}");
     Ok(())
 }
 
@@ -190,6 +212,12 @@ fn numbers_with_several_readings_and_other_cells_are_refused_with_the_reason() {
         ("mixed", "t_s;x_m\n0.5;1,5\n1.0;1,5\n2.0;3\n", "has a decimal comma or a separator of thousands", "1234.5"),
         ("commas", "t_s,x_m\n0,0,0,5\n0,1,0,6\n", "separate the columns and may be decimal commas", "semicolons"),
         ("commas-no-names", "0,00,0,50\n0,01,0,60\n", "separate the columns and may be decimal commas", "semicolons"),
+        ("commas-pairs", "1,0,0,25\n2,0,0,75\n3,0,0,95\n", "may be decimal commas as well", "name every column"),
+        ("empty", "\n", "is empty", "name another file"),
+        ("comments", "# t_s,x_m\n", "has comments alone", "name another file"),
+        ("rounded", "t_s,x_m\n0.00,1\n0.00,2\n0.01,3\n", "0 follows 0", "more digits"),
+        ("two-names", "t,x_m\nWert,Weg\n0.0,1\n0.5,2\n", "has two rows of names, and line 2 is used", "remove one"),
+        ("unquoted", "t_s x_m\n1 0.0 1\n2 0.5 2\n", "2 names over rows of 3 cells, the first", "name every column"),
         ("date", "t_s,x_m\n2021-05-03 12:00:00,1\n2021-05-03 12:00:01,2\n", "is a date or a time of day", "seconds"),
         ("german-date", "t_s;x_m\n03.05.2021;1\n04.05.2021;2\n", "is a date or a time of day", "seconds"),
         ("clock", "t_s,x_m\n12:00:00.5,1\n12:00:01.5,2\n", "is a date or a time of day", "seconds"),
