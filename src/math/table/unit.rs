@@ -280,9 +280,10 @@ impl Reading {
         if let Some((above, below)) = ["/", "_per_", " per "].iter().find_map(|mark| text.rsplit_once(mark)) {
             return Self::products(&all(above), &all(below), -1);
         }
-        // `v_mm_s`
+        let of_word = |one: Self| Self { ending: Word, ..one };
+        // `v_mm_s` is in mm/s, and `lag_30_mm_s` in s.
         if let Some((above, below @ ("s" | "s2"))) = text.rsplit_once('_') {
-            return Self::products(&all(above), &all(below), -1);
+            return Self::products(&all(above), &all(below), -1).into_iter().map(of_word).collect();
         }
         if let Some((at, mark)) = text.char_indices().rev().find(|(at, mark)| is_product(text, *at, *mark)) {
             return Self::products(&all(&text[..at]), &all(&text[at + mark.len_utf8()..]), 1);
@@ -291,9 +292,9 @@ impl Reading {
         let quotients = text.match_indices('p').map(|(at, _)| {
             let parts = [&text[..at], &text[at + 1..]];
             let [above, below] = parts.map(|part| if ONES.contains(&part) { "" } else { part });
-            let ending = if text.ends_with("ps") || text.ends_with("ps2") { Unit } else { Word };
+            let is_rate = text.ends_with("ps") || text.ends_with("ps2");
             let all = Self::products(&Self::simple(above, is_same), &Self::simple(below, is_same), -1);
-            all.into_iter().map(|one| if ending == Word { Self { ending, ..one } } else { one }).collect::<Vec<_>>()
+            all.into_iter().map(|one| if is_rate { one } else { of_word(one) }).collect::<Vec<_>>()
         });
         quotients.into_iter().find(|all| !all.is_empty()).unwrap_or_default()
     }

@@ -305,6 +305,7 @@ fn names_hold_units_of_the_quantity_that_is_meant() {
         ("pitch (degs)", "rad", "degs", PI / 180.0),
         ("w (degs)", "rad/s", "degs", PI / 180.0),
         ("v_mm_s", "m/s", "mm_s", 1e-3),
+        ("lag_30_mm_s", "s", "s", 1.0),
         ("v_mm/s", "m/s", "mm/s", 1e-3),
         ("v_ms", "m/s", "ms", 1.0),
         ("a_ms2", "m/s²", "ms2", 1.0),
