@@ -237,7 +237,7 @@ fn has_letters_of(name: &str, text: &str) -> bool {
 
 /// Returns whether a `text` is the `name` of a unit in capital or small letters. A small m is never mega.
 fn has_other_case_of(name: &str, text: &str) -> bool {
-    name.to_lowercase() == text.to_lowercase() && !(name.starts_with('M') && text.starts_with('m'))
+    name.eq_ignore_ascii_case(text) && !(name.starts_with('M') && text.starts_with('m'))
 }
 
 /// Returns the units that `text` may name: those with its letters, else those in other case.
@@ -410,9 +410,9 @@ pub(crate) fn conversion(unit: &str, meant: &str, dimension: usize) -> Option<Co
     is_one.then_some(best)
 }
 
-/// Returns whether the meaning of `unit` is assumed: it has several, or is written in other letters than usual.
+/// Returns whether the meaning of `unit` is assumed: it has several, may be a word, or is written in other letters than usual.
 pub(crate) fn is_assumed(unit: &str) -> bool {
-    Reading::all(unit, has_letters_of).len() != 1
+    !matches!(Reading::all(unit, has_letters_of)[..], [Reading { ending: Unit, .. }])
 }
 
 /// Returns the unit at the end of the name of a series of a run, as in `b.vx_mps`.

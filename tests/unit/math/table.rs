@@ -318,7 +318,14 @@ fn names_hold_units_of_the_quantity_that_is_meant() {
         let unit = unit_as(name, meant).unwrap();
         assert_eq!(conversion(&unit, meant, 2), Some(Conversion::OtherQuantity), "{name} in {meant}");
     }
-    assert!(is_degree("DEG") && is_degree("degs") && !is_degree("rad") && is_assumed("degs") && !is_assumed("deg"));
+    assert!(
+        is_degree("DEG")
+            && is_degree("degs")
+            && !is_degree("rad")
+            && is_assumed("degs")
+            && is_assumed("in")
+            && !is_assumed("deg")
+    );
     assert_eq!(conversion("MNM", "N m", 2), None, "mN m or MN m");
     assert_eq!(conversion("kN_per_m", "N", 3), Some(Conversion::OtherQuantity));
 }
