@@ -279,7 +279,8 @@ impl Layout {
         let padded = |cell: &str| cell.len() > 1 && cell.bytes().all(|b| b.is_ascii_digit()) && cell.starts_with('0');
         let twice = self.unfit.is_some_and(|names| self.count == 2 * names);
         let is_digits = |cell: &&str| !cell.is_empty() && cell.bytes().all(|b| b.is_ascii_digit());
-        let may_be_pairs = |row: &Vec<&str>| row.len() % 2 == 0 && row.iter().skip(1).step_by(2).all(is_digits);
+        let may_be_pairs =
+            |row: &Vec<&str>| row.len().is_multiple_of(2) && row.iter().skip(1).step_by(2).all(is_digits);
         let has_halves = cells().any(padded) || rows.data.iter().all(may_be_pairs);
         let unnamed = self.names.is_empty() && self.unfit.is_none() && self.count >= 4 && has_halves;
         if self.separator == Separator::Comma && !cells().any(|cell| cell.contains('.')) && (twice || unnamed) {
