@@ -147,6 +147,8 @@ fn a_unit_that_is_not_of_the_si_is_a_warning_with_its_factor() {
         ("F (s)", Some("another quantity than N")),
         ("F_m_per_s", Some("another quantity than N")),
         ("F (lb)", Some("the weight of 1 lb is 4.45 N")),
+        ("F (g)", Some("the weight of 1 g is 0.00981 N")),
+        ("F (kn)", Some("scale = 1000  beside the column; 1 kn is taken as 1000 N")),
         ("F (N)", None),
         ("F (kg m/s^2)", None),
     ] {
@@ -160,7 +162,7 @@ fn a_unit_that_is_not_of_the_si_is_a_warning_with_its_factor() {
         let (scene, [(file, table)]) = with_force(&format!("{time},F\n0,0\n5,1\n"), "\"F\"");
         assert_found("time", &scene, &[(file, &table)], &["as if in s", &format!("time_factor = {factor}")]);
     }
-    for unit in ["g", "kn", "furlong"] {
+    for unit in ["t", "furlong"] {
         let (scene, [(file, table)]) = with_force(&format!("t_s,F ({unit})\n0,0\n5,1\n"), "2");
         assert_found("unknown", &scene, &[(file, &table)], &[&format!("\"{unit}\""), "scale = "]);
     }
@@ -198,6 +200,8 @@ fn components_that_say_a_number_twice_are_refused() {
     ] {
         assert_refused("components", &paddle, &[("c.csv", &format!("{header}\n{row}\n"))], &words);
     }
+    let blank = "amplitude_m,period_s,phase_deg\n0.01,1.2,\n0.02,1.3,10\n";
+    assert_refused("blank", &paddle, &[("c.csv", blank)], &["no value", "line 2", "phase_deg", "components.file"]);
     let good = "amplitude_m,period_s,phase_deg\n0.01,1.5,90\n";
     assert_not_found("components", &paddle, &[("c.csv", good)], "two units");
 }
