@@ -219,7 +219,7 @@ pub fn preflight<const D: usize>(
     let size = look.size(&step, columns, initial.removed_by_solids, &mut findings);
     let gaps = look.gaps(&mut findings);
     hollows::check_hollows(&look, &mut findings);
-    let bodies = look.bodies(&gaps.touching, &mut findings);
+    let bodies = look.bodies(&gaps.touching, moorings::moored_ends(&look, sim), &mut findings);
     look.misplaced_bodies(&gaps.touching, &mut findings);
     look.check_thickness(&mut findings);
     thin_parts::check_parts(&look, &mut findings);

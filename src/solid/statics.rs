@@ -5,6 +5,7 @@
 //! method finds the rises at which buoyancy, weight, lines and forces balance. A rope is a stiff spring that only pulls; the
 //! bottom of the water is a stiff spring that only pushes.
 
+mod moored;
 mod strength;
 mod ties;
 
@@ -19,6 +20,7 @@ use super::{
 };
 use crate::math::{Bivector, Bounds, Pose, Vector};
 
+pub(crate) use moored::MooredEnd;
 pub(crate) use strength::Overload;
 use ties::{Drive, Line, SteadyForce, tension_towards};
 
@@ -53,6 +55,8 @@ pub(crate) enum Support {
     Bottom,
     /// None: its rim is below the surface, and water fills the hull.
     Floods,
+    /// The water, at any depth: it is as dense as the water.
+    Neutral,
 }
 
 /// A free body of a static system.
@@ -80,6 +84,8 @@ pub(crate) struct StaticSystem<'a, const D: usize> {
     lines: Vec<Line<D>>,
     forces: Vec<SteadyForce<D>>,
     drives: Vec<Drive>,
+    /// Stiffness of mooring lines at their ends; the rises at rest leave it out.
+    moored: Vec<MooredEnd<D>>,
     water: WaterAtRest,
     /// Rise of each group from the start to rest, m.
     rise: Vec<f64>,
@@ -168,7 +174,8 @@ impl<'a, const D: usize> StaticSystem<'a, D> {
         let drives = constraints.joints.iter().filter_map(drive).collect();
         let (rise, held) = (vec![0.0; solids.len()], groups.held);
         let joints = constraints.joints.clone();
-        let mut made = Self { bodies, group, assembly, held, joints, lines, forces, drives, water, rise };
+        let moored = Vec::new();
+        let mut made = Self { bodies, group, assembly, held, joints, lines, forces, drives, moored, water, rise };
         made.find_rest();
         made
     }
@@ -276,6 +283,10 @@ impl<'a, const D: usize> StaticSystem<'a, D> {
         {
             let body = &self.bodies[i];
             let sinks = body.bottom - body.hull.extent(&body.pose)[0];
+            // In the air, on a solid.
+            if sinks >= 0.0 && body.hull.shape.submerged_volume(&body.pose, self.water.level).0 <= 0.0 {
+                return;
+            }
             self.rise[group] = body
                 .hull
                 .equilibrium_height(&body.pose, body.body.mass, self.water.rho0, self.water.level)
@@ -422,8 +433,18 @@ impl<'a, const D: usize> StaticSystem<'a, D> {
         if self.group_of(i).any(floods) {
             return Support::Floods;
         }
+        if self.is_neutral(i) {
+            return Support::Neutral;
+        }
         let floats = self.waterplane(i) > 1e-6 * plan_area(&self.bodies[i].hull, &self.bodies[i].pose);
         if floats { Support::Water } else { Support::Lines }
+    }
+
+    /// Returns whether body `i`, without ties, displaces just its mass when it is submerged.
+    fn is_neutral(&self, i: usize) -> bool {
+        let (hull, pose, mass) = (&self.bodies[i].hull, self.pose(i), self.bodies[i].body.mass);
+        let most = self.water.rho0 * hull.volume_if_dry(&pose, hull.extent(&pose)[1]);
+        self.floats_alone(i) && (most - mass).abs() < 1e-6 * mass
     }
 
     /// Returns the area (m²; m in 2-D) of the waterplane of the bodies that rise with body `i`.
@@ -469,7 +490,7 @@ impl<'a, const D: usize> StaticSystem<'a, D> {
                 _ => (),
             }
         }
-        (mass, stiffness)
+        (mass, stiffness + self.mooring_stiffness(i))
     }
 
     /// Returns the righting lever (m, axial components) of the assembly of body `i`, turned from rest by `angle` (rad)
@@ -527,6 +548,12 @@ impl<'a, const D: usize> StaticSystem<'a, D> {
         for own in self.forces.iter().filter(|own| self.assembly[own.body] == self.assembly[i]) {
             let at = own.at + up::<D>() * self.rise[self.group[own.body]];
             add(&turned(&at, rise), &own.force);
+        }
+        for own in self.moored.iter().filter(|own| member(self.number(own.solid)).is_some()) {
+            let Some(j) = self.number(own.solid) else { continue };
+            let rest = own.at + up::<D>() * self.rise[self.group[j]];
+            let at = turned(&rest, rise);
+            add(&at, &(own.stiffness * (rest - at)));
         }
         for own in self.forces.iter().filter(|own| self.assembly[own.body] == self.assembly[i]) {
             torque = torque + own.torque;
