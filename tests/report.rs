@@ -1,3 +1,303 @@
+//! The report of a run in a browser and as a file. Without Chromium the browser tests print "skipped" and pass. Screenshots remain
+//! in the folder `tmp` of the build for inspection.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::print_stdout, clippy::print_stderr, reason = "tests may")]
+
+#[path = "support/chromium.rs"]
+mod support;
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    process::{Command, Output, Stdio},
+};
+
+use pontoon::{
+    error::{Error, ErrorCode, ErrorKind, Fault},
+    output::{Manifest, manifest::RunStatus},
+    report,
+};
+use serde_json::Value;
+use support::chromium;
+use tiny_skia::{Pixmap, PremultipliedColorU8};
+
+/// A floating box in a small tank; the title contains HTML that must be escaped.
+const BAY: &str = r#"
+title     = "A box & a gauge </script><script>nothing()</script>"
+dimension = 2
+dp        = 0.02
+until     = 0.2
+
+[[water]]
+fill = { box = { min = [0.0, 0.0], max = [0.8, 0.3] } }
+
+[[solid]]
+name  = "tank"
+fixed = true
+shape = { tank = { size = [0.8, 0.5] } }
+
+[[solid]]
+name  = "box"
+shape = { box = { size = [0.16, 0.12] } }
+at    = { x = 0.5, draft = "equilibrium", angle_deg = 5.0 }
+free  = { density = 500.0 }
+
+[[probe]]
+motion = "box"
+
+[[probe]]
+name      = "gauge"
+elevation = { x = 0.2 }
+
+[[probe]]
+energy = true
+
+[frames]
+every = 0.02
+
+[[check]]
+series  = "box.heave_m"
+formula = "0"
+bound   = { off = 0.05 }
+"#;
+
+const DEEP: &str = r#"
+title     = "A ball in a tub"
+dimension = 3
+dp        = 0.05
+until     = 0.1
+
+[[water]]
+fill = { box = { min = [0.0, 0.0, 0.0], max = [0.6, 0.4, 0.3] } }
+
+[[solid]]
+name  = "tub"
+fixed = true
+shape = { tank = { size = [0.6, 0.4, 0.45] } }
+
+[[solid]]
+name  = "ball"
+shape = { ball = { radius = 0.1 } }
+at    = { x = 0.3, y = 0.2, draft = "equilibrium" }
+free  = { density = 500.0 }
+
+[[probe]]
+motion = "ball"
+
+[frames]
+every = 0.05
+"#;
+
+/// An empty folder for the test `name`.
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("report-{name}"));
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+/// Runs `scene` by the program with the arguments `more` and returns the folder of the run.
+fn run_scene(folder: &Path, name: &str, scene: &str, more: &[&str]) -> PathBuf {
+    let file = format!("{name}.toml");
+    fs::write(folder.join(&file), scene).unwrap();
+    let arguments = [&["run", &file, "--out", name, "--quiet"], more].concat();
+    let result = pontoon(folder, &arguments);
+    assert!(result.status.success(), "{}", String::from_utf8_lossy(&result.stderr));
+    folder.join(name)
+}
+
+fn pontoon(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_pontoon"))
+        .args(arguments)
+        .current_dir(folder)
+        .stdin(Stdio::null())
+        .output()
+        .unwrap()
+}
+
+/// Opens `page` in the browser with the arguments `more`, asserts an empty console, and returns the printed text.
+fn browse(page: &Path, profile: &str, more: &[&str]) -> String {
+    let profile = page.with_extension(profile);
+    let result = Command::new(chromium().unwrap())
+        .args(["--headless=new", "--no-sandbox", "--disable-gpu", "--hide-scrollbars", "--enable-logging=stderr"])
+        .args(["--allow-file-access-from-files", "--virtual-time-budget=30000"])
+        .arg(format!("--user-data-dir={}", profile.display()))
+        .args(more)
+        .arg(format!("file://{}", page.display()))
+        .output()
+        .unwrap();
+    let _ = fs::remove_dir_all(&profile);
+    let errors = String::from_utf8_lossy(&result.stderr).into_owned();
+    let console: Vec<&str> = errors.lines().filter(|line| line.contains("CONSOLE")).collect();
+    assert!(console.is_empty(), "{}: {console:#?}", page.display());
+    String::from_utf8_lossy(&result.stdout).into_owned()
+}
+
+/// Runs `script` in the open `page` and returns its object `result`. The players are in `deck`.
+fn evaluate(page: &Path, script: &str) -> Value {
+    let text = fs::read_to_string(page).unwrap();
+    let driver = format!(
+        "<script>pontoon.ready.then(async () => {{ const result = {{}}, {{ deck, films, charts }} = pontoon;\n\
+         const wait = ms => new Promise(go => setTimeout(go, ms));\n{script}\n\
+         const note = document.createElement('pre'); note.id = 'result'; note.textContent = JSON.stringify(result);\n\
+         document.body.append(note); }});</script></body>"
+    );
+    let file = page.with_extension("evaluated.html");
+    fs::write(&file, text.replace("</body>", &driver)).unwrap();
+    let dom = browse(&file, "profile", &["--window-size=1280,6000", "--dump-dom"]);
+    fs::remove_file(&file).unwrap();
+    let result = dom.split("<pre id=\"result\">").nth(1).and_then(|rest| rest.split("</pre>").next());
+    let result =
+        result.expect("the scripts of the page end").replace("&lt;", "<").replace("&gt;", ">").replace("&amp;", "&");
+    serde_json::from_str(&result).unwrap()
+}
+
+/// Takes a screenshot of the open `page` and asserts that it is not blank.
+fn screenshot(page: &Path, name: &str, more: &[&str]) {
+    let file = page.with_file_name(name);
+    let picture = format!("--screenshot={}", file.display());
+    browse(page, name, &[&[picture.as_str()], more].concat());
+    let pixels = Pixmap::load_png(&file).unwrap();
+    assert!(colours(&pixels) > 50, "{} is almost blank", file.display());
+}
+
+/// The number of colours in a picture.
+fn colours(picture: &Pixmap) -> usize {
+    let mut all: Vec<[u8; 4]> = picture.data().as_chunks::<4>().0.to_vec();
+    all.sort_unstable();
+    all.dedup();
+    all.len()
+}
+
+/// The number after `word` in `text`.
+fn number(text: &str, word: &str) -> f64 {
+    let rest = text.split(word).nth(1).unwrap_or_else(|| panic!("{word:?} is not in {text:?}")).trim_start();
+    let sign = if rest.starts_with('−') { -1.0 } else { 1.0 };
+    let digits: String =
+        rest.chars().skip_while(|c| *c == '−').take_while(|c| c.is_ascii_digit() || *c == '.').collect();
+    sign * digits.parse::<f64>().unwrap()
+}
+
+#[test]
+fn the_report_plays_and_shows_the_value_under_the_pointer() {
+    let folder = folder("plays");
+    let scene = format!("{BAY}\n[[probe]]\nbudget = true\n");
+    let page = run_scene(&folder, "bay", &scene, &[]).join(report::REPORT_FILE);
+    assert!(page.is_file(), "a run writes its report");
+    if chromium().is_none() {
+        return;
+    }
+    let script = "const view = deck.views[0], { canvas } = view;
+         deck.button.click(); for (let n = 0; n < 20 && !(deck.t > 0); n++) await wait(500); result.played = deck.t; deck.pause();
+         const key = key => canvas.dispatchEvent(new KeyboardEvent('keydown', { key, bubbles: true }));
+         key('End'); result.end = deck.t; key('Home'); result.home = deck.t; key('ArrowRight'); result.next = deck.t; key('Home');
+         key('+'); result.zoom = deck.look.zoom; key('0'); key('d'); key('w'); result.pan = deck.look.pan; key('0');
+         const point = ([x, y]) => { const box = canvas.getBoundingClientRect();
+           canvas.dispatchEvent(new PointerEvent('pointermove', { clientX: box.left + x, clientY: box.top + y, bubbles: true }));
+           return view.tip.hidden ? '' : view.tip.textContent; };
+         result.water = point(view.pixel([0.21, 0.11])); result.box = point(view.pixel([0.5, 0.3])); result.air = point(view.pixel([0.2, 0.45]));
+         result.titles = charts.all.map(chart => chart.what.title); result.idle = document.querySelector('#charts').textContent;
+         result.frames = films[0].times.length; result.charts = document.querySelectorAll('.uplot').length;
+         result.moved = films[0].pose(1)[1]; deck.seek(0.1); result.later = films[0].pose(1)[1];
+         document.querySelectorAll('details').forEach(fold => fold.open = true); await wait(500);
+         result.wide = document.documentElement.scrollWidth - innerWidth; result.title = document.title;";
+    // The progress depends on the drawing rate of the browser. On a busy machine it can be zero in its virtual time, hence three attempts.
+    let plays = |result: &Value| result["played"].as_f64().unwrap() > 0.0;
+    let result = (0..3).map(|_| evaluate(&page, script)).find(plays).expect("the page plays");
+    assert!(result["home"] == 0.0 && result["end"].as_f64().unwrap() >= 0.2 - 1e-9, "{result}");
+    let next = result["next"].as_f64().unwrap();
+    assert!((0.02..0.03).contains(&next), "the second frame is the first step at or past 0.02 s: {result}");
+    assert_eq!(result["zoom"], 1.4);
+    assert!([0, 1].iter().all(|i| result["pan"][i].as_f64().unwrap() > 0.0), "keys pan to the right and up: {result}");
+    // Still water: P = ρ g (0.3 − y). The lattice adds 2 % at most, and values are rounded to 1/600 of the range.
+    let water = result["water"].as_str().unwrap();
+    let still = 1000.0 * 9.81 * (0.3 - number(water, "y "));
+    assert!((number(water, "pressure ") / still - 1.0).abs() < 0.03, "{water}, hydrostatic {still} Pa");
+    assert!(result["box"].as_str().unwrap().starts_with("box (free)"), "{result}");
+    assert_eq!(result["air"], "");
+    assert_eq!(result["frames"], 11);
+    assert!(result["charts"].as_u64().unwrap() >= 5, "{result}");
+    let entries = result["titles"].as_array().unwrap().iter().filter(|title| *title == "energy by entry").count();
+    let idle = result["idle"].as_str().unwrap();
+    assert!(entries == 1 && idle.contains("0 throughout: ") && idle.contains("motors, springs, forces"), "{result}");
+    assert_ne!(result["moved"], result["later"], "the box moves");
+    assert!(result["wide"].as_f64().unwrap() <= 0.0, "no content overflows at the right: {result}");
+    assert!(result["title"].as_str().unwrap().contains("</script>"), "the title is unchanged: {result}");
+}
+
+#[test]
+fn the_report_renders_in_light_and_dark_mode_and_at_phone_width() {
+    let folder = folder("screenshots");
+    let run = run_scene(&folder, "bay", BAY, &[]);
+    if chromium().is_none() {
+        return;
+    }
+    let page = run.join(report::REPORT_FILE);
+    screenshot(&page, "light.png", &["--window-size=1280,2600"]);
+    screenshot(&page, "dark.png", &["--window-size=1280,2600", "--blink-settings=preferredColorScheme=0"]);
+    // A window is at least 500 pixels wide, so a frame in it has the width of a phone.
+    let frame = run.join("phone.html");
+    let text = format!(
+        "<style>body{{margin:0}}</style><iframe style=\"border:0;width:390px;height:3600px\" src=\"{}\"></iframe>",
+        report::REPORT_FILE
+    );
+    fs::write(&frame, text).unwrap();
+    screenshot(&frame, "phone.png", &["--window-size=500,3600"]);
+}
+
+#[test]
+fn the_report_of_a_3d_run_rotates_and_shows_a_cut() {
+    let folder = folder("deep");
+    let run = run_scene(&folder, "tub", DEEP, &[]);
+    if chromium().is_none() {
+        return;
+    }
+    let result = evaluate(
+        &run.join(report::REPORT_FILE),
+        "const view = deck.views[0], seen = () => { const who = new Set(view.raster.who); return [...who].filter(k => k >= 0).length; };
+         result.all = films[0].n; result.seen = seen(); deck.look.yaw += 1.2; deck.draw(); result.turned = seen();
+         deck.look.mode = 'y'; deck.fit(); result.cut = view.water.near.slice(0, view.water.n).filter(near => near >= 0.45).length;
+         const [x, y] = view.pixel([0.12, 0.12]), box = view.canvas.getBoundingClientRect();
+         view.canvas.dispatchEvent(new PointerEvent('pointermove', { clientX: box.left + x, clientY: box.top + y }));
+         result.tip = view.tip.textContent;",
+    );
+    let figure = |name: &str| result[name].as_u64().unwrap();
+    assert!(figure("seen") > 100 && figure("seen") < figure("all"), "hidden particles are not drawn: {result}");
+    assert!(figure("turned") > 100, "{result}");
+    assert!(figure("cut") >= 40 && figure("cut") < figure("all") / 3, "the cut shows two layers of eight: {result}");
+    assert!(number(result["tip"].as_str().unwrap(), "pressure ") > 500.0, "{result}");
+}
+
+#[test]
+fn the_report_draws_mooring_lines_from_fairlead_to_anchor() {
+    let folder = folder("moored");
+    let line = "\n[[line_type]]\nname = \"chain\"\ndiameter = 0.004\nmass_per_length = 0.1\nstiffness = 500.0\n\
+                [[mooring]]\nname = \"bow\"\nbetween = [\"box\"]\nfrom = [0.5, 0.3]\nto = [0.1, 0.0]\nlength = 0.55\nline = \"chain\"\n\
+                [[mooring]]\nname = \"stern\"\nsince = 0.09\nbetween = [\"box\"]\nfrom = [0.5, 0.3]\nto = [0.7, 0.0]\nlength = 0.4\nline = \"chain\"\n";
+    let run = run_scene(&folder, "bay", &format!("{BAY}{line}"), &[]);
+    if chromium().is_none() {
+        return;
+    }
+    let result = evaluate(
+        &run.join(report::REPORT_FILE),
+        "const view = deck.views[0], shown = () => { const { canvas } = view, [width, height] = [canvas.width, canvas.height];
+           const copy = Object.assign(document.createElement('canvas'), { width, height }).getContext('2d', { willReadFrequently: true });
+           copy.drawImage(canvas, 0, 0); return copy.getImageData(0, 0, width, height).data; };
+         result.lines = []; for (const t of [0, 0.05, 0.2]) { deck.seek(t); result.lines.push(films[0].lines().map(line => [line.length, line[0], line.at(-1)])); }
+         const drawn = shown(), none = (films[0].moorings = null, deck.draw(), shown());
+         result.pixels = none.filter((x, i) => x !== drawn[i]).length;",
+    );
+    let count = |k: usize| result["lines"][k].as_array().unwrap().len();
+    assert_eq!([count(0), count(1), count(2)], [1, 1, 2], "the second line begins at 0.09 s: {result}");
+    let place = |line: &Value, end: usize| [0, 1].map(|c| line[end][c].as_f64().unwrap());
+    for (k, line) in [(0, 0), (1, 0), (2, 0)] {
+        let line = &result["lines"][k][line];
+        let [fairlead, anchor] = [1, 2].map(|end| place(line, end));
+        // Positions are rounded to dp/48, and the box moves by less than a spacing.
+        let off = |at: [f64; 2], x: f64, y: f64| (at[0] - x).hypot(at[1] - y);
+        assert!(off(fairlead, 0.5, 0.3) < 0.02 && off(anchor, 0.1, 0.0) < 0.001, "{line}");
+    }
+    assert!(result["pixels"].as_u64().unwrap() > 300, "the lines are drawn: {}", result["pixels"]);
     screenshot(&run.join(report::REPORT_FILE), "moored.png", &["--window-size=1280,900"]);
 }
 

@@ -17,8 +17,9 @@ use crate::{
     system::System,
 };
 
-/// Largest force that may remain on a node at the start over its weight, –.
-const LARGEST_REST: f64 = 1e-3;
+/// Largest force that may remain on a node at the start over its weight, –: on a line that sinks, and on one that may float, whose
+/// slack part has many shapes nearly at rest.
+const LARGEST_REST: [f64; 2] = [1e-3, 2.0];
 
 /// All mooring lines of a run.
 pub(crate) struct Moorings<const D: usize> {
@@ -68,8 +69,9 @@ impl<const D: usize> Moorings<D> {
         made.fixed = system.solids().iter().enumerate().filter_map(near).collect();
         let mut all: Vec<_> = lines.iter_mut().map(|mooring| &mut mooring.line).collect();
         made.junctions.attach(&mut all, &bodies);
-        for (spec, left) in specs.iter().zip(made.find_rest(system, &mut all)) {
-            if left.is_nan() || left > LARGEST_REST {
+        let rests = made.find_rest(system, &mut all);
+        for ((spec, left), line) in specs.iter().zip(rests).zip(&all) {
+            if left.is_nan() || left > LARGEST_REST[usize::from(line.may_float())] {
                 let what =
                     format!("mooring \"{}\" finds no rest: {left:.1e} of the weight of a node remains", spec.name);
                 return Err(Error::scene(what).help("start its ends nearer, make it longer, or give it fewer segments"));

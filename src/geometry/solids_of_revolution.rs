@@ -1,6 +1,6 @@
 //! Meshes of solids that an outline generates by revolution or by translation.
 //!
-//! Circles become regular polygons of equal area, so that cones and frusta have their exact volume. Ellipsoids and tori are
+//! Circles become regular polygons of equal area, so that cones, frusta and tori have their exact volume. Ellipsoids are
 //! scaled to theirs. The facets lie within `tolerance` (m) of the surface, up to [`MOST_SEGMENTS`] segments of a circle.
 
 use std::f64::consts::{PI, TAU};
@@ -58,10 +58,12 @@ pub(crate) fn frustum(bottom: f64, top: f64, length: f64, axis: usize, tolerance
 /// Those of [`Mesh::new`].
 pub(crate) fn torus(radius: f64, tube: f64, axis: usize, tolerance: f64) -> Result<Mesh> {
     let n = segments(tube, tolerance);
-    let profile: Vec<[f64; 2]> =
-        (0..n).map(|i| (i as f64 / n as f64 * TAU).sin_cos()).map(|(s, c)| [radius + tube * c, tube * s]).collect();
+    let corner = tube * equal_area(n);
+    // The middle of a side, not a corner, is nearest to the axis, and farther from it than the tube.
+    let angles = (0..n).map(|i| (i as f64 + 0.5) / n as f64 * TAU);
+    let profile: Vec<[f64; 2]> = angles.map(f64::sin_cos).map(|(s, c)| [radius + corner * c, corner * s]).collect();
     let (points, facets) = revolved(&profile, true, segments(radius + tube, tolerance));
-    to_volume(along_axis(points, axis), &facets, 2.0 * PI * PI * radius * tube * tube)
+    Mesh::new(&along_axis(points, axis), &facets)
 }
 
 /// The prism of `length` (m) along `axis`, centred on half its length, over the simple polygon `outline` (m), whose coordinates
@@ -100,11 +102,16 @@ pub(crate) fn prism(outline: &[[f64; 2]], length: f64, axis: usize) -> Result<Me
     Mesh::new(&points, &facets)
 }
 
+/// Radius of the corners of a regular polygon of `n` sides over the radius of the circle of equal area.
+pub(crate) fn equal_area(n: usize) -> f64 {
+    let angle = TAU / n as f64;
+    (angle / angle.sin()).sqrt()
+}
+
 /// Revolves the profile of radii and heights (m) about the z axis, in `n` parts. The profile runs upwards outside; it begins and
 /// ends on the axis or, if `closed`, continues from its end to its beginning.
 fn revolved(profile: &[[f64; 2]], closed: bool, n: usize) -> Facets {
-    let angle = TAU / n as f64;
-    let equal_area = (angle / angle.sin()).sqrt();
+    let (angle, equal_area) = (TAU / n as f64, equal_area(n));
     let (mut points, mut rows) = (Vec::new(), Vec::new());
     for (i, &[r, z]) in profile.iter().enumerate() {
         let first = points.len() as u32;

@@ -15,7 +15,9 @@ use super::time_series::TimeSeries;
 use crate::error::{Error, ErrorCode, Result, suggestion};
 pub use column_name::ColumnName;
 use layout::Layout;
-pub(crate) use unit::{Conversion, conversion, is_degree, is_without_size, of_series, si_factor};
+pub(crate) use unit::{
+    Conversion, Meant, conversion, is_assumed, is_degree, is_time_span, is_without_size, of_series, si_factor,
+};
 
 /// The name of the column of times in the tables of a run.
 const OWN_TIME: &str = "t_s";
@@ -84,6 +86,11 @@ impl TableReader {
     /// # Errors
     /// As [`TableReader::columns`], if there is no such column; `Scene` if it has two units that contradict each other.
     pub fn unit(&self, column: impl Into<ColumnName>) -> Result<Option<String>> {
+        self.unit_as(column, None)
+    }
+
+    /// As [`TableReader::unit`], of a column whose values are meant in a known unit: more names have one then, as `x_in`.
+    pub(crate) fn unit_as(&self, column: impl Into<ColumnName>, meant: Option<Meant>) -> Result<Option<String>> {
         let i = self.index(&column.into())?;
         let name = self.layout.names.get(i).map_or("", String::as_str);
         let row = self.layout.units.get(i).map(String::as_str);
@@ -92,7 +99,7 @@ impl TableReader {
                 let what = format!("column \"{name}\" of {} has two units, {one} and {other}", self.file);
                 Err(Error::scene(what).help("keep the one in which its values are"))
             }
-            None => Ok(unit::of_column(name, row)),
+            None => Ok(unit::of_column(name, row, meant).map(String::from)),
         }
     }
 
@@ -108,6 +115,29 @@ impl TableReader {
     /// finite number; in the last two cases the location is the line.
     pub fn columns<C: Into<ColumnName>, const N: usize>(&mut self, names: [C; N]) -> Result<[Vec<f64>; N]> {
         Ok(self.columns_and_lines(names.map(Into::into))?.0)
+    }
+
+    /// As [`TableReader::columns`], but a row without some of the values is refused.
+    ///
+    /// # Errors
+    /// As [`TableReader::columns`]; `Scene` if a row has a value in one of the columns, and none in another.
+    pub(crate) fn complete_columns<C: Into<ColumnName>, const N: usize>(
+        &mut self,
+        names: [C; N],
+    ) -> Result<[Vec<f64>; N]> {
+        let names = names.map(Into::into);
+        let mut indices = [0; N];
+        for (index, name) in indices.iter_mut().zip(&names) {
+            *index = self.index(name)?;
+        }
+        for (line, cells) in self.rows().filter(|(_, cells)| cells.len() == self.layout.count) {
+            let missing = indices.iter().position(|i| cell::is_missing(cells[*i]));
+            if let Some(first) = missing.filter(|_| indices.iter().any(|i| !cells[*i].is_empty())) {
+                let error = Error::scene("a row has no value").help("write the value, or remove the row");
+                return Err(error.at(self.file.as_str(), Some((line, 1)), names[first].to_string()));
+            }
+        }
+        self.columns(names)
     }
 
     /// The columns, and the lines of their rows.
@@ -201,7 +231,10 @@ impl TableReader {
         let ([t, x], lines) = self.columns_and_lines([time.clone(), column.clone()])?;
         if let Some(i) = (1..t.len()).find(|&i| t[i] <= t[i - 1]) {
             let what = format!("times must increase: {} follows {}", t[i], t[i - 1]);
-            let help = "sort the rows, and give a jump two times, as in 1.0 and 1.001";
+            let help = match t[i] == t[i - 1] {
+                true => "write the times with more digits, and give a jump two times, as in 1.0 and 1.001",
+                false => "sort the rows",
+            };
             return Err(Error::scene(what).help(help).at(self.file.as_str(), Some((lines[i], 1)), time.to_string()));
         }
         TimeSeries::new(t, x).map_err(|e| Error { message: format!("{}, {column}: {}", self.file, e.message), ..e })
@@ -213,9 +246,8 @@ impl TableReader {
         if *time != ColumnName::Name(OWN_TIME.into()) || names.iter().any(|name| name == OWN_TIME) {
             return time.clone();
         }
-        let is_time = |name: &&String| TIMES.contains(&unit::split_name(name).0.to_lowercase().as_str());
-        let is_numbered = matches!(column, ColumnName::Number(number) if *number > 1);
-        let found = match names.iter().filter(is_time).collect::<Vec<_>>()[..] {
+        let is_numbered = matches!(column, ColumnName::Number(number) if *number > 1) && !self.layout.counts_rows;
+        let found = match names.iter().filter(|name| is_time(name)).collect::<Vec<_>>()[..] {
             [name] => ColumnName::Name(name.clone()),
             _ if is_numbered || (names.is_empty() && self.layout.unfit.is_none() && self.layout.count > 0) => {
                 ColumnName::Number(1)
@@ -246,9 +278,30 @@ impl TableReader {
         error.help("leave a cell blank where a value is missing")
     }
 
+    /// The error of a row that was taken for the names, if the column `name` is in the row above it.
+    fn error_of_units(&self, name: &str) -> Option<Error> {
+        let names = &self.layout.names;
+        let (line, above) = self.layout.above_names.as_ref()?;
+        above.iter().find(|above| *above == name || (name == OWN_TIME && is_time(above)))?;
+        let known = "such as m, mm, N, kN, rad, deg, s";
+        if !names.iter().any(|unit| unit::is_known(unit)) {
+            let what = format!("{} has two rows of names, and line {line} is used", self.file);
+            return Some(Error::scene(what).help(format!("remove one of them, or write known units, {known}")));
+        }
+        let unknown = names.iter().filter(|unit| !unit.is_empty() && !unit::is_unit(unit));
+        let unknown: Vec<String> = unknown.map(|unit| format!("\"{unit}\"")).collect();
+        let what = format!("{} has an unknown unit, {} in line {line}", self.file, unknown.join(", "));
+        let error = Error::scene(what).help(format!("write a known one, {known}, or remove the line"));
+        (!unknown.is_empty()).then_some(error)
+    }
+
     /// The place of the column `name`.
     fn index(&self, name: &ColumnName) -> Result<usize> {
         let (names, count) = (&self.layout.names, self.layout.count);
+        if count == 0 {
+            let what = if self.text.trim().is_empty() { "is empty" } else { "has comments alone" };
+            return Err(Error::scene(format!("{} {what}", self.file)).help("write its rows, or name another file"));
+        }
         let missing = |what: String| Error::scene(format!("{} {what}", self.file)).with_code(ErrorCode::UnknownName);
         let name = match name {
             ColumnName::Number(number) => {
@@ -268,20 +321,24 @@ impl TableReader {
         }
         match found[..] {
             [one] => Ok(one),
-            [] if names.is_empty() && count > 0 => {
-                let what = match self.layout.unfit {
-                    Some(unfit) => format!("has {unfit} names over rows of {count} cells"),
-                    None => format!("has no row of names, so no column \"{name}\""),
-                };
-                Err(missing(what).help(format!("give the number of the column, from 1 to {count}, as in  column = 2")))
-            }
+            [] if names.is_empty() => Err(match self.layout.unfit {
+                Some(unfit) => {
+                    let first = if self.layout.counts_rows { ", the first of which numbers the rows" } else { "" };
+                    missing(format!("has {unfit} names over rows of {count} cells{first}")).help(format!(
+                        "name every column, or give the number of the column, from 1 to {count}, without quotation marks"
+                    ))
+                }
+                None => missing(format!("has no row of names, so no column \"{name}\""))
+                    .help(format!("give the number of the column, from 1 to {count}, as in  column = 2")),
+            }),
             [] => {
-                if let Some(wrong) = self.layout.unknown_unit_below(name) {
-                    return Err(Error::scene(format!("{} has an unknown unit, {wrong}", self.file))
-                        .help("write a known one, such as m, mm, N, kN, rad, deg, s, or remove the line"));
+                if let Some(error) = self.error_of_units(name) {
+                    return Err(error);
                 }
                 let guess = suggestion(name, names.iter().map(String::as_str));
-                let help = format!("its columns: {}", names.join(", "));
+                let is_number = name.parse().is_ok_and(|number: usize| (1..=count).contains(&number));
+                let number = if is_number { format!("write {name} without quotation marks; ") } else { String::new() };
+                let help = format!("{number}its columns: {}", names.join(", "));
                 Err(missing(format!("has no column \"{name}\"{guess}")).help(help))
             }
             [first, second, ..] => Err(missing(format!("has more than one column \"{name}\"")).help(format!(
@@ -291,6 +348,11 @@ impl TableReader {
             ))),
         }
     }
+}
+
+/// Returns whether a column of this name has times.
+fn is_time(name: &str) -> bool {
+    TIMES.contains(&unit::split_name(name).0.to_lowercase().as_str())
 }
 
 #[cfg(test)]

@@ -1,8 +1,9 @@
-//! Times of constraints and solids that the run does not reach, and lines and joints that break at the start or before rest.
+//! Times of checks, constraints and solids that the run does not reach, and lines and joints that break at the start or before rest.
 
 use super::{Finding, PreflightContext};
 use crate::{
     math::format::{three_digits, two_digits_up},
+    plan::Reference,
     solid::{Lifetime, statics::Overload},
 };
 
@@ -67,6 +68,22 @@ pub(super) fn check<const D: usize>(context: &PreflightContext<'_, D>, findings:
         ("solid", name, Lifetime::default().until(removal.at))
     });
     let end = context.end_time();
+    for check in &context.plan.checks {
+        let of_response = match &check.reference {
+            Reference::Response(response) => response.from,
+            Reference::Table { .. } | Reference::Formula(_) => None,
+        };
+        let times = [("from", check.from), ("zero", check.zero), ("response.from", of_response)];
+        if let Some((key, at)) = times.iter().find_map(|(key, at)| Some((key, at.filter(|at| *at >= end)?))) {
+            let what = format!(
+                "the check of \"{}\" has {key} = {} s, and the run ends at {} s: nothing is judged",
+                check.series,
+                three_digits(at),
+                three_digits(end)
+            );
+            findings.push(Finding::warning("event_after_end", what, "begin earlier, or run longer".into()));
+        }
+    }
     for statistic in &context.plan.statistics {
         if let Some(from) = statistic.from.filter(|from| *from >= end) {
             let what = format!(

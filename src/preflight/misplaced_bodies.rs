@@ -45,13 +45,19 @@ impl<const D: usize> PreflightContext<'_, D> {
         self.distant_attachments(findings);
     }
 
-    /// A finding about a body that starts beside the water, or is longer than the water.
+    /// A finding about a body that starts beside or below the water, or is longer than the water.
     fn outside_water(&self, solid: &Solid<D>, water: &Bounds<D>) -> Option<Finding> {
         let (name, own) = (&solid.spec.name, world_bounds(&solid.spec.shape, &solid.kinematics.pose));
         let (long, there) = (own.size(), water.size());
         if own.contains(&water.min) && own.contains(&water.max) {
             // All the water is its own.
             return None;
+        }
+        if own.max[D - 1] < water.min[D - 1] {
+            let (up, low) = (["y", "z"][D - 2], three_digits(water.min[D - 1]));
+            let what = format!("\"{name}\" starts below the water, whose lowest point is at {up} = {low} m");
+            let mend = "raise it: a draft is the depth of its lowest point below the still level".into();
+            return Some(Finding::warning("beside_water", what, mend));
         }
         for (axis, word) in ["x", "y"].iter().enumerate().take(D - 1) {
             let [first, last] = [water.min[axis], water.max[axis]].map(three_digits);

@@ -1,7 +1,7 @@
 //! Translates errors of the parser for users: the fault, the nearest valid name, an example.
 
 use crate::{
-    error::{Error, ErrorCode, nearest_name, suggestion},
+    error::{Error, ErrorCode, nearest_name},
     probe,
 };
 
@@ -63,7 +63,7 @@ const EXAMPLES: &[(&str, &str)] = &[
     ("solid.shape.ball", "shape = { ball = { radius = 0.1 } }"),
     ("solid.shape.capsule", "shape = { capsule = { length = 0.2, radius = 0.05, axis = \"x\" } }"),
     ("solid.shape.cylinder", "shape = { cylinder = { length = 0.2, radius = 0.05, axis = \"z\" } }"),
-    ("solid.shape.ellipsoid", "shape = { ellipsoid = { radii = [0.3, 0.1, 0.1] } }"),
+    ("solid.shape.ellipsoid", "shape = { ellipsoid = { radii = [0.2, 0.1] } }        # m, one number an axis"),
     ("solid.shape.cone", "shape = { cone = { radius = 0.1, length = 0.2 } }"),
     ("solid.shape.frustum", "shape = { frustum = { radius_bottom = 0.2, radius_top = 0.1, length = 0.2 } }"),
     ("solid.shape.wedge", "shape = { wedge = { size = [1.0, 0.5, 0.2] } }"),
@@ -303,6 +303,31 @@ fn line_of(key: &str, example: &str) -> Option<String> {
     lines.find(|line| line.split('=').next().is_some_and(|k| k.trim() == key)).map(example_help)
 }
 
+/// Words of other programs and of the literature, and the name of each in a scene.
+const SYNONYMS: &[(&str, &str)] = &[
+    ("sphere", "ball"),
+    ("disc", "ball"),
+    ("ellipse", "ellipsoid"),
+    ("convex", "hull"),
+    ("H", "height"),
+    ("Hs", "height"),
+    ("T", "period"),
+    ("T", "peak_period"),
+    ("Tp", "peak_period"),
+];
+
+/// Returns the name of `known` that means `word`, or the one nearest to it.
+fn nearest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
+    let meant = SYNONYMS.iter().filter(|(other, _)| *other == word);
+    let meant = meant.flat_map(|(_, name)| known.iter().find(|known| *known == name)).next();
+    meant.copied().or_else(|| nearest_name(word, known.iter().copied()))
+}
+
+/// Returns the end of a message that proposes `name`.
+fn proposal(name: Option<&str>) -> String {
+    name.map_or(String::new(), |name| format!("; did you mean \"{name}\"?"))
+}
+
 /// Returns the names in backticks in the `message` of the parser.
 fn quoted(message: &str) -> Vec<&str> {
     message.split('`').skip(1).step_by(2).collect()
@@ -328,13 +353,14 @@ pub(super) fn explain(message: &str, key: &str) -> (Error, String) {
         // `key` is the unknown key or, for an untagged type, the key above it.
         let above = if key == *word { Some("") } else { key.strip_suffix(&format!(".{word}")) };
         let parent = above.unwrap_or(key);
-        let error = Error::scene(format!("unknown key \"{word}\"{}", suggestion(word, known.iter().copied())))
-            .with_code(ErrorCode::UnknownKey);
+        let nearest = nearest(word, known);
+        let error =
+            Error::scene(format!("unknown key \"{word}\"{}", proposal(nearest))).with_code(ErrorCode::UnknownKey);
         let shown = if parent.is_empty() { word.to_string() } else { format!("{parent}.{word}") };
         // The example must have the same parent: the velocity of water differs from the velocity key of a probe.
-        let near = nearest_name(word, known.iter().copied()).and_then(|near| example(&format!("{parent}.{near}")));
+        let near = nearest.and_then(|near| example(&format!("{parent}.{near}")));
         // The example of the section would repeat the lines that the scene has.
-        let other = || match nearest_name(word, known.iter().copied()) {
+        let other = || match nearest {
             Some(near) => format!("write  {near}  in place of  {word}"),
             None => format!("remove  {word}: a scene has no such key here"),
         };
@@ -347,13 +373,12 @@ pub(super) fn explain(message: &str, key: &str) -> (Error, String) {
             Some(above) => (above, true),
             None => (key, false),
         };
-        let error =
-            Error::scene(format!("unknown {} \"{word}\"{}", key_noun(key), suggestion(word, known.iter().copied())))
-                .with_code(ErrorCode::UnknownName);
-        let known_names = known.iter().copied();
+        let nearest = nearest(word, known);
+        let error = Error::scene(format!("unknown {} \"{word}\"{}", key_noun(key), proposal(nearest)))
+            .with_code(ErrorCode::UnknownName);
         let known = format!("known: {}", list(known));
         let in_list = key.rsplit('.').next().is_some_and(|part| part.parse::<usize>().is_ok());
-        let near = nearest_name(word, known_names).map(|near| {
+        let near = nearest.map(|near| {
             example(&format!("{key}.{near}")).unwrap_or_else(|| match is_table || in_list {
                 true => format!("write  {near}  in place of  {word}"),
                 false => format!("write  {} = \"{near}\"", key_noun(key)),
@@ -378,6 +403,13 @@ pub(super) fn explain(message: &str, key: &str) -> (Error, String) {
     {
         let found = translated_found(found);
         let error = Error::scene(format!("{} must be {}, not {found}", key_noun(key), translated_type(wanted)))
+            .with_code(ErrorCode::WrongType);
+        return (with(error, example(key).into_iter().collect()), key.to_string());
+    }
+    if let Some((found, wanted)) =
+        message.strip_prefix("invalid length ").and_then(|rest| rest.split_once(", expected an array of length "))
+    {
+        let error = Error::scene(format!("{} must be a list of {wanted}, not of {found}", key_noun(key)))
             .with_code(ErrorCode::WrongType);
         return (with(error, example(key).into_iter().collect()), key.to_string());
     }

@@ -10,12 +10,13 @@ pub(crate) struct Text {
     pub(crate) encoding: Option<&'static str>,
 }
 
-/// Beginnings of foreign files, with the name of the format. Letters are compared without case.
-const BEGINNINGS: [(&[u8], &str); 21] = [
+/// Beginnings of packed files, with the name of the format. Letters are compared without case.
+const PACKED: [(&[u8], &str); 3] =
+    [(b"\x1f\x8b", "a file compressed by gzip"), (b"7z\xbc\xaf", "a 7-Zip archive"), (b"rar!", "a RAR archive")];
+
+/// Beginnings of other foreign files, likewise.
+const BEGINNINGS: [(&[u8], &str); 18] = [
     (b"pk\x03\x04", "a zip archive, as are .3mf and .usdz"),
-    (b"\x1f\x8b", "a file compressed by gzip"),
-    (b"7z\xbc\xaf", "a 7-Zip archive"),
-    (b"rar!", "a RAR archive"),
     (b"%pdf", "a PDF document"),
     (b"\x89png", "a PNG picture"),
     (b"\xff\xd8\xff", "a JPEG picture"),
@@ -45,8 +46,12 @@ pub(crate) fn check(path: &Path, bytes: &[u8], wanted: &str) -> Result<()> {
     };
     // The header of binary STL may contain any text.
     let count = bytes.get(80..84).and_then(|count| count.try_into().ok()).map(u32::from_le_bytes);
-    if wanted == "STL" && count.is_some_and(|count| bytes.len() as u64 == 84 + 50 * u64::from(count)) {
-        return Ok(());
+    if count.is_some_and(|count| bytes.len() as u64 == 84 + 50 * u64::from(count)) {
+        match wanted {
+            "STL" => return Ok(()),
+            "OBJ" => return refuse("binary STL", "let the name end in .stl".into()),
+            _ => {}
+        }
     }
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let begun = bytes.iter().position(|b| !b.is_ascii_whitespace()).unwrap_or(bytes.len());
@@ -65,6 +70,9 @@ pub(crate) fn check(path: &Path, bytes: &[u8], wanted: &str) -> Result<()> {
             "a web page (HTML)",
             "download the file itself: the page has a link \"raw\" or \"download\"".into(),
         );
+    }
+    if let Some((_, name)) = PACKED.iter().find(|(begin, _)| start.starts_with(begin)) {
+        return refuse(name, format!("unpack it, and give the {wanted} file in it"));
     }
     if wanted == "SVG" {
         return match BEGINNINGS.iter().find(|(begin, _)| begin[0] != b'<' && start.starts_with(begin)) {

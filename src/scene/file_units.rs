@@ -3,7 +3,7 @@
 use super::{
     context::Context,
     section::{
-        shape::{ShapeConfig, world_bounds},
+        shape::{AxisName, ShapeConfig, world_bounds},
         solid::SolidConfig,
         water::WaterBody,
     },
@@ -32,16 +32,26 @@ const UNITS: [(LengthUnit, &str); 4] =
 struct FileUnit<'a> {
     file: &'a str,
     unit: Option<LengthUnit>,
+    /// The axis along which the scene gives the size of the shape.
+    length_axis: Option<AxisName>,
 }
 
 /// Returns the unit of the first file that gives a shape, or `None` if none does.
 fn file_unit(shape: &ShapeConfig) -> Option<FileUnit<'_>> {
     match shape {
-        ShapeConfig::Mesh(config) => Some(FileUnit { file: &config.file, unit: config.unit }),
+        ShapeConfig::Mesh(config) => Some(FileUnit { file: &config.file, unit: config.unit, length_axis: None }),
         ShapeConfig::Polygon(config) if config.is_drawing() => {
-            Some(FileUnit { file: config.file.as_deref()?, unit: config.unit })
+            Some(FileUnit { file: config.file.as_deref()?, unit: config.unit, length_axis: None })
         }
-        ShapeConfig::Compound(parts) => parts.iter().find_map(|part| file_unit(&part.shape)),
+        ShapeConfig::Prism(config) if config.outline().is_drawing() => Some(FileUnit {
+            file: config.file.as_deref()?,
+            unit: config.unit,
+            length_axis: Some(config.axis.unwrap_or(AxisName::Z)),
+        }),
+        // The axes of a part are not those of the compound.
+        ShapeConfig::Compound(parts) => {
+            parts.iter().find_map(|part| file_unit(&part.shape)).map(|unit| FileUnit { length_axis: None, ..unit })
+        }
         _ => None,
     }
 }
@@ -62,8 +72,10 @@ pub(super) fn require_plausible_units<const D: usize>(
     let boxes = water.iter().map(|body| world_bounds(&body.region.shape, &body.region.pose));
     let room = boxes.fold(Bounds::empty(), |a, b| a.union(&b)).size().max();
     for (i, (config, solid)) in configs.iter().zip(solids).enumerate() {
-        let Some(FileUnit { file, unit }) = file_unit(&config.shape) else { continue };
-        let size = solid.shape.bounds().size().max();
+        let Some(FileUnit { file, unit, length_axis }) = file_unit(&config.shape) else { continue };
+        let size = solid.shape.bounds().size();
+        let of_file = (0..D).filter(|&axis| length_axis.is_none_or(|length| length as usize != axis));
+        let size = of_file.map(|axis| size[axis]).fold(0.0, f64::max);
         let key = format!("solid.{i}.shape");
         let largest = if matches!(solid.role, Role::Fixed) { LARGEST_FIXED } else { LARGEST_MOVING };
         if unit.is_none() && size > largest * room {

@@ -85,7 +85,11 @@ pub(crate) fn read(path: &Path, options: &MeshOptions) -> Result<(Mesh, Vec<File
         _ => {
             let what =
                 format!("{} is not a mesh that is known: its name ends in neither .stl nor .obj", path.display());
-            return Err(Error::scene(what).help("export it as STL (text or binary) or OBJ"));
+            let help = match kind.as_str() {
+                "gz" | "zip" | "7z" | "rar" => "unpack it, and give the STL or OBJ file in it",
+                _ => "export it as STL (text or binary) or OBJ",
+            };
+            return Err(Error::scene(what).help(help));
         }
     };
     let bytes = bytes(path)?;

@@ -6,7 +6,7 @@ use super::{
     untagged::CoordinateUnit,
 };
 use crate::{
-    error::Result,
+    error::{Error, ErrorCode, Result},
     math::{
         format::three_digits,
         table::{self, ColumnName, Conversion, TableReader},
@@ -20,9 +20,8 @@ const MUCH_LONGER: f64 = 20.0;
 /// Largest difference between the spacings of even samples, over their mean, –.
 const UNEVEN: f64 = 0.01;
 
-/// Units of time, which do not occur in columns of values. `v_ms` is a speed.
-const TIME_UNITS: [&str; 15] =
-    ["ms", "msec", "us", "µs", "min", "minute", "minutes", "h", "hr", "hrs", "hour", "hours", "d", "day", "days"];
+/// Largest difference between a scale and the factor from degrees to radians, over it, –: 0.0175 is this factor.
+const SAME_FACTOR: f64 = 0.005;
 
 /// Values by which loggers mark missing ones.
 const MISSING: [f64; 6] = [-999.0, -9999.0, -99999.0, 999.0, 9999.0, 99999.0];
@@ -79,9 +78,13 @@ pub(super) fn verify_scaling(ctx: &Context, key: &str, [scale, factor, offset]: 
 
 /// Returns the advice to name a column of this file, with its columns if it can be read.
 pub(super) fn column_help(ctx: &Context, file: &str) -> String {
-    let names = files::open_table(ctx.folder(), file).map(|table| table.column_names()).unwrap_or_default();
+    let table = files::open_table(ctx.folder(), file).ok();
+    let names = table.as_ref().map(TableReader::column_names).unwrap_or_default();
     match &names[..] {
         [] => "write  column = ..,  the name or the number of a column".into(),
+        [.., last] if table.is_some_and(|table| table.header().is_empty()) => {
+            format!("write  column = {last},  or another of its columns: {}", names.join(", "))
+        }
         [.., last] => format!("write  column = \"{last}\",  or another of its columns: {}", names.join(", ")),
     }
 }
@@ -97,6 +100,24 @@ pub(super) fn note_layout(ctx: &Context, key: &str, file: &str, table: &TableRea
     });
 }
 
+/// Returns the error of a law from the record at `key`, with the remedies of the notes on the record's units.
+pub(super) fn with_unit_notes(ctx: &Context, key: &str, error: Error) -> Error {
+    let place = format!("({})", ctx.shown_key(key));
+    let is_of_unit = |note: &&FileNote| match note.topic {
+        "record_unit" => note.is_warning,
+        "record_span" => note.remedy.contains("time_factor"),
+        _ => false,
+    };
+    let notes = ctx.file_notes.borrow();
+    let found = notes.iter().filter(|note| note.what.contains(&place)).filter(is_of_unit);
+    let mut help: Vec<String> = found.map(|note| format!("{}: {}", note.what, note.remedy)).collect();
+    if help.is_empty() {
+        return error;
+    }
+    help.extend(error.help.clone());
+    error.help(help.join("; else "))
+}
+
 impl Record<'_> {
     /// Returns the samples of the table in its own scale and on its own clock. Adds notes on layout and units.
     ///
@@ -107,13 +128,13 @@ impl Record<'_> {
         let series = self.table.series(time.clone(), self.column.clone())?;
         note_layout(self.ctx, self.key, self.file, &self.table);
         self.note_missing(&series);
-        let unit = self.table.unit(time.clone())?;
+        let unit = self.table.unit_as(time.clone(), Some(("s", self.ctx.dimension)))?;
         if self.scaling.time_factor == 1.0 {
             self.note_unit(&time, unit.as_deref(), Some("s"), "time_factor");
         }
-        let unit = self.table.unit(self.column.clone())?;
+        let unit = self.table.unit_as(self.column.clone(), self.unit.map(|unit| (unit, self.ctx.dimension)))?;
         if self.scaling.scale == 1.0 {
-            let value = unit.as_deref().filter(|unit| !TIME_UNITS.contains(unit));
+            let value = unit.as_deref().filter(|unit| !table::is_time_span(unit));
             self.note_unit(&self.column, value, self.unit, "scale");
         }
         if self.table.is_one_column(&time, &self.column) {
@@ -164,10 +185,12 @@ impl Record<'_> {
     /// `Scene`, with a column that may be meant.
     pub(super) fn require_time(&mut self) -> Result<()> {
         let time = self.table.time_column(&self.time, &self.column);
-        let names = self.table.column_names();
+        let names = self.table.header();
         let value = self.column.to_string();
-        self.table.unit(time.clone()).map(|_| ()).map_err(|error| {
-            let other = names.iter().find(|name| **name != value).filter(|_| self.time == ColumnName::from("t_s"));
+        self.table.unit(time).map(|_| ()).map_err(|error| {
+            let is_missing = self.time == ColumnName::from("t_s") && error.code() == ErrorCode::UnknownName;
+            let is_other = |name: &&String| **name != value && !name.is_empty();
+            let other = names.iter().find(is_other).filter(|_| is_missing);
             match other {
                 Some(name) => {
                     let all = names.join(", ");
@@ -180,23 +203,45 @@ impl Record<'_> {
     }
 
     /// Takes the unit in which a law is meant, and returns the factor from the column's values to those of the run. The name or
-    /// the row of units shows that a column is in degrees.
+    /// the row of units shows that a column is in degrees. Adds notes on their conversion.
     ///
     /// # Errors
     /// `Scene` if there is no such column.
     pub(super) fn take_unit(&mut self, law: CoordinateUnit) -> Result<f64> {
-        let unit = self.table.unit(self.column.clone())?;
-        let degrees = match law {
-            CoordinateUnit::Degrees => true,
-            CoordinateUnit::Radians => unit.as_deref().is_some_and(table::is_degree),
-            CoordinateUnit::Si(_) => false,
-        };
-        self.unit = Some(match law {
-            CoordinateUnit::Si(unit) => unit,
-            _ if degrees => "deg",
-            _ => "rad",
-        });
-        Ok(if degrees { 1f64.to_radians() } else { 1.0 })
+        if let CoordinateUnit::Si(unit) = law {
+            self.unit = Some(unit);
+            return Ok(1.0);
+        }
+        let meant = if law == CoordinateUnit::Degrees { "deg" } else { "rad" };
+        let unit = self.table.unit_as(self.column.clone(), Some((meant, self.ctx.dimension)))?;
+        let named = unit.as_deref().filter(|unit| table::is_degree(unit));
+        if law == CoordinateUnit::Radians && named.is_none() {
+            self.unit = Some("rad");
+            return Ok(1.0);
+        }
+        self.unit = Some("deg");
+        let factor = 1f64.to_radians();
+        let (scale, column) = (self.scaling.scale, self.named_column());
+        if (scale.abs() / factor - 1.0).abs() < SAME_FACTOR {
+            self.ctx.add_note(FileNote::warning(
+                "record_unit",
+                format!("{column} is converted from degrees to radians, and again by scale = {scale}"),
+                "remove scale".into(),
+            ));
+        }
+        if let Some(unit) = named.filter(|unit| law == CoordinateUnit::Radians && table::is_assumed(unit)) {
+            self.ctx.add_note(FileNote::note(
+                "record_unit",
+                format!("{column} is in \"{unit}\", which is taken as degrees"),
+                "give values in radians a name that ends in _rad".into(),
+            ));
+        }
+        Ok(factor)
+    }
+
+    /// Returns the column with its file and key, for messages.
+    fn named_column(&self) -> String {
+        format!("column \"{}\" of {} ({})", self.column, self.file, self.ctx.shown_key(self.key))
     }
 
     /// Adds the warning that a column is in another `unit` than the one in which its values are `meant`.
@@ -206,7 +251,11 @@ impl Record<'_> {
         let conversion = meant.and_then(|meant| Some((meant, table::conversion(unit, meant, self.ctx.dimension)?)));
         let (used, remedy) = match conversion {
             Some((_, Conversion::Factor(factor))) if (factor - 1.0).abs() < 1e-9 => return,
-            Some((meant, Conversion::Factor(factor))) => (format!("used as if in {meant}"), write(factor)),
+            Some((meant, Conversion::Factor(factor))) => {
+                let assumed = format!("; 1 {unit} is taken as {} {meant}", three_digits(factor));
+                let assumed = if table::is_assumed(unit) { assumed } else { String::new() };
+                (format!("used as if in {meant}"), write(factor) + &assumed)
+            }
             Some((meant, Conversion::Weight(factor))) => {
                 let weight = format!("; the weight of 1 {unit} is {} {meant}", three_digits(factor));
                 (format!("a mass, where {meant} is meant"), write(factor) + &weight)
@@ -217,7 +266,7 @@ impl Record<'_> {
             }
             None => match table::si_factor(unit) {
                 Some(factor) => ("used as if in another unit".into(), write(factor)),
-                None => return self.note_unknown_unit(column, unit, key),
+                None => return self.note_unknown_unit(column, unit, meant, key),
             },
         };
         self.ctx.add_note(FileNote::warning(
@@ -232,18 +281,22 @@ impl Record<'_> {
     }
 
     /// Adds the note that a column is in a `unit` whose size is not known.
-    fn note_unknown_unit(&self, column: &ColumnName, unit: &str, key: &str) {
+    fn note_unknown_unit(&self, column: &ColumnName, unit: &str, meant: Option<&str>, key: &str) {
         if !table::is_without_size(unit) {
             return;
         }
         let (file, shown) = (self.file, self.ctx.shown_key(self.key));
+        let si = meant.unwrap_or("SI units");
         self.ctx.add_note(FileNote::note(
             "record_unit",
             format!(
                 "column \"{column}\" of {file} ({shown}) is in \"{unit}\", which has no one meaning as a unit; its \
-                     values are taken as those of the SI"
+                     values are taken as if in {si}"
             ),
-            format!("write the size of the unit, as in  {key} = 0.001,  beside the column"),
+            match meant {
+                Some(meant) => format!("write the size of the unit in {meant} as  {key} = ..  beside the column"),
+                None => format!("write the size of the unit, as in  {key} = 0.001,  beside the column"),
+            },
         ));
     }
 

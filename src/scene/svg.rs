@@ -15,7 +15,7 @@ use super::{
     mesh,
     untagged::LengthUnit,
 };
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, suggestion};
 use element::{DRAWN, element_path};
 use style::StyleSheets;
 
@@ -91,7 +91,10 @@ pub(crate) fn outline(path: &Path, options: &DrawingOptions) -> Result<(Vec<[f64
             (0, Some(id)) if exists(id) => {
                 format!("the element with the id \"{id}\" is hidden, a definition, or neither a path nor a basic shape")
             }
-            (0, Some(id)) => format!("there is no path or basic shape with the id \"{id}\""),
+            (0, Some(id)) => {
+                let ids = search.found.iter().filter_map(|drawn| drawn.node.attribute("id"));
+                format!("there is no path or basic shape with the id \"{id}\"{}", suggestion(id, ids))
+            }
             (0, None) => "there is no path or basic shape in this drawing".into(),
             (n, _) => {
                 let names: Vec<&str> = chosen.iter().map(|drawn| drawn.node.tag_name().name()).collect();

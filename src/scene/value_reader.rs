@@ -125,14 +125,37 @@ impl<'de> Deserializer<'de> for ValueReader<'de> {
                 choice.ok_or_else(|| ReadError::custom("wanted exactly 1 element, found 0 elements"))
             }
             DeValue::Table(_) => Err(ReadError::custom("wanted exactly 1 element")),
-            _ => Err(ReadError::custom("wanted string or table")),
+            other => Err(ReadError::invalid_type(unexpected(&other), &"a word, or a table with one key")),
         };
         choice.and_then(|choice| visitor.visit_enum(choice)).map_err(|e| e.at(&self.span))
     }
 
+    /// A derived visitor would also take a list of the fields, in their order and without their names.
+    fn deserialize_struct<V: Visitor<'de>>(
+        self,
+        _name: &'static str,
+        _fields: &'static [&'static str],
+        visitor: V,
+    ) -> Result<V::Value, ReadError> {
+        match self.value {
+            DeValue::Array(_) => Err(ReadError::invalid_type(Unexpected::Seq, &visitor).at(&self.span)),
+            _ => self.deserialize_any(visitor),
+        }
+    }
+
+    /// A derived visitor would leave out what follows the last of its items.
+    fn deserialize_tuple<V: Visitor<'de>>(self, len: usize, visitor: V) -> Result<V::Value, ReadError> {
+        match &self.value {
+            DeValue::Array(items) if items.len() > len => {
+                Err(ReadError::invalid_length(items.len(), &visitor).at(&self.span))
+            }
+            _ => self.deserialize_any(visitor),
+        }
+    }
+
     forward_to_deserialize_any! {
-        bool i8 i16 i32 i64 u8 u16 u32 u64 f32 f64 char str string bytes byte_buf unit unit_struct seq tuple tuple_struct map
-        struct identifier ignored_any
+        bool i8 i16 i32 i64 u8 u16 u32 u64 f32 f64 char str string bytes byte_buf unit unit_struct seq tuple_struct map
+        identifier ignored_any
     }
 }
 
@@ -225,7 +248,20 @@ impl<'de> VariantAccess<'de> for ChosenValue<'de> {
         {
             return Err(ReadError::unknown_field(key.get_ref(), fields).at(&key.span()));
         }
-        value.deserialize_any(visitor)
+        value.deserialize_struct("", fields, visitor)
+    }
+}
+
+/// Returns the description of a value that is neither a word nor a table.
+fn unexpected<'a>(value: &'a DeValue) -> Unexpected<'a> {
+    match value {
+        DeValue::Integer(number) => Unexpected::Other(number.as_str()),
+        DeValue::Float(number) => Unexpected::Other(number.as_str()),
+        DeValue::Boolean(truth) => Unexpected::Bool(*truth),
+        DeValue::Array(_) => Unexpected::Seq,
+        DeValue::Datetime(_) => Unexpected::Other("a date"),
+        DeValue::String(word) => Unexpected::Str(word),
+        DeValue::Table(_) => Unexpected::Map,
     }
 }
 

@@ -1,6 +1,7 @@
 //! Completes a surface that is not closed: the mirror image of a half, a cap on open edges, a plate around a sheet.
 
 use super::{
+    moments,
     surface::{Surface, counted, sorted_edges},
     welding::format_position,
 };
@@ -173,7 +174,12 @@ fn fill(flat: &[[f64; 2]], rings: Vec<Vec<u32>>) -> Option<Vec<[u32; 3]>> {
 }
 
 /// Replaces the surface by a plate of this thickness (m), half of it on each side.
-pub(super) fn thicken(surface: &mut Surface, thickness: f64) -> Result<()> {
+pub(super) fn thicken(surface: &mut Surface, thickness: f64, notes: &mut Vec<String>) -> Result<()> {
+    let size = surface.bounds().size().max();
+    if thickness > size {
+        let what = format!("thickness = {thickness} makes a plate thicker than the mesh is large, {size:.4} m");
+        return Err(Error::scene(what).help("thickness is in m, whatever the unit of the file: 20 mm are  0.02"));
+    }
     let edges = sorted_edges(&surface.facets);
     let groups = || edges.chunk_by(|a, b| (a.low, a.high) == (b.low, b.high));
     if let Some(group) = groups().find(|group| group.len() > 2 || group.len() == 2 && group[0].up == group[1].up) {
@@ -182,6 +188,13 @@ pub(super) fn thicken(surface: &mut Surface, thickness: f64) -> Result<()> {
         return Err(Error::scene(what).help("give each sheet its own mesh, as parts of a compound"));
     }
     let rim = open_edges(surface);
+    if rim.is_empty() {
+        let volume = moments(&surface.points, &surface.facets).volume.abs();
+        notes.push(format!(
+            "the mesh is closed: thickness = {thickness} makes it a hollow shell; without thickness it is a solid of \
+             {volume:.3e} m³"
+        ));
+    }
     let n = surface.points.len() as u32;
     let mut squares = vec![Matrix::<3>::zeros(); surface.points.len()];
     let mut sums = vec![Vector::<3>::zeros(); surface.points.len()];

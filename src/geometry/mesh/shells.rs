@@ -35,9 +35,9 @@ pub(crate) fn check_orientation(points: &[Vector<3>], facets: &[[u32; 3]]) -> Re
     let shells = shells(points, facets);
     let whole: f64 = shells.iter().map(|shell| shell.volume).sum();
     let judged = |i: usize| {
-        let inward = shells[i].volume < 0.0;
-        let (x, turns) = around(i, &shells, points)?;
-        (shells[i].volume.abs() > NOTHING * whole && turns != f64::from(u8::from(inward))).then_some((i, x, turns))
+        let expected = f64::from(u8::from(shells[i].volume < 0.0));
+        let (x, turns) = around(i, expected, &shells, points)?;
+        (shells[i].volume.abs() > NOTHING * whole && turns != expected).then_some((i, x, turns))
     };
     let wrong = if shells.len() > 1 { (0..shells.len()).into_par_iter().find_map_first(judged) } else { None };
     wrong.map_or(Ok(()), |(i, x, turns)| Err(refusal(shells[i].volume, &x, turns)))
@@ -113,17 +113,28 @@ fn refusal(volume: f64, x: &Vector<3>, turns: f64) -> Error {
 }
 
 /// Returns a point on shell `i` and the winding number of the other shells at this point: the solid angle of their
-/// facets over 4π.
-fn around(i: usize, shells: &[Shell], points: &[Vector<3>]) -> Option<(Vector<3>, f64)> {
+/// facets over 4π. The `expected` number counts if one of the outermost facets has it: where shells cross within the tolerance,
+/// facets of one lie inside the other.
+fn around(i: usize, expected: f64, shells: &[Shell], points: &[Vector<3>]) -> Option<(Vector<3>, f64)> {
     let corners = |facet: &[u32; 3]| facet.map(|p| points[p as usize]);
-    let turns = |x: &Vector<3>| -> f64 {
-        let others = shells.iter().enumerate().filter(|(j, other)| *j != i && other.bounds.contains(x));
-        others.flat_map(|(_, other)| &other.facets).map(|facet| solid_angle(&corners(facet), x)).sum::<f64>()
-            / (2.0 * TAU)
+    let middle = |facet: &[u32; 3]| corners(facet).iter().sum::<Vector<3>>() / 3.0;
+    let turns = |x: Vector<3>| {
+        let others = shells.iter().enumerate().filter(|(j, other)| *j != i && other.bounds.contains(&x));
+        let angles = others.flat_map(|(_, other)| &other.facets).map(|facet| solid_angle(&corners(facet), &x));
+        let turns: f64 = angles.sum::<f64>() / (2.0 * TAU);
+        ((turns - turns.round()).abs() < ROUND_OFF).then_some((x, turns.round()))
     };
-    let middles = shells[i].facets.iter().map(|facet| corners(facet).iter().sum::<Vector<3>>() / 3.0);
-    let mut found = middles.map(|x| (x, turns(&x))).filter(|(_, turns)| (turns - turns.round()).abs() < ROUND_OFF);
-    found.next().map(|(x, turns)| (x, turns.round()))
+    let middles = || shells[i].facets.iter().map(middle);
+    let extreme = |(axis, sign): (usize, f64)| middles().max_by(|a, b| (sign * a[axis]).total_cmp(&(sign * b[axis])));
+    let directions = (0..3).flat_map(|axis| [(axis, 1.0), (axis, -1.0)]);
+    let mut first = None;
+    for found in directions.filter_map(extreme).filter_map(turns) {
+        if found.1 == expected {
+            return Some(found);
+        }
+        first.get_or_insert(found);
+    }
+    first.or_else(|| middles().find_map(turns))
 }
 
 /// Returns the solid angle of a facet seen from `x`, sr, positive from its inner side, after van Oosterom and Strackee

@@ -3,7 +3,7 @@
 
 use std::collections::HashMap;
 
-use super::{LARGEST, MAX_FACETS, Mesh, completion, shells, welding};
+use super::{LARGEST, MAX_FACETS, Mesh, completion, moments, shells, welding};
 use crate::{
     error::{Error, Result},
     math::{Bounds, Vector},
@@ -11,6 +11,9 @@ use crate::{
 
 /// Distance below which corners are joined, over the size of the mesh: the round-off of a file in single precision.
 const JOINED: f64 = 1e-6;
+
+/// Number of open edges that are searched for corners of other facets.
+const MOST_EDGES: usize = 100;
 
 /// Depth below which a crossing of the surface with itself is tolerated, over the size of the mesh.
 const TOLERATED: f64 = 1e-4;
@@ -46,7 +49,7 @@ impl Surface {
     pub(crate) fn into_solid(self, completion: &Completion) -> Result<(Mesh, Vec<String>)> {
         check_input(&self.points, &self.facets)?;
         let mut notes = Vec::new();
-        let mut surface = self.joined_as_needed(&mut notes);
+        let mut surface = self.joined_as_needed(&mut notes)?;
         let size = surface.bounds().size().max();
         let mut turned = surface.unify_orientation();
         if *completion != (Completion { crossing: completion.crossing, ..Completion::default() }) {
@@ -61,7 +64,15 @@ impl Surface {
         turned.iter_mut().zip(reversed).for_each(|(a, b)| *a ^= b);
         notes.extend(reversed_facets(&turned));
         let tolerance = completion.crossing.min(TOLERATED * size);
-        let (mesh, crossings) = Mesh::checked(surface.points, surface.facets, tolerance)?;
+        let (mesh, crossings) =
+            Mesh::checked(surface.points, surface.facets, tolerance).map_err(|e| match completion.thickness {
+                Some(thickness) => {
+                    let sizes = format!("thickness = {thickness} is in m, and the mesh is {size:.4} m large");
+                    let help = e.help.clone().map_or_else(|| sizes.clone(), |help| format!("{sizes}; {help}"));
+                    e.help(help)
+                }
+                None => e,
+            })?;
         notes.extend(crossings);
         Ok((mesh, notes))
     }
@@ -76,31 +87,46 @@ impl Surface {
             completion::cap(self, axis, notes)?;
             self.unify_orientation();
         }
-        completion.thickness.map_or(Ok(()), |thickness| completion::thicken(self, thickness))
+        completion.thickness.map_or(Ok(()), |thickness| completion::thicken(self, thickness, notes))
     }
 
     /// Adds the key that would close the surface to the remedy of an error about it.
     fn completion_help(&self, error: Error) -> Error {
         let open = completion::open_edges(self);
-        let flat = |axis: &usize| {
-            let heights = || open.iter().flatten().map(|&p| self.points[p as usize][*axis]);
-            let (low, high) = (heights().fold(f64::INFINITY, f64::min), heights().fold(f64::NEG_INFINITY, f64::max));
-            high - low <= TOLERATED * self.bounds().size().max()
-        };
         if open.is_empty() {
             return error;
         }
-        let key = match (0..3).find(flat) {
-            Some(axis) => {
-                let name = completion::AXES[axis];
-                format!(
-                    "its open edges lie in a plane: write  cap = \"{name}\"  to close them, or  mirror = \"{name}\"  for a half"
-                )
-            }
-            None => "a sheet becomes a plate by  thickness = 0.01  (m)".into(),
+        let closes = |axis: &usize| {
+            let mut capped = self.clone();
+            completion::cap(&mut capped, *axis, &mut Vec::new()).is_ok() && capped.is_closed() && capped.has_volume()
+        };
+        let key = if let Some(corner) = self.corner_on_edge(&open) {
+            let at = welding::format_position(&corner);
+            format!("the corner {at} m lies on the edge of another facet: divide that edge there")
+        } else if let Some(axis) = (0..3).find(closes) {
+            let name = completion::AXES[axis];
+            format!(
+                "its open edges lie in a plane: write  cap = \"{name}\"  to close them, or  mirror = \"{name}\"  for a half"
+            )
+        } else {
+            "a sheet becomes a plate by  thickness = 0.01  (m)".into()
         };
         let help = error.help.clone().map_or_else(|| key.clone(), |help| format!("{help}; {key}"));
         error.help(help)
+    }
+
+    /// Returns a corner of the open edges that lies inside one of the first of them.
+    fn corner_on_edge(&self, open: &[[u32; 2]]) -> Option<Vector<3>> {
+        let tolerance = JOINED * self.bounds().size().max();
+        let corners = || open.iter().flatten().map(|&p| self.points[p as usize]);
+        let inside = |x: &Vector<3>, [a, b]: &[Vector<3>; 2]| {
+            let side = b - a;
+            let along = (x - a).dot(&side) / side.norm();
+            let off = (x - a - side * (along / side.norm())).norm();
+            off <= tolerance && along > tolerance && along < side.norm() - tolerance
+        };
+        let edges = open.iter().take(MOST_EDGES).map(|edge| edge.map(|p| self.points[p as usize]));
+        edges.into_iter().find_map(|edge| corners().find(|x| inside(x, &edge)))
     }
 
     pub(super) fn bounds(&self) -> Bounds<3> {
@@ -108,13 +134,20 @@ impl Surface {
     }
 
     /// Returns the surface with the fewest joined corners that is closed, or the one with the most if none is closed.
-    fn joined_as_needed(self, notes: &mut Vec<String>) -> Self {
+    fn joined_as_needed(self, notes: &mut Vec<String>) -> Result<Self> {
         let tolerance = JOINED * self.bounds().size().max();
         let (exact, _) = self.join(0.0, false);
         if exact.is_closed() {
-            return exact;
+            return Ok(exact);
         }
         let (mut near, count) = self.join(tolerance, false);
+        if near.is_double_sided() {
+            let what = "the mesh is double-sided: each facet occurs twice, once for each side";
+            return Err(Error::scene(what).help(
+                "export one side: of a closed surface the facets that face outward; one side of a sheet becomes a plate by  \
+                 thickness",
+            ));
+        }
         let mut changes = Vec::new();
         if count > 0 {
             changes.push(format!(
@@ -123,6 +156,14 @@ impl Surface {
             ));
         }
         changes.extend(near.remove_doubled_facets());
+        if !near.is_closed() {
+            let (broad, removed) = near.without_lines(tolerance);
+            if broad.is_closed() {
+                near = broad;
+                changes
+                    .push(format!("{} removed", counted(removed, "facet without area is", "facets without area are")));
+            }
+        }
         if !near.is_closed() {
             // Parts that touch along edges are closed only if each keeps its corners.
             let (apart, count) = self.join(tolerance, true);
@@ -133,11 +174,42 @@ impl Surface {
                         counted(count, "corner is", "corners are")
                     ));
                 }
-                return apart;
+                return Ok(apart);
             }
         }
         notes.extend(changes);
-        near
+        Ok(near)
+    }
+
+    /// Returns the surface without facets whose corners lie on a line within `tolerance` (m), and their number.
+    fn without_lines(&self, tolerance: f64) -> (Self, usize) {
+        let is_line = |facet: usize| {
+            let corners = self.facets[facet].map(|p| self.points[p as usize]);
+            let longest = (0..3).map(|i| (corners[(i + 1) % 3] - corners[i]).norm()).fold(0.0, f64::max);
+            2.0 * self.facet_area(facet) <= tolerance * longest
+        };
+        let mut broad = Self { points: self.points.clone(), ..Self::default() };
+        for i in (0..self.facets.len()).filter(|i| !is_line(*i)) {
+            broad.facets.push(self.facets[i]);
+            broad.parts.push(self.parts[i]);
+        }
+        let removed = self.facets.len() - broad.facets.len();
+        (broad, removed)
+    }
+
+    /// Returns whether each edge has as many facets in one direction as in the other, some have several, and the facets enclose
+    /// nothing.
+    fn is_double_sided(&self) -> bool {
+        let edges = sorted_edges(&self.facets);
+        let groups = || edges.chunk_by(|a, b| (a.low, a.high) == (b.low, b.high));
+        let balanced = |group: &[Edge]| 2 * group.iter().filter(|edge| edge.up).count() == group.len();
+        groups().all(balanced) && groups().any(|group| group.len() > 2) && !self.has_volume()
+    }
+
+    /// Returns whether the facets enclose more than round-off.
+    fn has_volume(&self) -> bool {
+        let area: f64 = (0..self.facets.len()).map(|i| self.facet_area(i)).sum();
+        moments(&self.points, &self.facets).volume.abs() > JOINED * area * self.bounds().size().max()
     }
 
     /// Returns the surface with corners within `tolerance` (m) joined, without facets whose corners coincide, and the

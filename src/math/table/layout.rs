@@ -88,8 +88,10 @@ pub(super) struct Layout {
     pub(super) unfit: Option<usize>,
     /// Cells of a row of units; empty if there is none.
     pub(super) units: Vec<String>,
-    /// Line and cells of the row above the names, if the row of names has units in it.
-    above_units: Option<(usize, Vec<String>)>,
+    /// Whether the names are one too few, and the first column numbers the rows.
+    pub(super) counts_rows: bool,
+    /// Line of the names, and the cells of the row above them.
+    pub(super) above_names: Option<(usize, Vec<String>)>,
     /// Line of the first row of numbers, from 1.
     pub(super) first: usize,
     /// Differences from a table with commas, decimal points and names in its first line.
@@ -135,7 +137,8 @@ impl Layout {
             names: Vec::new(),
             unfit: None,
             units: Vec::new(),
-            above_units: None,
+            counts_rows: false,
+            above_names: None,
             first: content.get(rows.first).map_or(usize::MAX, |line| line.number),
             remarks: Vec::new(),
         };
@@ -166,15 +169,6 @@ impl Layout {
         cells
     }
 
-    /// Returns the unknown units in the row below the one with the column `name`, if the row was taken for the names.
-    pub(super) fn unknown_unit_below(&self, name: &str) -> Option<String> {
-        let (line, above) = self.above_units.as_ref()?;
-        above.iter().find(|above| *above == name)?;
-        let unknown = self.names.iter().filter(|unit| !unit.is_empty() && !unit::is_unit(unit));
-        let unknown: Vec<String> = unknown.map(|unit| format!("\"{unit}\"")).collect();
-        (!unknown.is_empty()).then(|| format!("{} in line {line}", unknown.join(", ")))
-    }
-
     /// Takes names and units from the lines above the first row of numbers.
     fn read_names(&mut self, content: &[Line], rows: &Rows) {
         let above = &content[..rows.first.min(content.len())];
@@ -183,20 +177,19 @@ impl Layout {
         let (lower, upper) = (fitting.next().flatten(), fitting.next().flatten());
         let mut end = self.first;
         match (lower, upper) {
-            (Some((line, units)), Some((upper, names))) if is_units(&units) && !is_units(&names) => {
+            (Some((line, units)), Some((upper, names))) if unit::is_unit_row(&units) && !unit::is_unit_row(&names) => {
                 self.remarks.push(format!("row of units in line {line}"));
                 (self.names, self.units, end) = (names, units, upper);
             }
             (Some((line, names)), upper) => {
-                let has_unit = names.iter().any(|name| unit::is_known(name));
-                self.above_units = upper.filter(|_| has_unit).map(|(_, above)| (line, above));
+                self.above_names = upper.map(|(_, above)| (line, above));
                 (self.names, end) = (names, line);
             }
-            (None, _) if self.separator != Separator::Blanks => {
-                let cells = above.last().map_or(0, |line| self.separator.split(line.text).len());
-                self.unfit = Some(cells).filter(|cells| *cells > 1);
+            (None, _) => {
+                if let Some(line) = above.last() {
+                    end = self.read_unfit_names(line, &content[above.len()..], rows);
+                }
             }
-            (None, _) => {}
         }
         match above.iter().filter(|line| line.number < end).collect::<Vec<_>>()[..] {
             [] => {}
@@ -205,12 +198,33 @@ impl Layout {
         }
     }
 
+    /// Takes names from a line that has too few or too many. Returns the line of the names, or that of the first row. R leaves
+    /// out the name of the first column, which has the numbers of the rows in quotation marks.
+    fn read_unfit_names(&mut self, line: &Line, below: &[Line], rows: &Rows) -> usize {
+        let names = self.separator.split(line.text);
+        let is_one_less = names.len() + 1 == self.count && self.count > 2;
+        let is_word = |name: &&str| !name.is_empty() && cell::number(name, self.decimal).is_none();
+        let numbers_rows = |(i, cells): (usize, &Vec<&str>)| cells[0] == (i + 1).to_string();
+        let counts = is_one_less && names.iter().all(is_word) && rows.data.iter().enumerate().all(numbers_rows);
+        if counts && below.first().is_some_and(|row| row.text.trim_start().starts_with(['"', '\''])) {
+            self.remarks.push(format!("line {} has no name for the first column, which numbers the rows", line.number));
+            self.names = [""].into_iter().chain(names).map(String::from).collect();
+            return line.number;
+        }
+        self.counts_rows = counts;
+        let is_names = (self.separator != Separator::Blanks && names.len() > 1) || counts;
+        self.unfit = is_names.then_some(names.len());
+        self.first
+    }
+
     /// Takes names, and units below them, from the last comments above the first row of numbers.
     fn read_names_in_comments(&mut self, comments: &[Line]) {
         let above = comments.iter().filter(|line| line.number < self.first).rev().take(2);
         let names_in = |line: &Line| Some((line.number, self.names_in(comment(line.text)?)?));
         let found = match above.map(names_in).collect::<Vec<_>>()[..] {
-            [Some((_, ref units)), Some((line, ref names))] if is_units(units) && !is_units(names) => {
+            [Some((_, ref units)), Some((line, ref names))]
+                if unit::is_unit_row(units) && !unit::is_unit_row(names) =>
+            {
                 Some((line, names.clone(), units.clone()))
             }
             [Some((line, ref names)), ..] | [None, Some((line, ref names))] => Some((line, names.clone(), Vec::new())),
@@ -237,13 +251,17 @@ impl Layout {
         }
         let words = || joined_units(&Separator::Blanks.split(line));
         let other = [Separator::Tab, Separator::Semicolon, Separator::Comma].map(|other| owned(other.split(line)));
-        let blanks = matches!(self.separator, Separator::Blanks | Separator::Tab).then(words);
+        let has_blanks = matches!(self.separator, Separator::Blanks | Separator::Tab);
+        let blanks = has_blanks.then(words);
+        let has_unit = |name: &String| unit::split_name(name).1.is_some();
+        let of_words = || Some(names_of_words(&Separator::Blanks.split(line))).filter(|_| has_blanks);
+        let of_words = || of_words().filter(|names| fits(names) && names.iter().all(has_unit));
         let is_word = |name: &str| !name.is_empty() && !unit::split_name(name).0.contains(' ');
         let is_names = |names: &Vec<String>| {
             let number = |name: &String| cell::number(name, self.decimal).is_some();
             fits(names) && names.iter().all(|name| is_word(name) && !number(name))
         };
-        other.into_iter().chain(blanks).find(is_names)
+        other.into_iter().chain(blanks).find(is_names).or_else(of_words)
     }
 
     /// Refuses commas that may be decimal signs, separators of columns or of thousands.
@@ -260,19 +278,18 @@ impl Layout {
         }
         let padded = |cell: &str| cell.len() > 1 && cell.bytes().all(|b| b.is_ascii_digit()) && cell.starts_with('0');
         let twice = self.unfit.is_some_and(|names| self.count == 2 * names);
-        let unnamed = self.names.is_empty() && self.unfit.is_none() && self.count >= 4 && cells().any(padded);
+        let is_digits = |cell: &&str| !cell.is_empty() && cell.bytes().all(|b| b.is_ascii_digit());
+        let may_be_pairs =
+            |row: &Vec<&str>| row.len().is_multiple_of(2) && row.iter().skip(1).step_by(2).all(is_digits);
+        let has_halves = cells().any(padded) || rows.data.iter().all(may_be_pairs);
+        let unnamed = self.names.is_empty() && self.unfit.is_none() && self.count >= 4 && has_halves;
         if self.separator == Separator::Comma && !cells().any(|cell| cell.contains('.')) && (twice || unnamed) {
             let what = "commas separate the columns and may be decimal commas as well";
-            let help = "write decimal points, or separate the columns by semicolons";
+            let help = "write decimal points, separate the columns by semicolons, or name every column";
             return Err(Error::scene(what).help(help));
         }
         Ok(())
     }
-}
-
-/// Returns whether all cells are units.
-fn is_units(cells: &[String]) -> bool {
-    cells.iter().all(|cell| cell.is_empty() || unit::is_unit(cell))
 }
 
 /// Returns the cells of a row of names, each unit in brackets with the name before it.
@@ -280,8 +297,20 @@ fn joined_units(cells: &[&str]) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
     for cell in cells {
         match names.last_mut() {
-            Some(name) if cell.starts_with(['(', '[']) => *name += &format!(" {cell}"),
+            Some(name) if unit::opens(cell) => *name += &format!(" {cell}"),
             _ => names.push((*cell).into()),
+        }
+    }
+    names
+}
+
+/// Returns the names in a row of words, of which each ends with a unit in brackets.
+fn names_of_words(words: &[&str]) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    for word in words {
+        match names.last_mut() {
+            Some(name) if unit::split_name(name).1.is_none() => *name += &format!(" {word}"),
+            _ => names.push((*word).into()),
         }
     }
     names

@@ -16,7 +16,7 @@ use crate::{
     plan::{Align, CheckPlan, Reference, ResponseReference, Score, StatisticKind, StatisticPlan},
     probe::ProbeConfig,
     scene::{
-        context::{Context, Defaults, quoted_list, set_keys},
+        context::{Context, Defaults, FileNote, quoted_list, set_keys},
         files, finite_law,
         record::{self, Record},
     },
@@ -315,6 +315,25 @@ impl CheckConfig {
         Err(ctx.error_with_help(&format!("{key}.{word}"), what, help).with_code(ErrorCode::OutOfRange))
     }
 
+    /// Notes that the run covers too little of the reference to judge it.
+    fn note_uncovered(&self, ctx: &Context, file: &str, series: &TimeSeries) {
+        let (from, until) = (self.from.unwrap_or(f64::NEG_INFINITY), self.until.unwrap_or(f64::INFINITY));
+        let counted = || series.times().iter().filter(|t| (from..=until).contains(*t));
+        let (all, covered) = (counted().count(), counted().filter(|t| (0.0..=ctx.until).contains(*t)).count());
+        let is_judged = covered >= 2 && (2 * covered >= all || self.bound.is_none());
+        if is_judged || self.align.is_some() || from >= ctx.until {
+            return;
+        }
+        let (first, last) = series.span();
+        let what = format!(
+            "the check of \"{}\" is not judged: the run, from 0 to {} s, covers {covered} of the {all} samples of {file} that \
+             count, from {first} to {last} s",
+            self.series, ctx.until
+        );
+        let remedy = "run longer, end the check earlier by  until, or move the samples by  offset".into();
+        ctx.add_note(FileNote { is_warning: covered < 2, topic: "event_after_end", what, remedy });
+    }
+
     /// Returns the check of the run. Opens its table and verifies that it has the columns.
     pub(crate) fn build(&self, ctx: &Context, key: &str) -> Result<CheckPlan> {
         let place = |e: Error| ctx.with_location(files::with_line_in_message(e), &format!("{key}.reference"));
@@ -340,6 +359,7 @@ impl CheckConfig {
                 record.require_time().map_err(|e| ctx.with_location(e, &format!("{key}.time")))?;
                 let series = record.read().and_then(|series| series.scaled(&scaling)).map_err(place)?;
                 self.require_samples(ctx, key, &file, &series)?;
+                self.note_uncovered(ctx, &file, &series);
                 Reference::Table { file: Path::new(&file).to_path_buf(), time, column, scaling }
             }
         };

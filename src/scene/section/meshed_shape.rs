@@ -91,7 +91,8 @@ pub struct PrismConfig {
 }
 
 impl PrismConfig {
-    fn outline(&self) -> PolylineConfig {
+    /// Its outline as a polygon.
+    pub(crate) fn outline(&self) -> PolylineConfig {
         let Self { points, file, id, scale, unit, .. } = self.clone();
         PolylineConfig { points, file, id, scale, unit, thickness: None, closed: None }
     }
@@ -216,8 +217,7 @@ fn meshed<const D: usize>(mesh: Mesh) -> Shape<D> {
 /// The polygon of the ellipse's area, whose sides lie within `tolerance` (m) of it.
 fn ellipse<const D: usize>(radii: &[f64], tolerance: f64) -> Vec<Vector<D>> {
     let n = solids::segments(radii[0].max(radii[1]), tolerance);
-    let angle = TAU / n as f64;
-    let equal_area = (angle / angle.sin()).sqrt();
+    let (angle, equal_area) = (TAU / n as f64, solids::equal_area(n));
     let point = |k: usize| {
         let (sin, cos) = (k as f64 * angle).sin_cos();
         Vector::from_fn(|i, _| equal_area * radii[i] * if i == 0 { cos } else { sin })

@@ -3,7 +3,10 @@
 use super::shape::vector;
 use crate::{
     error::{Error, Result},
-    math::{Bounds, Vector, table},
+    math::{
+        Bounds, Vector,
+        table::{self, ColumnName},
+    },
     scene::{
         context::{Context, last_part},
         files, record,
@@ -63,7 +66,11 @@ pub(super) fn outline_points<const D: usize>(ctx: &Context, config: &PolylineCon
     }
     let mut table = files::open_table(ctx.folder(), file)?;
     let names = table.point_columns();
-    let [x, y] = table.columns(names.clone()).map_err(files::with_line_in_message)?;
+    let is_unnamed = table.header().is_empty() && !matches!(names[0], ColumnName::Number(_));
+    let [x, y] = table.columns(names.clone()).map_err(|e| match is_unnamed {
+        true => e.help("a table of points has two columns, x and y in m, or a first line with the names x_m and y_m"),
+        false => files::with_line_in_message(e),
+    })?;
     for name in names {
         let unit = table.unit(&name)?.filter(|unit| table::si_factor(unit).is_some());
         if let Some(unit) = unit {

@@ -234,6 +234,16 @@ impl SolidConfig {
     fn verify_role(&self, ctx: &Context, key: &str) -> Result<()> {
         let roles = [("fixed", self.fixed.is_some()), ("driven", self.driven.is_some()), ("free", self.free.is_some())];
         let roles = set_keys(roles);
+        if self.fixed == Some(false) {
+            let (what, help) = match roles.get(1) {
+                Some(other) => (format!("fixed = false says nothing beside {other}"), "remove  fixed = false"),
+                None => (
+                    "fixed = false does not say what moves it".into(),
+                    "a solid that is not fixed is driven = { ... } or free = { ... }",
+                ),
+            };
+            return Err(ctx.error_with_help(&format!("{key}.fixed"), what, help));
+        }
         if roles.len() != 1 {
             let what = match roles.len() {
                 0 => format!("nothing says what moves solid \"{}\"", self.name),
@@ -244,10 +254,6 @@ impl SolidConfig {
             let place = roles.last().map_or(key.to_string(), |role| format!("{key}.{role}"));
             let code = if roles.is_empty() { ErrorCode::MissingKey } else { ErrorCode::ConflictingKeys };
             return Err(ctx.error_with_help(&place, what, help).with_code(code));
-        }
-        if self.fixed == Some(false) {
-            let help = "a solid that is not fixed is driven = { ... } or free = { ... }";
-            return Err(ctx.error_with_help(&format!("{key}.fixed"), "fixed = false does not say what moves it", help));
         }
         if let Some(config) = &self.driven {
             config.verify(ctx, &format!("{key}.driven"))?;

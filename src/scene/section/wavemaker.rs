@@ -66,10 +66,11 @@ pub(super) fn build<const D: usize>(
     let depth = wave.depth.unwrap_or(pool.still.depth);
     let g = ctx.gravity.as_ref().and_then(|g| g.initial.last()).map_or(0.0, |g| -g);
     let maker = Wavemaker { depth, g, paddle: Paddle::Piston };
-    match &config.along {
+    let motion = match &config.along {
         Some(along) => piston_motion(ctx, key, wave, vector::<D>(along).normalize(), &maker, (&own, pool)),
         None => flap_motion(ctx, key, config, wave, &maker, (&own, pool)),
-    }
+    };
+    motion.map_err(|e| record::with_unit_notes(ctx, &format!("{key}.wave.elevation"), e))
 }
 
 /// The motion of a piston in the direction `along`; `own` is the box around it.
@@ -285,7 +286,7 @@ pub(super) fn read_components(ctx: &Context, key: &str, config: &WaveComponentsC
     let (time, is_period) = either("period_s", "frequency_hz")?;
     let (phase, in_degrees) = either("phase_deg", "phase_rad")?;
     let [amplitudes, times, phases] =
-        table.columns(["amplitude_m", time, phase]).map_err(files::with_line_in_message)?;
+        table.complete_columns(["amplitude_m", time, phase]).map_err(files::with_line_in_message)?;
     record::note_layout(ctx, key, &config.file, &table);
     for column in ["amplitude_m", time, phase] {
         table.unit(column)?;

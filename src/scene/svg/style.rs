@@ -68,14 +68,16 @@ impl StyleSheets {
     fn add(&mut self, text: &str) {
         let mut rest = text;
         while let Some((head, tail)) = rest.split_once('{') {
-            let Some((body, after)) = tail.split_once('}') else { break };
-            rest = after;
-            let declarations = declarations(body);
+            let (body, after) = tail.split_at(block_length(tail));
+            rest = after.strip_prefix('}').unwrap_or(after);
+            // Rules within a block, as of @media, apply under a condition.
+            let is_nested = body.contains('{');
+            let declarations: Vec<_> = body.split(['{', '}']).flat_map(declarations).collect();
             let is_placed = declarations.iter().any(|(name, _)| PROPERTIES.contains(&name.as_str()));
             // A statement such as @import or @charset ends with a semicolon.
             let head = head.rsplit(';').next().unwrap_or(head);
             for selector in head.split(',').map(str::trim).filter(|_| is_placed) {
-                match Selector::parse(selector) {
+                match Selector::parse(selector).filter(|_| !is_nested) {
                     Some(selector) => {
                         let specificity = 100 * usize::from(selector.id.is_some())
                             + 10 * selector.classes.len()
@@ -191,6 +193,20 @@ fn without_comments(text: &str) -> String {
         rest = after.split_once("*/").map_or("", |(_, after)| after);
     }
     clean + rest
+}
+
+/// Returns the length of the block at the beginning of `text`, up to the brace that closes it.
+fn block_length(text: &str) -> usize {
+    let mut open = 0;
+    let closes = |c: char| {
+        match c {
+            '{' => open += 1,
+            '}' => open -= 1,
+            _ => {}
+        }
+        open < 0
+    };
+    text.find(closes).unwrap_or(text.len())
 }
 
 /// Returns the names, in lower case, and values of the declarations.

@@ -30,6 +30,15 @@ const ROUNDS: usize = 4;
 /// Largest force on a node over its weight at which a line that may float counts as in equilibrium, –.
 const SETTLED: f64 = 1e-4;
 
+/// Resistance of the slow motion, over the weight of a node and the length of a segment, –.
+const CREEP_RESISTANCE: f64 = 10.0;
+
+/// Most iterations of the slow motion.
+const CREEP_ITERATIONS: usize = 1000;
+
+/// Longest way of a node in an iteration of the slow motion, over the length of a segment, –.
+const LONGEST_CREEP: f64 = 0.25;
+
 /// Factors on the damping for the next iteration: after a step that was cut to less than the share [`CUT`], and after any other
 /// step.
 const DAMPING: [f64; 2] = [10.0, 0.3];
@@ -50,15 +59,11 @@ impl<const D: usize> MooringLine<D> {
     /// Finds the equilibrium of the line between its held ends. `around` returns the surroundings of a position (m), and
     /// `gravity` is in m/s². Returns the largest residual force on a node over the weight of a node.
     pub(crate) fn find_rest(&mut self, around: &dyn Fn(&Vector<D>) -> NodeSurroundings<D>, gravity: &Vector<D>) -> f64 {
-        let mut left = if self.may_float() {
-            self.hang(around, gravity);
-            self.minimize(&Around::Live(around), gravity)
+        let left = if self.may_float() {
+            self.find_rest_afloat(around, gravity)
         } else {
-            f64::INFINITY
+            self.find_rest_in_rounds(around, gravity)
         };
-        if left > SETTLED {
-            left = self.find_rest_in_rounds(around, gravity);
-        }
         self.state.v.iter_mut().for_each(|v| *v = Vector::zeros());
         let near: Vec<_> = self.state.x.iter().map(around).collect();
         let forces = self.forces(&near, gravity);
@@ -70,6 +75,58 @@ impl<const D: usize> MooringLine<D> {
         self.state.end_forces = [0, last].map(|i| forces[i]);
         self.store_pulls(&near, gravity);
         left
+    }
+
+    /// Finds the equilibrium of a line that may float, with the surroundings of each iteration: by Newton's method; where this
+    /// does not settle, by slow motion and Newton's method, or in rounds, whichever leaves less. Returns the largest residual
+    /// force on a node over the weight of a node.
+    fn find_rest_afloat(&mut self, around: &dyn Fn(&Vector<D>) -> NodeSurroundings<D>, gravity: &Vector<D>) -> f64 {
+        self.hang(around, gravity);
+        let left = self.minimize(&Around::Live(around), gravity);
+        if left <= SETTLED {
+            return left;
+        }
+        self.hang(around, gravity);
+        self.creep(around, gravity);
+        let mut left = self.minimize(&Around::Live(around), gravity);
+        if left > SETTLED {
+            let crept = self.state.x.clone();
+            self.find_rest_in_rounds(around, gravity);
+            let near: Vec<_> = self.state.x.iter().map(around).collect();
+            let in_rounds = self.residual(&self.forces(&near, gravity), gravity);
+            if in_rounds < left {
+                left = in_rounds;
+            } else {
+                self.state.x = crept;
+            }
+        }
+        left
+    }
+
+    /// Moves the nodes by their forces against a large resistance until little is left. This reaches the rest of a slack line on
+    /// the water, where many shapes are nearly at rest.
+    fn creep(&mut self, around: &dyn Fn(&Vector<D>) -> NodeSurroundings<D>, gravity: &Vector<D>) {
+        let (n, segment) = (self.segments(), self.state.segment);
+        let resistance = CREEP_RESISTANCE * self.node_weight(gravity) / segment;
+        for _ in 0..CREEP_ITERATIONS {
+            let near: Vec<_> = self.state.x.iter().map(around).collect();
+            let forces = self.forces(&near, gravity);
+            if self.residual(&forces, gravity) <= SETTLED {
+                break;
+            }
+            let mut step = DVector::from_iterator((n - 1) * D, forces[1..n].iter().flatten().copied());
+            let float = self.float_stiffness(&Around::Live(around), &near, gravity);
+            self.stiffness(&near, gravity, (resistance, &float)).solve(step.as_mut_slice());
+            let part = (LONGEST_CREEP * segment / step.amax()).min(1.0);
+            for (x, way) in self.state.x[1..n].iter_mut().zip(step.as_slice().chunks(D)) {
+                *x += Vector::from_column_slice(way) * part;
+            }
+        }
+    }
+
+    /// The largest of the `forces` (N) on the nodes between the ends over the weight of a node.
+    fn residual(&self, forces: &[Vector<D>], gravity: &Vector<D>) -> f64 {
+        forces[1..self.segments()].iter().map(|f| f.norm()).fold(0.0, f64::max) / self.node_weight(gravity)
     }
 
     /// Finds the equilibrium from the elastic catenary; the surroundings of the nodes are read anew in a few rounds. Returns the
@@ -95,7 +152,7 @@ impl<const D: usize> MooringLine<D> {
     }
 
     /// Whether the line, or a body on it, is lighter than water.
-    fn may_float(&self) -> bool {
+    pub(crate) fn may_float(&self) -> bool {
         let density = self.material.water_density;
         self.material.mass < self.material.displaced() || self.bodies.iter().any(|b| b.mass < density * b.volume)
     }
@@ -284,13 +341,12 @@ impl<const D: usize> MooringLine<D> {
         let (softest, stiffest) = (1e-6 * weight / self.state.segment, 10.0 * weight / self.state.segment);
         let mut least = softest;
         let inner = |forces: &[Vector<D>]| DVector::from_iterator((n - 1) * D, forces[1..n].iter().flatten().copied());
-        let largest = |forces: &[Vector<D>]| forces[1..n].iter().map(|f| f.norm()).fold(0.0, f64::max) / weight;
         let mut near = around.of(&self.state.x);
         let mut forces = self.forces(&near, gravity);
         let is_live = matches!(around, Around::Live(_));
         let most = if is_live { LIVE_ITERATIONS } else { ITERATIONS };
         for _ in 0..most {
-            if largest(&forces) <= TOLERANCE {
+            if self.residual(&forces, gravity) <= TOLERANCE {
                 break;
             }
             let mut step = inner(&forces);
@@ -320,7 +376,7 @@ impl<const D: usize> MooringLine<D> {
                 least = (least * DAMPING[usize::from(part >= CUT)]).clamp(softest, stiffest);
             }
         }
-        largest(&forces)
+        self.residual(&forces, gravity)
     }
 
     /// Whether a node has moved too far from `start` (m) into its bed `before` the step: behind a thin wall it would find no bed.

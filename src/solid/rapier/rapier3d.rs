@@ -48,7 +48,7 @@ use rapier::{
 use crate::{
     error::{Error, Result},
     geometry::{ContactGeometry, Mesh, Shape},
-    math::{Bivector, Matrix, Vector, rotated_tensor},
+    math::{Bivector, Matrix, Vector, format::coordinates, rotated_tensor},
     solid::FreeBody,
 };
 
@@ -302,8 +302,12 @@ fn mesh_parts(mesh: &Mesh, contact: ContactGeometry, fixed: bool) -> Result<Vec<
     };
     // parry panics if the points lie nearly in a plane.
     catch_unwind(AssertUnwindSafe(make)).ok().flatten().ok_or_else(|| {
-        Error::scene("the mesh cannot be made touchable: parry finds no hull or parts of it")
-            .help("write  contact = \"none\"  beside the file's name if nothing is to touch it, or thin the mesh out")
+        let size = coordinates(mesh.bounds().size().as_slice());
+        Error::scene(format!("contacts need convex parts of the mesh, and parry finds none: its size is {size} m"))
+            .help(
+                "make it less slender, or correct its size; for a mesh from a file that nothing is to touch, write  \
+                 contact = \"none\"  beside the file's name",
+            )
     })
 }
 

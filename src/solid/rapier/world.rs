@@ -104,11 +104,12 @@ impl RapierWorld {
         assert_eq!(solids.len(), start.len(), "every solid needs a start");
         links.check(solids)?;
         let mut all_parts = Vec::new();
-        for solid in solids {
+        for (i, solid) in solids.iter().enumerate() {
             solid.check_role()?;
             let mut parts = ConvexParts::new();
             let fixed = matches!(solid.role, Role::Fixed);
-            collect_parts(&solid.shape, &Pose::identity(), fixed, &mut parts)?;
+            collect_parts(&solid.shape, &Pose::identity(), fixed, &mut parts)
+                .map_err(|e| e.at("", None, format!("solid.{i}.shape")))?;
             all_parts.push(parts);
         }
         check_overlap(solids, start, &all_parts, links, OVERLAP_MAX * dp)?;

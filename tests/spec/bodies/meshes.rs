@@ -298,6 +298,16 @@ fn a_mesh_in_millimetres_or_less_than_dp_large_is_refused_with_the_probable_unit
     assert!(mesh("file = \"mm.stl\", unit = \"mm\"", &folder).is_ok());
     let message = refusal("file = \"m.stl\", unit = \"mm\"", &folder);
     assert!(message.contains("less than dp") && message.contains("its size 0.5000 m"), "{message}");
+    // The outline of a prism is from the file, its length is not.
+    let svg = "<svg xmlns=\"http://www.w3.org/2000/svg\"><rect width=\"500\" height=\"250\"/></svg>";
+    fs::write(folder.join("mm.svg"), svg).unwrap();
+    let prism = |words: &str| shape(&format!("{{ prism = {{ file = \"mm.svg\", {words} }} }}"), &folder);
+    let message = prism("length = 0.25").expect_err("a prism of 500 m").to_string();
+    assert!(message.contains("mm.svg makes solid \"body\" 500.0000 m large"), "{message}");
+    assert!(message.contains("unit is probably mm, and its size 0.5000 m"), "{message}");
+    assert!(prism("length = 0.25, unit = \"mm\"").is_ok());
+    let compound = "{ compound = [{ shape = { prism = { file = \"mm.svg\", length = 0.25 } } }] }";
+    assert!(shape(compound, &folder).is_err_and(|e| e.to_string().contains("unit is probably mm")));
 }
 
 #[test]
@@ -328,6 +338,20 @@ fn the_contact_geometry_of_a_mesh_is_a_choice() {
         let words = format!("{{ mesh = {{ file = \"text.stl\", contact = \"{word}\" }} }}");
         assert!(matches!(shape(&words, &folder), Ok(Shape::Mesh { contact: c, .. }) if c == contact), "{word}");
     }
+}
+
+#[test]
+fn a_shape_without_convex_parts_is_refused_with_its_size() {
+    let text = "dimension = 3\ndp = 0.05\nuntil = 1.0\n\
+                [[water]]\nfill = { box = { min = [0.0, 0.0, 0.0], max = [1.0, 1.0, 0.5] } }\n\
+                [[solid]]\nname = \"mast\"\nat = { x = 0.5, y = 0.5, bottom = 0.7 }\nfree = { density = 500.0 }\n\
+                shape = { prism = { points = [[0, 0], [0.1, 0], [0.1, 0.05], [0, 0.05]], length = 200 } }\n";
+    let scene = Scene::parse(text, Path::new(""), &[]).unwrap();
+    let error = Simulation::new(scene.build::<3>().unwrap().setup).err().expect("a mast of 200 m");
+    let message = scene.with_location(error).to_string();
+    ["[0.1, 0.05, 200] m", "solid.mast.shape", "less slender"].iter().for_each(|part| {
+        assert!(message.contains(part), "{part} is not in {message}");
+    });
 }
 
 #[test]

@@ -10,7 +10,9 @@ use pontoon::{
     solid::Dim,
 };
 
-use crate::common::{TestFolder, on_threads, preflight_report, run_to, scene_simulation, steps, time_mean, water_momentum};
+use crate::common::{
+    TestFolder, on_threads, preflight_report, run_to, scene_simulation, steps, time_mean, water_momentum,
+};
 
 /// A box on two slack chains in a small tank.
 const MOORED: &str = r#"

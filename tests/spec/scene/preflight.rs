@@ -156,7 +156,7 @@ fn a_body_in_too_viscous_water_is_found_with_the_alpha_that_helps() {
 type Fault =
     (&'static str, &'static [(&'static str, &'static str)], &'static str, &'static [(&'static str, &'static str)]);
 
-const FAULTS: [Fault; 30] = [
+const FAULTS: [Fault; 31] = [
     ("slow_sound", &[("model.c0_factor", "5")], "c0 = 20 ", &[("model.c0", "20")]),
     // A plate with a single row of boundary particles moves water like a thick one: 0.4 m × 2π/s.
     (
@@ -185,6 +185,7 @@ const FAULTS: [Fault; 30] = [
     ),
     ("off_draft", &[("solid.box.at", "{ x = 1.0, bottom = 0.5 }")], "draft = \"equilibrium\"", &[]),
     ("beside_water", &[("solid.box.at", "{ x = 2.5, bottom = 0.3 }")], "over the water", &[]),
+    ("beside_water", &[("solid.box.at", "{ x = 1.0, draft = 3.0 }")], "raise it", &[]),
     (
         "larger_than_water",
         &[("solid.box.shape.box.size", "[2.4, 0.1]"), ("solid.box.at", "{ x = 1.0, bottom = 0.85 }")],

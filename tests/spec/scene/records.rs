@@ -160,6 +160,19 @@ fn an_elevation_of_uneven_samples_is_told() {
     // 40 intervals in 1.986 s.
     let found = notes(0.05);
     assert!(found.contains("record_uneven") && found.contains("every 0.0497 s"), "{found}");
+    // Of waves too high or too long the unit of the record is the probable reason.
+    let refused = |column: &str, factors: [f64; 2]| {
+        let rows = (0..41)
+            .map(|i| 0.25 * f64::from(i))
+            .map(|t| format!("{:.6},{:.6}\n", t * factors[0], 0.02 * (5.0 * t).sin() * factors[1]));
+        let folder = folder("wave-unit", "", format!("t_s,{column}\n{}", rows.collect::<String>()));
+        fs::write(folder.join("scene.toml"), scene.replace("eta_m", column)).unwrap();
+        inspected(&folder).map_or_else(|error| error.to_string(), |_| String::new())
+    };
+    let told = refused("eta_mm", [1.0, 1000.0]);
+    assert!(told.contains("is in mm") && told.contains("scale = 0.001"), "{told}");
+    let told = refused("eta_m", [1000.0, 1.0]);
+    assert!(told.contains("if its times are in ms, write  time_factor = 0.001"), "{told}");
 }
 
 #[test]
@@ -239,7 +252,12 @@ fn laws_checks_and_points_of_other_layouts_are_read_and_wrong_keys_are_refused()
 /// The warnings about units of a column of this name as the distance, the angle, the force and the torque, and of a
 /// check.
 fn unit_warnings(part: &str, column: &str) -> Vec<String> {
-    let record = format!("{{ file = \"record.csv\", column = \"{column}\" }}");
+    unit_warnings_beside(part, column, "")
+}
+
+/// The same of a law with these keys beside the column.
+fn unit_warnings_beside(part: &str, column: &str, keys: &str) -> Vec<String> {
+    let record = format!("{{ file = \"record.csv\", column = \"{column}\"{keys} }}");
     let own = "[[solid]]\nname = \"box\"\nshape = { box = { size = [0.2, 0.1] } }\nat = { x = 0.3, draft = \"equilibrium\" }\nfree = { density = 500.0 }\n";
     let still = SCENE.replace("distance = LAW", "distance = { formula = \"0\" }");
     let text = match part {
@@ -287,6 +305,14 @@ fn a_column_in_another_unit_or_of_another_quantity_is_told_with_both() {
         ("tank.vx_mps", "v_kmh", "used as if in mps", "scale = 0.27777777"),
         ("tank.vx_mps", "v (m min-1)", "used as if in mps", "scale = 0.01666666"),
         ("tank.surge_m", "p [Pa]", "another quantity than m", "name a column in m"),
+        ("tank.surge_m", "eta_inch", "used as if in m", "scale = 0.0254"),
+        ("distance", "v_ms", "another quantity than m", "name a column in m"),
+        ("distance", "a_ms2", "another quantity than m", "name a column in m"),
+        ("distance", "zmm", "used as if in m", "scale = 0.001"),
+        ("distance", "z_MM", "used as if in m", "scale = 0.001  beside the column; 1 MM is taken as 0.001 m"),
+        ("force", "FX_KN", "used as if in N", "scale = 1000  beside the column; 1 KN is taken as 1000 N"),
+        ("force", "fx_kN_per_m", "used as if in N", "scale = 1000"),
+        ("torque", "q_Nmm", "used as if in N m", "scale = 0.001"),
     ] {
         let found = unit_warnings(part, column);
         let [text] = &found[..] else { panic!("{column} as {part}: {found:?}") };
@@ -300,6 +326,10 @@ fn a_column_in_another_unit_or_of_another_quantity_is_told_with_both() {
         ("force", "F (N)"),
         ("force", "F (N/m)"),
         ("torque", "M_Nm"),
+        ("force", "fx_N_per_m"),
+        ("distance", "z_min"),
+        ("angle", "deg"),
+        ("angle", "pitch_DEG"),
         ("tank.pitch_deg", "pitch_deg"),
         ("tank.pitch_deg", "pitch (-)"),
         ("tank.vx_mps", "v (m s-1)"),
@@ -308,6 +338,30 @@ fn a_column_in_another_unit_or_of_another_quantity_is_told_with_both() {
     ] {
         assert_eq!(unit_warnings(part, column), [] as [String; 0], "{column} as {part}");
     }
+}
+
+#[test]
+fn times_in_minutes_days_and_microseconds_are_told_with_the_factor() {
+    for (column, factor) in
+        [("time_min", "60"), ("time_hours", "3600"), ("time_days", "86400"), ("time_us", "0.000001")]
+    {
+        let law = format!("{{ file = \"record.csv\", column = \"x_m\", time = \"{column}\" }}");
+        let rows: String = samples(0.0, 31).map(|(t, x)| format!("{t:.2},{x:.6}\n")).collect();
+        let found = findings(&folder("time-unit", &law, format!("{column},x_m\n{rows}")));
+        let [(Severity::Warning, "record_unit", text)] = &found[..] else { panic!("{column}: {found:?}") };
+        assert!(text.contains("used as if in s") && text.contains(&format!("time_factor = {factor}")), "{text}");
+    }
+}
+
+#[test]
+fn degrees_that_a_scale_converts_again_are_told() {
+    let warned = |part: &str, column: &str| unit_warnings_beside(part, column, ", scale = 0.0174532925");
+    for (part, column) in [("angle", "pitch_deg"), ("angle_deg", "pitch")] {
+        let found = warned(part, column);
+        let [text] = &found[..] else { panic!("{column} as {part}: {found:?}") };
+        assert!(text.contains("again by scale = 0.0174532925") && text.contains("remove scale"), "{text}");
+    }
+    assert_eq!(warned("angle", "pitch"), [] as [String; 0], "a column without unit is converted by its scale");
 }
 
 #[test]
@@ -328,6 +382,11 @@ fn a_missing_column_of_times_or_values_is_told_at_its_key_with_the_columns() {
         let told = refused("{ formula = \"0\" }", check, &format!("{name},x_m"));
         assert!(told.contains("check.0.time") && told.contains(&proposal), "{told}");
     }
+    // A row of names that are too many: columns go by number.
+    let told = refused(law, "", "t_s,x_m,z_m");
+    assert!(told.contains("3 names over rows of 2 cells") && !told.contains("\"1\""), "{told}");
+    let told = refused("{ file = \"record.csv\" }", "", "t_s,x_m,z_m");
+    assert!(told.contains("write  column = 2,"), "{told}");
     let told = refused("{ file = \"record.csv\" }", "", "t_s,x_m");
     assert!(told.contains("distance.column") && told.contains("write  column = \"x_m\""), "{told}");
     // The record ends at 3 s.

@@ -147,6 +147,8 @@ fn a_unit_that_is_not_of_the_si_is_a_warning_with_its_factor() {
         ("F (s)", Some("another quantity than N")),
         ("F_m_per_s", Some("another quantity than N")),
         ("F (lb)", Some("the weight of 1 lb is 4.45 N")),
+        ("F (g)", Some("the weight of 1 g is 0.00981 N")),
+        ("F (kn)", Some("scale = 1000  beside the column; 1 kn is taken as 1000 N")),
         ("F (N)", None),
         ("F (kg m/s^2)", None),
     ] {
@@ -160,7 +162,7 @@ fn a_unit_that_is_not_of_the_si_is_a_warning_with_its_factor() {
         let (scene, [(file, table)]) = with_force(&format!("{time},F\n0,0\n5,1\n"), "\"F\"");
         assert_found("time", &scene, &[(file, &table)], &["as if in s", &format!("time_factor = {factor}")]);
     }
-    for unit in ["g", "kn", "furlong"] {
+    for unit in ["t", "furlong"] {
         let (scene, [(file, table)]) = with_force(&format!("t_s,F ({unit})\n0,0\n5,1\n"), "2");
         assert_found("unknown", &scene, &[(file, &table)], &[&format!("\"{unit}\""), "scale = "]);
     }
@@ -198,6 +200,8 @@ fn components_that_say_a_number_twice_are_refused() {
     ] {
         assert_refused("components", &paddle, &[("c.csv", &format!("{header}\n{row}\n"))], &words);
     }
+    let blank = "amplitude_m,period_s,phase_deg\n0.01,1.2,\n0.02,1.3,10\n";
+    assert_refused("blank", &paddle, &[("c.csv", blank)], &["no value", "line 2", "phase_deg", "components.file"]);
     let good = "amplitude_m,period_s,phase_deg\n0.01,1.5,90\n";
     assert_not_found("components", &paddle, &[("c.csv", good)], "two units");
 }
@@ -336,6 +340,104 @@ fn a_carriage_that_starts_at_speed_with_the_water_is_noted() {
     };
     assert_found("along", &towed(""), &[], &["carriage starts at 0.3 m/s", "velocity of -0.3"]);
     assert_not_found("at-rest", &towed("velocity = [-0.3, 0.0]"), &[], "carriage starts");
+}
+
+#[test]
+fn a_check_that_the_run_does_not_reach_is_found() {
+    let check = |words: &str| {
+        scene(REST, &format!("[[probe]]\nmotion = \"box\"\n[[check]]\nseries = \"box.heave_m\"\n{words}\n"))
+    };
+    for (words, key) in [
+        ("formula = \"0\"\nfrom = 30.0", "from = 30 s"),
+        ("formula = \"0\"\nzero = 3.0", "zero = 3 s"),
+        ("response = { to = \"box.surge_m\", period = 1.0, ratio = 1.0, from = 4.0 }", "response.from = 4 s"),
+    ] {
+        assert_found(
+            "check-after",
+            &check(words),
+            &[],
+            &["\"box.heave_m\"", key, "the run ends at 2 s", "nothing is judged"],
+        );
+    }
+    assert_not_found("check-within", &check("formula = \"0\"\nfrom = 1.0"), &[], "judged");
+    let table = [("r.csv", "t_s,z_m\n10,0\n11,0\n12,0\n")];
+    let by_table = |words: &str| check(&format!("reference = \"r.csv\"\ncolumn = \"z_m\"\n{words}"));
+    let words = ["\"box.heave_m\" is not judged", "from 0 to 2 s", "0 of the 3 samples of r.csv", "from 10 to 12 s"];
+    assert_found("reference-after", &by_table(""), &table, &words);
+    assert_not_found("reference-moved", &by_table("offset = -10.0"), &table, "judged");
+    // A bound is judged over half of its reference or more.
+    let long = [("r.csv", "t_s,z_m\n0,0\n1,0\n2,0\n3,0\n4,0\n5,0\n6,0\n")];
+    assert_found("reference-longer", &by_table("bound = { off = 0.1 }"), &long, &["3 of the 7 samples", "until"]);
+    assert_not_found("reference-until", &by_table("until = 4.0\nbound = { off = 0.1 }"), &long, "judged");
+    assert_not_found("reference-free", &by_table(""), &long, "judged");
+}
+
+#[test]
+fn lists_in_place_of_tables_and_longer_lists_are_refused_with_the_form() {
+    let free = "free = { density = 500.0 }";
+    let box_shape = "{ box = { size = [0.5, 0.3] } }";
+    let shaped = |shape: &str| scene(REST, "").replace(box_shape, shape);
+    let probed = |probe: &str| scene(REST, &format!("[[probe]]\n{probe}\n"));
+    let check = "motion = \"box\"\n[[check]]\nseries = \"box.heave_m\"\nformula = \"0\"\n";
+    for (text, words) in [
+        (scene(REST, "").replace(free, "free = [500]"), ["free must be a table, not a list", "free = { density"]),
+        (probed(&format!("{check}bound = [0.1]")), ["bound must be a table, not a list", "bound = { N"]),
+        (scene(REST, "").replacen("[[water]]", "model = []\n[[water]]", 1), ["model must be a table", "[model]"]),
+        (shaped("{ ball = [0.1] }"), ["ball must be a table, not a list", "{ ball = { radius"]),
+        (shaped("{ capsule = [0.1, 0.03] }"), ["capsule must be a table, not a list", "{ capsule = { length"]),
+        (shaped("{ wedge = [[0.1, 0.1]] }"), ["wedge must be a table, not a list", "{ wedge = { size"]),
+        (shaped("{ box = [[0.2, 0.1]] }"), ["box must be a table, not a list", "{ box = { size"]),
+        (shaped("{ box = [0.2, 0.1] }"), ["box must be a table, not a list", "{ box = { size"]),
+        (shaped("{ box = [] }"), ["box must be a table, not a list", "{ box = { size"]),
+        (shaped("[0.2]"), ["shape must be a word, or a table with one key, not a list", "shape = { box"]),
+        (scene(REST, "[model]\nviscosity = { artificial = [0.01] }"), ["artificial must be a table", "alpha = "]),
+        (probed("elevation = [0.2]"), ["elevation must be a table, not a list", "elevation = { x"]),
+        (probed("contact = [\"box\", \"gate\", \"tank\"]"), ["contact must be a list of 2, not of 3", "contact = ["]),
+        (probed("contact = [\"box\"]"), ["contact must be a list of 2, not of 1", "contact = ["]),
+        (
+            scene(REST, "[guard]\ndensity = [0.5, 1.5, 2.0]"),
+            ["density must be a list of 2, not of 3", "density = [0.5"],
+        ),
+    ] {
+        assert_refused("form", &text, &[], &["scene.toml:", words[0], words[1]]);
+    }
+}
+
+#[test]
+fn a_table_of_points_without_names_has_two_columns() {
+    let shape = scene(REST, "").replace("{ box = { size = [0.5, 0.3] } }", "{ polygon = { file = \"r.csv\" } }");
+    let message = inspected("points", &shape, &[("r.csv", "1,0,0\n2,.2,0\n3,.2,.1\n")]).unwrap_err();
+    assert!(message.contains("no row of names") && message.contains("two columns, x and y"), "{message}");
+    assert!(!message.contains("column = 2"), "{message}");
+}
+
+#[test]
+fn names_of_other_programs_propose_those_of_a_scene() {
+    let shaped = |shape: &str| scene(REST, "").replace("{ box = { size = [0.5, 0.3] } }", shape);
+    let driven = |wave: &str| {
+        scene(REST, "").replace(
+            "driven = { along = [0.0, 1.0], distance = { formula = \"0*t\" } }",
+            &format!("driven = {{ wave = {wave} }}"),
+        )
+    };
+    for (text, words) in [
+        (shaped("{ sphere = { radius = 0.1 } }"), ["did you mean \"ball\"?", "{ ball = { radius"]),
+        (shaped("{ ellipse = { radii = [0.2, 0.1] } }"), ["did you mean \"ellipsoid\"?", "radii = [0.2, 0.1] } }"]),
+        (
+            shaped("{ mesh = { file = \"a.stl\", contact = \"convex\" } }"),
+            ["did you mean \"hull\"?", "contact = \"hull\""],
+        ),
+        (driven("{ regular = { H = 0.1, T = 1.2 } }"), ["did you mean \"height\"?", "height = 0.1"]),
+        (driven("{ regular = { height = 0.1, T = 1.2 } }"), ["did you mean \"period\"?", "period = 1.2"]),
+        (driven("{ jonswap = { Hs = 0.1, Tp = 1.2 } }"), ["did you mean \"height\"?", "height"]),
+        (driven("{ jonswap = { height = 0.1, Tp = 1.2 } }"), ["did you mean \"peak_period\"?", "peak_period = 1.4"]),
+        (
+            scene(REST, "").replace("free =", "fixed = false\nfree ="),
+            ["fixed = false says nothing beside free", "remove"],
+        ),
+    ] {
+        assert_refused("names", &text, &[], &["scene.toml:", words[0], words[1]]);
+    }
 }
 
 #[test]

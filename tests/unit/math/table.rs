@@ -66,6 +66,16 @@ fn errors_name_the_file_the_line_and_the_column() -> Result<()> {
 }
 
 #[test]
+fn complete_columns_refuse_a_row_without_a_value_and_skip_blank_rows() -> Result<()> {
+    let file = TestFile::new("complete", "a,b,note\n1,2,x\n,,\n3,,y\n");
+    let error = file.open()?.complete_columns(["a", "b"]).unwrap_err().to_string();
+    assert!(error.contains(&format!("a row has no value\n  in {}:4:1, b", file.0.display())), "{error}");
+    std::fs::write(&file.0, "a,b,note\n1,2,\n,,\n3,4,y\n").unwrap();
+    assert_eq!(file.open()?.complete_columns(["a", "b"])?, [vec![1.0, 3.0], vec![2.0, 4.0]]);
+    Ok(())
+}
+
+#[test]
 fn all_columns_leave_out_a_cut_row() -> Result<()> {
     let file = TestFile::new("cut", "t_s,x_m,f_N\n0.0,1.0,\n0.1,what,2.0\n0.2,3");
     let columns = file.open()?.all_columns();
@@ -109,6 +119,11 @@ fn tables_of_other_programs_are_read_and_the_remark_names_the_layout() -> Result
             "B1Surge",
             "row of units in line 8; lines 2 to 5 skipped",
         ),
+        ("upper-units", "t,x\nS,MM\n0.0,1.5\n0.5,2.5\n", "x", "row of units in line 2"),
+        ("words-as-units", "t,x\nsecs,millimetre\n0.0,1.5\n0.5,2.5\n", "x", "row of units in line 2"),
+        ("names-of-words", "Time (s)  Surge motion (m)\n0.0 1.5\n0.5 2.5\n", "Surge motion", "separator blanks"),
+        ("r-csv", "\"t_s\",\"x_m\"\n\"1\",0.0,1.5\n\"2\",0.5,2.5\n", "x_m", "no name for the first column"),
+        ("r-blanks", "\"t_s\" \"x_m\"\n\"1\" 0.0 1.5\n\"2\" 0.5 2.5\n", "x_m", "which numbers the rows"),
         (
             "openfast-blanks",
             "Test 3\nTime  Elev  Surge\n (s)   (m)   (m)\n 0.0  9.0  1.5\n 0.5  9.0  2.5\n",
@@ -178,7 +193,14 @@ fn columns_go_by_number_with_and_without_names() -> Result<()> {
     assert!(twice.contains("more than one column \"x_m\"") && twice.contains("2 or 3"), "{twice}");
     assert_eq!(read("twice", "t_s,x_m,x_m\n0.0,1.5,9\n0.5,2.5,9\n", ColumnName::Number(3))?.1, [9.0, 9.0]);
     let unfit = refused("t_s;x_m\n0.0;1.5;2\n0.5;2.5;2\n", "x_m".into());
-    assert!(unfit.contains("2 names over rows of 3 cells"), "{unfit}");
+    assert!(unfit.contains("2 names over rows of 3 cells") && unfit.contains("without quotation marks"), "{unfit}");
+    // The numbers of the rows are no times.
+    let counted = refused("t_s x_m\n1 0.0 1.5\n2 0.5 2.5\n", ColumnName::Number(3));
+    assert!(counted.contains("the first of which numbers the rows"), "{counted}");
+    let rows = "\"t_s\" \"x_m\"\n\"1\" 0 1.5\n\"2\" 0.5 2.5\n";
+    assert_eq!(read("r", rows, ColumnName::Number(3))?.0, [0.0, 0.5]);
+    let quoted = refused("t_s,x_m\n0.0,1.5\n0.5,2.5\n", "2".into());
+    assert!(quoted.contains("write 2 without quotation marks; its columns: t_s, x_m"), "{quoted}");
     Ok(())
 }
 
@@ -190,6 +212,12 @@ fn numbers_with_several_readings_and_other_cells_are_refused_with_the_reason() {
         ("mixed", "t_s;x_m\n0.5;1,5\n1.0;1,5\n2.0;3\n", "has a decimal comma or a separator of thousands", "1234.5"),
         ("commas", "t_s,x_m\n0,0,0,5\n0,1,0,6\n", "separate the columns and may be decimal commas", "semicolons"),
         ("commas-no-names", "0,00,0,50\n0,01,0,60\n", "separate the columns and may be decimal commas", "semicolons"),
+        ("commas-pairs", "1,0,0,25\n2,0,0,75\n3,0,0,95\n", "may be decimal commas as well", "name every column"),
+        ("empty", "\n", "is empty", "name another file"),
+        ("comments", "# t_s,x_m\n", "has comments alone", "name another file"),
+        ("rounded", "t_s,x_m\n0.00,1\n0.00,2\n0.01,3\n", "0 follows 0", "more digits"),
+        ("two-names", "t,x_m\nWert,Weg\n0.0,1\n0.5,2\n", "has two rows of names, and line 2 is used", "remove one"),
+        ("unquoted", "t_s x_m\n1 0.0 1\n2 0.5 2\n", "2 names over rows of 3 cells, the first", "name every column"),
         ("date", "t_s,x_m\n2021-05-03 12:00:00,1\n2021-05-03 12:00:01,2\n", "is a date or a time of day", "seconds"),
         ("german-date", "t_s;x_m\n03.05.2021;1\n04.05.2021;2\n", "is a date or a time of day", "seconds"),
         ("clock", "t_s,x_m\n12:00:00.5,1\n12:00:01.5,2\n", "is a date or a time of day", "seconds"),
@@ -220,6 +248,122 @@ fn units_come_from_the_row_of_units_or_the_name() -> Result<()> {
     assert_eq!(unit("t_s,n_steps\n0,1\n1,2\n", "n_steps")?, None);
     assert!(si_factor("mm") == Some(1e-3) && si_factor("m").is_none() && is_degree("deg"));
     Ok(())
+}
+
+/// The unit of a column of this name whose values are meant in a unit, in 2-D.
+fn unit_as(name: &str, meant: &str) -> Option<String> {
+    let file = TestFile::new("meant", format!("i,\"{name}\"\n0,1\n1,2\n"));
+    file.open().unwrap().unit_as(ColumnName::Number(2), Some((meant, 2))).unwrap()
+}
+
+#[test]
+fn names_hold_units_of_the_quantity_that_is_meant() {
+    for (name, meant, unit, factor) in [
+        ("time_min", "s", "min", 60.0),
+        ("time_h", "s", "h", 3600.0),
+        ("time_hours", "s", "hours", 3600.0),
+        ("hours", "s", "hours", 3600.0),
+        ("time_days", "s", "days", 86400.0),
+        ("t_d", "s", "d", 86400.0),
+        ("time_us", "s", "us", 1e-6),
+        ("T_MS", "s", "MS", 1e-3),
+        ("tms", "s", "ms", 1e-3),
+        ("q_Nmm", "N m", "Nmm", 1e-3),
+        ("q_Ncm", "N m", "Ncm", 1e-2),
+        ("m_g", "kg", "g", 1e-3),
+        ("gravity_g", "m/s²", "g", 9.806_65),
+        ("f_gf", "N", "gf", 9.806_65e-3),
+        ("z_in", "m", "in", 0.0254),
+        ("z_inch", "m", "inch", 0.0254),
+        ("z_MM", "m", "MM", 1e-3),
+        ("zmm", "m", "mm", 1e-3),
+        ("Fxmm", "m", "mm", 1e-3),
+        ("z.mm", "m", "mm", 1e-3),
+        ("z-mm", "m", "mm", 1e-3),
+        ("z {mm}", "m", "mm", 1e-3),
+        ("z / mm", "m", "mm", 1e-3),
+        ("z_millimetres", "m", "millimetres", 1e-3),
+        ("Fx (kN) filtered", "N", "kN", 1e3),
+        ("fx_kN_filt", "N", "kN", 1e3),
+        ("kN_fx", "N", "kN", 1e3),
+        ("kN", "N", "kN", 1e3),
+        ("FX_KN", "N", "KN", 1e3),
+        ("force_kn", "N", "kn", 1e3),
+        ("u_kn", "m/s", "kn", 1852.0 / 3600.0),
+        ("fx.kN", "N", "kN", 1e3),
+        ("fx-kN", "N", "kN", 1e3),
+        ("Fx <kN>", "N", "kN", 1e3),
+        ("Fx in kN", "N", "kN", 1e3),
+        ("Force, kN", "N", "kN", 1e3),
+        ("fx_N_per_m", "N", "N_per_m", 1.0),
+        ("fx (N per m)", "N", "N per m", 1.0),
+        ("fx_kN_per_m", "N", "kN_per_m", 1e3),
+        ("fx_kNpm", "N", "kNpm", 1e3),
+        ("deg", "rad", "deg", PI / 180.0),
+        ("pitch_DEG", "rad", "DEG", PI / 180.0),
+        ("pitch (Deg)", "rad", "Deg", PI / 180.0),
+        ("pitch (degs)", "rad", "degs", PI / 180.0),
+        ("w (degs)", "rad/s", "degs", PI / 180.0),
+        ("v_mm_s", "m/s", "mm_s", 1e-3),
+        ("lag_30_mm_s", "s", "s", 1.0),
+        ("v_mm/s", "m/s", "mm/s", 1e-3),
+        ("v_ms", "m/s", "ms", 1.0),
+        ("a_ms2", "m/s²", "ms2", 1.0),
+    ] {
+        assert_eq!(unit_as(name, meant).as_deref(), Some(unit), "{name} in {meant}");
+        let Some(Conversion::Factor(found)) = conversion(unit, meant, 2) else { panic!("{unit} in {meant}") };
+        assert!((found / factor - 1.0).abs() < 1e-12, "{unit} in {meant}: {found}");
+    }
+    for (name, meant) in [("v_ms", "m"), ("v_mps", "m"), ("a_ms2", "m"), ("v_m_s", "m"), ("fx_N_per_m", "m")] {
+        let unit = unit_as(name, meant).unwrap();
+        assert_eq!(conversion(&unit, meant, 2), Some(Conversion::OtherQuantity), "{name} in {meant}");
+    }
+    assert!(
+        is_degree("DEG")
+            && is_degree("degs")
+            && !is_degree("rad")
+            && is_assumed("degs")
+            && is_assumed("in")
+            && !is_assumed("deg")
+    );
+    assert_eq!(conversion("MNM", "N m", 2), None, "mN m or MN m");
+    assert_eq!(conversion("kN_per_m", "N", 3), Some(Conversion::OtherQuantity));
+}
+
+#[test]
+fn words_and_symbols_in_names_are_no_units() {
+    for (name, meant) in [
+        ("z_min", "m"),
+        ("z_max", "m"),
+        ("t_in", "kg"),
+        ("u_in", "m/s"),
+        ("F_in", "N"),
+        ("F_t", "N"),
+        ("F_g", "N"),
+        ("x_t", "m"),
+        ("x_d", "m"),
+        ("x_h", "m"),
+        ("p_1", "Pa"),
+        ("pitch_1", "rad"),
+        ("x_bar", "m"),
+        ("x_rev", "m"),
+        ("eta_m2", "m"),
+        ("x_s2", "m"),
+        ("H/d", "rad"),
+        ("in", "m"),
+        ("min", "s"),
+        ("left", "m"),
+        ("rms", "m"),
+        ("max_steps", "m"),
+        ("stroke_spm", "m"),
+        ("f_mpa", "Pa"),
+        ("pppppppppppppppppppppppppppppppppppppppppppppppppppppppppppp", "m"),
+        ("pppppppppppppppppppppppppp_ppp", "m"),
+    ] {
+        assert_eq!(unit_as(name, meant), None, "{name} in {meant}");
+    }
+    assert_eq!(of_series("b.fx_N_per_m"), Some("N_per_m"));
+    assert_eq!(of_series("g.eta_at_1.5_m"), Some("m"));
 }
 
 #[test]

@@ -200,6 +200,9 @@ fn files_of_another_kind_are_named() {
     named("stl", b"\n<!DOCTYPE html>\n<html><body>not found</body></html>", &["a web page"]);
     named("stl", b"<?xml version=\"1.0\"?><!DOCTYPE html PUBLIC \"\"><html>", &["a web page"]);
     named("stl", b"PK\x03\x04 and so on", &["zip archive"]);
+    named("stl", b"\x1f\x8b\x08 and so on", &["compressed by gzip", "unpack it"]);
+    named("stl.gz", b"\x1f\x8b\x08 and so on", &["neither .stl nor .obj", "unpack it"]);
+    named("obj", &binary("box", 12, &hull()), &["not OBJ but binary STL", ".stl"]);
     named("stl", b"ISO-10303-21;\nHEADER;", &["STEP"]);
     named("obj", solid("a", &hull()).as_bytes(), &["STL as text", ".stl"]);
     named("stl", obj(&[block([0.0; 3], [1.0; 3])]).as_bytes(), &["not STL but OBJ", ".obj"]);
@@ -303,6 +306,50 @@ fn shallow_crossings_are_tolerated_and_told() {
         &refusal("obj", part(1e-4).as_bytes(), Completion::default()),
         &["by 1.0e-4 m at most", "2.0e-5 m is tolerated"],
     );
+    // A whole end face lies in the other part: beside others inside its face, and over all of it.
+    for (min, max, volume) in
+        [([-0.05, -0.02], [0.05, 0.02], 0.0088), ([-0.1, -0.05], [0.1, 0.05], 0.012), ([-0.2, -0.1], [0.2, 0.1], 0.024)]
+    {
+        for depth in [2e-6, 1e-5, 1.9e-5] {
+            let second = block([0.2 - depth, min[0], min[1]], [0.4, max[0], max[1]]);
+            let both = obj(&[block([-0.2, -0.1, -0.05], [0.2, 0.1, 0.05]), second]);
+            assert_volume("obj", both.as_bytes(), Completion::default(), volume, 2e-4);
+        }
+    }
+}
+
+#[test]
+fn double_sided_meshes_are_named() {
+    let reversed = |facets: &[[[f64; 3]; 3]]| facets.iter().map(|&[a, b, c]| [c, b, a]).collect::<Vec<_>>();
+    let open = &hull()[..10];
+    for facets in [&hull()[..], open] {
+        let both = solid("both", &[facets, &reversed(facets)[..]].concat());
+        for thickness in [None, Some(0.01)] {
+            let completion = Completion { thickness, ..Completion::default() };
+            assert_parts(&refusal("stl", both.as_bytes(), completion), &["double-sided", "export one side"]);
+        }
+    }
+    // The diagonals of reversed quads differ.
+    let (points, sides) = block([-0.2, -0.1, -0.05], [0.2, 0.1, 0.05]);
+    let back = sides.iter().map(|&[a, b, c, d]| [d, c, b, a]).collect();
+    let both = obj(&[(points.clone(), sides), (points, back)]);
+    assert_parts(&refusal("obj", both.as_bytes(), Completion::default()), &["double-sided"]);
+}
+
+#[test]
+fn facets_without_area_and_corners_on_edges_are_named() {
+    let [a, b, _] = hull()[0];
+    let middle = [0, 1, 2].map(|i| 0.5 * (a[i] + b[i]));
+    let surplus = solid("surplus", &[&hull()[..], &[[a, b, middle], [a, a, b]]].concat());
+    assert_parts(&plain("stl", surplus.as_bytes(), 0.008), &["1 facet without area is removed"]);
+    // The sides x = 0.2 and y = 0.1 meet on the edge from (0.2, 0.1, −0.05) to (0.2, 0.1, 0.05); one side has a corner in its middle.
+    let (mut points, sides) = block([-0.2, -0.1, -0.05], [0.2, 0.1, 0.05]);
+    points.push([0.2, 0.1, 0.0]);
+    let others: Vec<_> = sides.into_iter().filter(|side| *side != [1, 3, 7, 5]).collect();
+    let text = obj(&[(points, others)]) + "f 2 4 9\nf 2 9 6\nf 9 8 6\n";
+    let message = refusal("obj", text.as_bytes(), Completion::default());
+    assert_parts(&message, &["the mesh is open", "(0.2000, 0.1000, 0.0000) m lies on the edge of another facet"]);
+    assert!(!message.contains("cap ="), "{message}");
 }
 
 /// A boat of 0.4 × 0.2 × 0.1 m without its deck and without its side at y = 0.
@@ -392,8 +439,16 @@ fn a_sheet_becomes_a_plate_of_its_thickness() {
     assert_volume("obj", angle.as_bytes(), plate(0.01), 0.7 * 0.3 * 0.01, 1e-12);
     // A closed surface becomes a hollow: 0.41 × 0.21 × 0.11 less 0.39 × 0.19 × 0.09 m³.
     let hollow = 0.41 * 0.21 * 0.11 - 0.39 * 0.19 * 0.09;
-    assert_volume("stl", solid("a", &hull()).as_bytes(), plate(0.01), hollow, 1e-12);
-    assert_parts(&refusal("obj", sheet.as_bytes(), Completion::default()), &["the mesh is open", "cap = \"z\""]);
+    let notes = assert_volume("stl", solid("a", &hull()).as_bytes(), plate(0.01), hollow, 1e-12);
+    assert_parts(&notes, &["the mesh is closed: thickness = 0.01", "hollow shell", "8.000e-3 m³"]);
+    let message = refusal("stl", solid("a", &hull()).as_bytes(), plate(20.0));
+    assert_parts(
+        &message,
+        &["thickness = 20 makes a plate thicker than the mesh is large, 0.4000 m", "thickness is in m"],
+    );
+    let message = refusal("stl", solid("a", &hull()[..10]).as_bytes(), plate(0.15));
+    assert_parts(&message, &["thickness = 0.15 is in m, and the mesh is 0.4000 m large"]);
+    assert_parts(&refusal("obj", sheet.as_bytes(), Completion::default()), &["the mesh is open", "thickness = 0.01"]);
     assert_parts(&refusal("obj", angle.as_bytes(), Completion::default()), &["thickness = 0.01"]);
 }
 

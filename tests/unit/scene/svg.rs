@@ -138,6 +138,19 @@ fn transforms_of_styles_and_attributes_apply() {
     }
     let sheet = "<style>g > path { transform: scale(2) }</style>";
     assert!(refusal(&drawing(size, &format!("{sheet}{RECTANGLE}")), None).contains("\"g > path\", which is not read"));
+    // Rules under a condition.
+    for rule in ["path { transform: scale(.5) }", ".a { fill: red } .b { display: none }"] {
+        let message = refusal(&drawing(size, &format!("<style>@media all {{ {rule} }}</style>{RECTANGLE}")), None);
+        assert!(message.contains("\"@media all\", which is not read"), "{rule}: {message}");
+    }
+    let sheet = "<style>@media print { path { fill: none } } path.big { transform: scale(2) }</style>";
+    assert_200_by_100(&drawing(size, &format!("{sheet}<path class='big' {half}/>")), None, None);
+}
+
+#[test]
+fn an_unknown_id_proposes_the_nearest_one() {
+    let svg = drawing("width='540mm' height='120mm' viewBox='0 0 540 120'", RECTANGLE);
+    assert!(refusal(&svg, Some("Hull")).contains("with the id \"Hull\"; did you mean \"hull\"?"));
 }
 
 #[test]
