@@ -24,7 +24,7 @@ pub(super) fn check<const D: usize>(
     for (i, solid) in context.solids().iter().enumerate() {
         let Some(body) = bodies.iter().find(|body| body.name == solid.spec.name) else { continue };
         let (sea, dp) = (context.still_water.level, context.dp());
-        let stands = touching[i] && body.displaced_kg <= 0.0 && body.support == "bottom";
+        let stands = touching[i] && body.support == "solid";
         if let Some(lower) =
             (0..bodies.len()).map(|j| &bodies[j].name).find(|name| stands && is_below(context, name, i))
         {

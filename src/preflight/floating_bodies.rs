@@ -85,7 +85,7 @@ pub struct BodySummary {
     /// Equilibrium in the initial orientation; absent unless the water carries it.
     pub afloat: Option<Equilibrium>,
     /// The effect that carries it at rest: `water`, `lines` (it hangs on them, or they hold it down), `held` (by a joint
-    /// or a lock), `bottom` (it sinks, or lies on a solid), `floods` (water runs over its rim), `neutral` (as dense as the
+    /// or a lock), `bottom` (it sinks, or lies on a solid), `solid` (it stands on one in the air), `floods` (water runs over its rim), `neutral` (as dense as the
     /// water), `none` without gravity.
     pub support: &'static str,
     /// Names of the other bodies of its assembly, between which there are joints.
@@ -280,7 +280,19 @@ impl<const D: usize> PreflightContext<'_, D> {
         let volume = shape.volume_properties().volume;
         let support = statics.as_ref().map(|statics| statics.support(number));
         let afloat = statics.as_ref().filter(|_| support == Some(Support::Water));
-        let rest = afloat.map(|statics| statics.pose(number));
+        let rest = match support {
+            Some(Support::Water) => afloat.map(|statics| statics.pose(number)),
+            // What stands in the air is judged as it would float.
+            Some(Support::Solid) => {
+                let mut pose = *pose;
+                let rise = hull(self, i).equilibrium_height(&pose, body.mass, model.rho0, self.still_water.level);
+                rise.ok().map(|rise| {
+                    pose.position[D - 1] += rise;
+                    pose
+                })
+            }
+            _ => None,
+        };
         let wet = |face: &&SurfaceSample<D>| {
             let below = rest.is_none_or(|pose| pose.point(&face.x)[D - 1] < self.still_water.level);
             below && !is_in_dry_hollow(self, i, &(face.x + face.n * (0.5 * model.dp)))
@@ -306,6 +318,7 @@ impl<const D: usize> PreflightContext<'_, D> {
                 Some(Support::Lines) => "lines",
                 Some(Support::Held) => "held",
                 Some(Support::Bottom) => "bottom",
+                Some(Support::Solid) => "solid",
                 Some(Support::Floods) => "floods",
                 Some(Support::Neutral) => "neutral",
                 None => "none",

@@ -5,8 +5,8 @@
 //! method finds the rises at which buoyancy, weight, lines and forces balance. A rope is a stiff spring that only pulls; the
 //! bottom of the water is a stiff spring that only pushes.
 
-mod moored;
 mod strength;
+mod support;
 mod ties;
 
 use nalgebra::{DMatrix, DVector};
@@ -20,8 +20,9 @@ use super::{
 };
 use crate::math::{Bivector, Bounds, Pose, Vector};
 
-pub(crate) use moored::MooredEnd;
 pub(crate) use strength::Overload;
+pub(crate) use support::Support;
+pub(crate) use ties::MooredEnd;
 use ties::{Drive, Line, SteadyForce, tension_towards};
 
 /// Stiffness of a taut rope and of the bottom over that of the largest waterplane.
@@ -40,23 +41,6 @@ pub(crate) struct WaterAtRest {
     pub(crate) g: f64,
     /// Height of the surface, m.
     pub(crate) level: f64,
-}
-
-/// The effect that carries a body at rest.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Support {
-    /// The water: the body, or the group that rises with it, cuts the surface.
-    Water,
-    /// Lines and forces: the body hangs in the air, or in the water below its surface.
-    Lines,
-    /// A joint or a lock holds its height.
-    Held,
-    /// The bottom, or a solid that it lies on.
-    Bottom,
-    /// None: its rim is below the surface, and water fills the hull.
-    Floods,
-    /// The water, at any depth: it is as dense as the water.
-    Neutral,
 }
 
 /// A free body of a static system.
@@ -180,6 +164,22 @@ impl<'a, const D: usize> StaticSystem<'a, D> {
         made
     }
 
+    /// The same system, with mooring lines of this stiffness.
+    pub(crate) fn with_mooring_stiffness(self, moored: Vec<MooredEnd<D>>) -> Self {
+        Self { moored, ..self }
+    }
+
+    /// Returns the number of the body that is this solid.
+    fn number(&self, solid: usize) -> Option<usize> {
+        self.bodies.iter().position(|body| body.solid == solid)
+    }
+
+    /// Returns the stiffness (N/m) of mooring lines against a rise of body `i`.
+    fn mooring_stiffness(&self, i: usize) -> f64 {
+        let rises = |own: &&MooredEnd<D>| self.number(own.solid).is_some_and(|j| self.group[j] == self.group[i]);
+        self.moored.iter().filter(rises).map(|own| own.stiffness[(D - 1, D - 1)]).sum()
+    }
+
     /// Finds the rises of all groups, those that lines connect at once.
     fn find_rest(&mut self) {
         let mut linked: Vec<usize> = (0..self.rise.len()).collect();
@@ -284,7 +284,7 @@ impl<'a, const D: usize> StaticSystem<'a, D> {
             let body = &self.bodies[i];
             let sinks = body.bottom - body.hull.extent(&body.pose)[0];
             // In the air, on a solid.
-            if sinks >= 0.0 && body.hull.shape.submerged_volume(&body.pose, self.water.level).0 <= 0.0 {
+            if sinks >= 0.0 && self.is_in_air(i) {
                 return;
             }
             self.rise[group] = body
@@ -415,36 +415,6 @@ impl<'a, const D: usize> StaticSystem<'a, D> {
     /// Returns whether body `i` lies on the bottom, or on a solid.
     fn lies_on_bottom(&self, i: usize) -> bool {
         self.bodies[i].hull.extent(&self.pose(i))[0] <= self.bodies[i].bottom + 1e-6 * self.size(i)
-    }
-
-    /// Returns the effect that carries body `i` at rest.
-    pub(crate) fn support(&self, i: usize) -> Support {
-        let level = self.water.level;
-        if self.held[self.group[i]] {
-            return Support::Held;
-        }
-        let (mass, carried) =
-            self.group_of(i).fold((0.0, 0.0), |sum, j| (sum.0 + self.bodies[j].body.mass, sum.1 + self.displaced(j)));
-        if carried < (1.0 - 1e-6) * mass && self.group_of(i).any(|j| self.lies_on_bottom(j)) {
-            let open = self.bodies[i].hull.rim_height(&self.bodies[i].pose).is_finite();
-            return if open { Support::Floods } else { Support::Bottom };
-        }
-        let floods = |j: usize| self.bodies[j].hull.rim_height(&self.pose(j)) < level - 1e-6 * self.size(j);
-        if self.group_of(i).any(floods) {
-            return Support::Floods;
-        }
-        if self.is_neutral(i) {
-            return Support::Neutral;
-        }
-        let floats = self.waterplane(i) > 1e-6 * plan_area(&self.bodies[i].hull, &self.bodies[i].pose);
-        if floats { Support::Water } else { Support::Lines }
-    }
-
-    /// Returns whether body `i`, without ties, displaces just its mass when it is submerged.
-    fn is_neutral(&self, i: usize) -> bool {
-        let (hull, pose, mass) = (&self.bodies[i].hull, self.pose(i), self.bodies[i].body.mass);
-        let most = self.water.rho0 * hull.volume_if_dry(&pose, hull.extent(&pose)[1]);
-        self.floats_alone(i) && (most - mass).abs() < 1e-6 * mass
     }
 
     /// Returns the area (m²; m in 2-D) of the waterplane of the bodies that rise with body `i`.

@@ -205,7 +205,7 @@ fn a_body_that_carries_another_or_floats_in_a_hull_is_told() {
     let raft = body("raft", [0.6, 0.2], 300.0, "x = 1.0, draft = 0.1");
     let crate_on_it = body("crate", [0.2, 0.2], 600.0, "x = 1.0, bottom = 0.7");
     let found = report(&format!("{WATER}{TANK}{raft}{crate_on_it}"));
-    assert_eq!((found.bodies[0].support, found.bodies[1].support), ("water", "bottom"));
+    assert_eq!((found.bodies[0].support, found.bodies[1].support), ("water", "solid"));
     let note = find(&found, "carried_body").expect("the crate stands on the raft");
     assert!(note.what.contains("\"crate\" stands on \"raft\""), "{}", note.what);
     let dock = "[[water]]\ninside = \"dock\"\nfill = { box = { min = [0.5, 0.0], max = [1.5, 0.7] } }\n\
