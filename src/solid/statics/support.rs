@@ -1,6 +1,6 @@
 //! The effect that carries a body at rest.
 
-use super::{StaticBody, StaticSystem, plan_area};
+use super::{StaticSystem, plan_area};
 
 /// The effect that carries a body at rest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,10 +48,9 @@ impl<const D: usize> StaticSystem<'_, D> {
         if floats { Support::Water } else { Support::Lines }
     }
 
-    /// Returns whether body `i` starts in the air.
+    /// Returns whether body `i` is in the air, at the rise found so far.
     pub(super) fn is_in_air(&self, i: usize) -> bool {
-        let StaticBody { hull, pose, .. } = &self.bodies[i];
-        hull.shape.submerged_volume(pose, self.water.level).0 <= 0.0
+        self.bodies[i].hull.shape.submerged_volume(&self.pose(i), self.water.level).0 <= 0.0
     }
 
     /// Returns whether body `i`, without ties, displaces just its mass when it is submerged.

@@ -208,6 +208,9 @@ fn a_body_that_carries_another_or_floats_in_a_hull_is_told() {
     assert_eq!((found.bodies[0].support, found.bodies[1].support), ("water", "solid"));
     let note = find(&found, "carried_body").expect("the crate stands on the raft");
     assert!(note.what.contains("\"crate\" stands on \"raft\""), "{}", note.what);
+    // A stone that falls into the water sinks.
+    let stone = report(&format!("{WATER}{TANK}{}", body("stone", [0.2, 0.2], 2000.0, "x = 1.0, bottom = 0.7")));
+    assert_eq!(stone.bodies[0].support, "bottom");
     let dock = "[[water]]\ninside = \"dock\"\nfill = { box = { min = [0.5, 0.0], max = [1.5, 0.7] } }\n\
          [[solid]]\nname = \"dock\"\nshape = { tank = { size = [1.0, 0.5], thickness = 0.1 } }\nat = { x = 0.5, y = 0.45 }\n\
          dry = true\nfree = { density = 400.0 }\n";
