@@ -337,8 +337,9 @@ fn bodies(bodies: &[BodySummary], dimension: usize) -> String {
             }
             None => row.extend(match body.support {
                 "bottom" => Some("sinks".into()),
+                "solid" => Some("stands".into()),
                 "lines" => Some("hangs".into()),
-                "held" | "floods" => Some(body.support.into()),
+                "held" | "floods" | "neutral" => Some(body.support.into()),
                 _ => None,
             }),
         }

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use super::Interval;
 use crate::{
     error::{Error, Result},
-    math::{Bounds, Vector},
+    math::{Bounds, Matrix, Vector},
     solid::{
         ConstraintChange, Kinematics, Load, Mobility, MooringReading, Role,
         mooring::{BedPlane, Junctions, LineState, LineStep, Mooring, MooringLine, NodeSurroundings, junctions},
@@ -117,6 +117,31 @@ impl<const D: usize> Moorings<D> {
             own().map(|(i, k)| moved[i].state.end_forces[k][0]).sum::<f64>()
         };
         (force(-way) - force(way)) / (2.0 * way)
+    }
+
+    /// Stiffness (N/m) of line number `i` against displacements of its end `k`. The lines are in equilibrium at each displacement.
+    pub(crate) fn end_stiffness(&self, system: &System<D>, i: usize, k: usize) -> Matrix<D> {
+        let way = 1e-3 * self.lines[i].line.length();
+        let force = |axis: usize, way: f64| {
+            let mut moved: Vec<_> = self.lines.iter().map(|mooring| mooring.line.clone()).collect();
+            let node = moved[i].end_node(k);
+            moved[i].state.x[node][axis] += way;
+            self.find_rest(system, &mut moved.iter_mut().collect::<Vec<_>>());
+            moved[i].state.end_forces[k]
+        };
+        let columns: Vec<Vector<D>> = (0..D).map(|axis| (force(axis, -way) - force(axis, way)) / (2.0 * way)).collect();
+        Matrix::from_fn(|row, column| columns[column][row])
+    }
+
+    /// Nodes of line number `i` that lie on fixed solids, in order.
+    pub(crate) fn lying_nodes(&self, system: &System<D>, i: usize) -> Vec<usize> {
+        let around: Vec<_> = self.lines[i].line.state.x.iter().map(|x| self.surroundings(system, x)).collect();
+        self.lines[i].lying_nodes(&around).collect()
+    }
+
+    /// Whether line number `i` acts.
+    pub(crate) fn acts(&self, i: usize) -> bool {
+        self.lines[i].line.state.acts
     }
 
     /// Longest inner step of line number `i`, s.

@@ -32,7 +32,7 @@ use crate::math::{Matrix, Pose, Vector};
 pub(crate) use fill::fill_around;
 pub use fill::{FilledWater, WaterRegion, fill};
 pub use mesh::{ContactGeometry, Mesh};
-pub(crate) use projected_area::{projected_area, surface_facets};
+pub(crate) use projected_area::Silhouette;
 
 /// A shape in its own frame, m. The last axis is vertical if the shape is not rotated.
 #[derive(Clone, Debug, PartialEq)]

@@ -22,7 +22,7 @@ use super::{
     hollows::{hull, is_in_dry_hollow},
     lifetimes::overload,
     surface_samples::SurfaceSample,
-    thickness::thinnest_part,
+    thickness::{load_error, thinnest_part},
 };
 use crate::{
     math::{
@@ -34,7 +34,7 @@ use crate::{
         FreeBody, Solid, SolidSpec,
         joint_groups::JointGroups,
         righting::{Floating, Turn},
-        statics::{StaticBody, StaticSystem, Support, WaterAtRest},
+        statics::{MooredEnd, StaticBody, StaticSystem, Support, WaterAtRest},
     },
 };
 
@@ -46,6 +46,12 @@ const BALLAST_TIMES: u32 = 50;
 
 /// Turn (rad) to rest beyond which a body turns over.
 const OVER: f64 = 0.5 * PI;
+
+/// Turn (rad) to rest up to which a body with a negative metacentric height does not turn over: ten degrees.
+const SMALL_TURN: f64 = PI / 18.0;
+
+/// Share by which facets and samples may find a part thinner than it is.
+const CHORD_ERROR: f64 = 0.01;
 
 /// Largest heel (degrees) that is estimated for small angles.
 const LARGEST_ESTIMATE: f64 = 45.0;
@@ -79,7 +85,8 @@ pub struct BodySummary {
     /// Equilibrium in the initial orientation; absent unless the water carries it.
     pub afloat: Option<Equilibrium>,
     /// The effect that carries it at rest: `water`, `lines` (it hangs on them, or they hold it down), `held` (by a joint
-    /// or a lock), `bottom` (it sinks, or lies on a solid), `floods` (water runs over its rim), `none` without gravity.
+    /// or a lock), `bottom` (it sinks, or lies on a solid), `solid` (it stands on one in the air), `floods` (water runs over its rim), `neutral` (as dense as the
+    /// water), `none` without gravity.
     pub support: &'static str,
     /// Names of the other bodies of its assembly, between which there are joints.
     pub tied_to: Vec<String>,
@@ -166,7 +173,7 @@ fn turn_finding<const D: usize>(
         Some(Turn::Rests(angle)) => {
             let is_unstable = least < 0.0 && linear_heel(statics, number, &afloat.tilts) < LEVEL;
             let rest = three_digits(angle.to_degrees());
-            if angle > OVER || (is_unstable && angle > LEVEL) {
+            if angle > OVER || (is_unstable && angle > SMALL_TURN) {
                 let height = match is_unstable {
                     true => format!(": its metacentric height is {} m", three_digits(least)),
                     false => String::new(),
@@ -200,9 +207,14 @@ fn turn_finding<const D: usize>(
 
 impl<const D: usize> PreflightContext<'_, D> {
     /// Returns the summaries of the free bodies and adds findings about them. `touching` marks the solids that touch
-    /// another.
-    pub(super) fn bodies(&self, touching: &[bool], findings: &mut Vec<Finding>) -> Vec<BodySummary> {
-        let statics = self.statics(touching);
+    /// another; `moored` are the ends of mooring lines.
+    pub(super) fn bodies(
+        &self,
+        touching: &[bool],
+        moored: Vec<MooredEnd<D>>,
+        findings: &mut Vec<Finding>,
+    ) -> Vec<BodySummary> {
+        let statics = self.statics(touching).map(|statics| statics.with_mooring_stiffness(moored));
         let specs: Vec<&SolidSpec<D>> = self.solids().iter().map(|solid| &solid.spec).collect();
         let constraints = &self.system.constraints().at_start();
         let groups = JointGroups::of(&specs, constraints);
@@ -247,7 +259,7 @@ impl<const D: usize> PreflightContext<'_, D> {
     /// Adds findings about bodies that are thick enough to separate the water of both sides, but whose middle still
     /// interacts with both.
     fn thin_bodies(&self, bodies: &[BodySummary], findings: &mut Vec<Finding>) {
-        let reach = self.system.model().support_radius() * (1.0 - 1e-6);
+        let reach = self.system.model().support_radius() * (1.0 - CHORD_ERROR);
         let thin: Vec<&BodySummary> = bodies.iter().filter(|b| (reach..2.0 * reach).contains(&b.thinnest_m)).collect();
         let Some(thinnest) = thin.iter().map(|b| b.thinnest_m).reduce(f64::min) else { return };
         let names: Vec<String> = thin.iter().map(|b| format!("\"{}\"", b.name)).collect();
@@ -268,7 +280,19 @@ impl<const D: usize> PreflightContext<'_, D> {
         let volume = shape.volume_properties().volume;
         let support = statics.as_ref().map(|statics| statics.support(number));
         let afloat = statics.as_ref().filter(|_| support == Some(Support::Water));
-        let rest = afloat.map(|statics| statics.pose(number));
+        let rest = match support {
+            Some(Support::Water) => afloat.map(|statics| statics.pose(number)),
+            // What stands in the air is judged as it would float.
+            Some(Support::Solid) => {
+                let mut pose = *pose;
+                let rise = hull(self, i).equilibrium_height(&pose, body.mass, model.rho0, self.still_water.level);
+                rise.ok().map(|rise| {
+                    pose.position[D - 1] += rise;
+                    pose
+                })
+            }
+            _ => None,
+        };
         let wet = |face: &&SurfaceSample<D>| {
             let below = rest.is_none_or(|pose| pose.point(&face.x)[D - 1] < self.still_water.level);
             below && !is_in_dry_hollow(self, i, &(face.x + face.n * (0.5 * model.dp)))
@@ -294,7 +318,9 @@ impl<const D: usize> PreflightContext<'_, D> {
                 Some(Support::Lines) => "lines",
                 Some(Support::Held) => "held",
                 Some(Support::Bottom) => "bottom",
+                Some(Support::Solid) => "solid",
                 Some(Support::Floods) => "floods",
+                Some(Support::Neutral) => "neutral",
                 None => "none",
             },
             tied_to: Vec::new(),
@@ -516,12 +542,13 @@ impl<const D: usize> PreflightContext<'_, D> {
         let (model, name) = (self.system.model(), &body.name);
         let density = body.density_ratio * model.rho0;
         let reach = model.support_radius();
-        if body.thinnest_m < reach * (1.0 - 1e-6) {
+        if body.thinnest_m < reach * (1.0 - CHORD_ERROR) {
             let what = format!(
-                "\"{name}\" is {} m thin, {} dp, and the kernel reaches {} dp: water on its two sides interacts{}",
+                "\"{name}\" is {} m thin, {} dp, and the kernel reaches {} dp: water on its two sides interacts{}{}",
                 three_digits(body.thinnest_m),
                 three_digits(body.thinnest_dp),
                 three_digits(self.support_radius_dp()),
+                load_error(body.thinnest_dp),
                 self.thin_buoyancy_error(body)
             );
             let mend = format!(

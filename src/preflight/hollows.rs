@@ -1,6 +1,6 @@
 //! Hollows of solids: those that are dry at the start, and hulls that water enters although the scene does not ask for it.
 
-use super::{Finding, PreflightContext};
+use super::{Finding, PreflightContext, initial_water::OFF_LATTICE};
 use crate::{
     geometry::hollow::{Enclosure, Hollow, Place},
     math::{Vector, format::three_digits},
@@ -96,6 +96,67 @@ pub(super) fn check_hollows<const D: usize>(context: &PreflightContext<D>, findi
             );
             let mend = "place it higher, make it lighter or its sides higher".into();
             findings.push(Finding::warning("hull_floods", what, mend));
+        }
+    }
+}
+
+/// Returns whether the middle of solid number `i` lies in a hollow of solid number `hull`.
+pub(super) fn lies_in_hollow<const D: usize>(context: &PreflightContext<D>, i: usize, hull: usize) -> bool {
+    let (solid, other) = (&context.solids()[hull], &context.solids()[i]);
+    let bounds = other.spec.shape.bounds_at(&other.kinematics.pose);
+    let middle = solid.kinematics.pose.local(&((bounds.min + bounds.max) * 0.5));
+    let place = context.hollows[hull].as_ref().map(|own| own.enclosure.place(&solid.spec.shape, &middle));
+    i != hull && matches!(place, Some(Place::Hollow(_)))
+}
+
+/// The volume (m³; m² in 2-D) of solid number `i` below `level` (m).
+fn solid_below<const D: usize>(context: &PreflightContext<D>, i: usize, level: f64) -> f64 {
+    let solid = &context.solids()[i];
+    solid.spec.shape.submerged_volume(&solid.kinematics.pose, level).0
+}
+
+/// Adds findings about water of hulls, given as (number of the hull, level in m): above the rim, or with a mass that is not that of
+/// its level.
+pub(super) fn check_own_water<const D: usize>(
+    context: &PreflightContext<D>,
+    inside: &[(usize, f64)],
+    findings: &mut Vec<Finding>,
+) {
+    let dp = context.dp();
+    for &(i, level) in inside {
+        let (solid, Some(own)) = (&context.solids()[i], &context.hollows[i]) else { continue };
+        let (name, pose) = (&solid.spec.name, &solid.kinematics.pose);
+        let filled = || own.enclosure.hollows.iter().zip(&own.particles).filter(|(_, n)| **n > 0);
+        let rim = filled().map(|(hollow, _)| hollow.rim_height(pose)).fold(f64::INFINITY, f64::min);
+        if level > rim + 0.5 * dp {
+            let what = format!(
+                "the water inside \"{name}\" is given to {} m, above its rim at {} m: it holds that below the rim",
+                three_digits(level),
+                three_digits(rim)
+            );
+            findings.push(Finding::note(
+                "hull_floods",
+                what,
+                format!("give it a level of {} m or less", three_digits(rim)),
+            ));
+        }
+        let level = level.min(rim);
+        let volume =
+            |level: f64| filled().map(|(hollow, _)| hollow.volume_and_moment_below(pose, level).0).sum::<f64>();
+        let within = (0..context.solids().len()).filter(|j| lies_in_hollow(context, *j, i));
+        let others: f64 = within.map(|j| solid_below(context, j, level)).sum();
+        let wanted = volume(level) - others;
+        let found = filled().map(|(_, n)| *n as f64).sum::<f64>() * dp.powi(D as i32);
+        let area = (volume(level) - volume(level - dp)) / dp;
+        if (found - wanted).abs() > OFF_LATTICE * dp * area {
+            let rho0 = context.system.model().rho0;
+            let what = format!(
+                "the particles of the water inside \"{name}\" have {} kg, and its level gives {} kg",
+                three_digits(rho0 * found),
+                three_digits(rho0 * wanted)
+            );
+            let mend = "place the floor of the hull and the level of its water on the lattice of the water".into();
+            findings.push(Finding::note("surface_off_lattice", what, mend));
         }
     }
 }

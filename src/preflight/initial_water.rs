@@ -1,5 +1,7 @@
-//! Bodies of water whose initial state is probably a mistake: off the lattice, in the air, on one another, or not as long as a
-//! period.
+//! Bodies of water whose initial state is probably a mistake: off the lattice, in the air, without walls, on one another, or not as
+//! long as a period.
+
+use std::collections::BTreeMap;
 
 use super::{Finding, PreflightContext};
 use crate::math::{
@@ -9,7 +11,7 @@ use crate::math::{
 
 /// Largest accepted difference between the level and the top of the highest row of particles, dp. It is half a dp for a level
 /// midway between two rows.
-const OFF_LATTICE: f64 = 0.2;
+pub(super) const OFF_LATTICE: f64 = 0.2;
 
 /// Depth below a particle of the lowest row within which something carries it, dp.
 const CARRIED: f64 = 1.5;
@@ -17,9 +19,17 @@ const CARRIED: f64 = 1.5;
 /// Adds findings about the bodies of water in `boxes`, which reach up to their levels.
 pub(super) fn check<const D: usize>(context: &PreflightContext<D>, boxes: &[Bounds<D>], findings: &mut Vec<Finding>) {
     check_periods(context, boxes, findings);
+    let gravity = context.system.gravity();
+    if gravity[D - 1] > 0.9 * gravity.norm() {
+        let list = |values: Vec<f64>| format!("{values:?}");
+        let down = gravity.iter().map(|g| if *g == 0.0 { 0.0 } else { -g }).collect();
+        let what = format!("gravity is {} m/s²: it points upwards", list(gravity.iter().copied().collect()));
+        findings.push(Finding::warning("gravity_direction", what, format!("write  gravity = {}", list(down))));
+    }
     if context.g <= 0.0 {
         return;
     }
+    check_walls(context, findings);
     check_surface(context, findings);
     for (i, own) in boxes.iter().enumerate() {
         check_support(context, i, own, findings);
@@ -83,6 +93,60 @@ fn check_support<const D: usize>(
     );
     let mend = format!("let it begin on the floor, or put one under it, as at {}", coordinates(&own.min));
     findings.push(Finding::note("water_in_air", what, mend));
+}
+
+/// Adds a finding about the side to which most rows of water have no solid and no face before them: the water runs out.
+fn check_walls<const D: usize>(context: &PreflightContext<D>, findings: &mut Vec<Finding>) {
+    let (system, dp) = (context.system, context.dp());
+    let mut worst: Option<(usize, String)> = None;
+    for (axis, sense) in (0..D - 1).flat_map(|axis| [(axis, -1.0), (axis, 1.0)]) {
+        let plane = system.symmetry_planes().0[axis].is_some_and(|plane| plane.is_upper == (sense < 0.0));
+        let face = system.open_boundaries().iter().any(|face| face.axis == axis && face.outward() == sense);
+        if plane || face || system.periodic()[axis].is_some() {
+            continue;
+        }
+        // The place of a particle across the axis, in cells of dp, and how far out the outermost one is there.
+        let cell = |x: &Vector<D>| -> [i64; D] {
+            std::array::from_fn(|i| if i == axis { 0 } else { (x[i] / dp).floor() as i64 })
+        };
+        let outermost = |all: &mut dyn Iterator<Item = &Vector<D>>| {
+            let mut ends: BTreeMap<[i64; D], f64> = BTreeMap::new();
+            for x in all {
+                let end = ends.entry(cell(x)).or_insert(f64::NEG_INFINITY);
+                *end = end.max(sense * x[axis]);
+            }
+            ends
+        };
+        let water = outermost(&mut system.fluid().r.iter());
+        let walls = outermost(&mut system.boundary().r.iter());
+        let is_open = |(at, end): &(&[i64; D], &f64)| {
+            let near = (0..3usize.pow(D as u32)).map(|k| -> [i64; D] {
+                std::array::from_fn(|i| if i == axis { 0 } else { at[i] + (k / 3usize.pow(i as u32) % 3) as i64 - 1 })
+            });
+            near.filter_map(|cell| walls.get(&cell)).all(|wall| wall < *end)
+        };
+        let open: Vec<(&[i64; D], &f64)> = water.iter().filter(is_open).collect();
+        let heights = || open.iter().map(|(at, _)| at[D - 1]);
+        let (Some(low), Some(high)) = (heights().min(), heights().max()) else { continue };
+        if worst.as_ref().is_none_or(|(most, _)| open.len() > *most) {
+            let end = open.iter().map(|(_, end)| **end).fold(f64::NEG_INFINITY, f64::max);
+            let what = format!(
+                "no wall and no face holds the water at {} = {} m, {} to {} m high: it runs out",
+                ["x", "y"][axis],
+                three_digits(sense * (end + 0.5 * dp)),
+                three_digits(low as f64 * dp),
+                three_digits((high + 1) as f64 * dp)
+            );
+            worst = Some((open.len(), what));
+        }
+    }
+    findings.extend(worst.map(|(_, what)| {
+        Finding::warning(
+            "open_side",
+            what,
+            "make the walls higher, or put one, an [[inflow]] or an [[outflow]] there".into(),
+        )
+    }));
 }
 
 /// Adds a finding about water above the level of other water that it touches.

@@ -12,32 +12,46 @@ pub(super) fn check_strength<const D: usize>(context: &PreflightContext<'_, D>, 
     for spring in context.system.constraints().springs.iter().filter(|spring| spring.breaks_at_start()) {
         let what = format!("spring \"{}\" breaks at the start", spring.name);
         let least = |load: &str| format!("breaks = {{ tension = {load} }} or more, or a length with less tension");
-        findings.push(strength_finding::<D>(
+        findings.push(strength_finding(
             "breaks_at_start",
             (&what, ""),
-            [spring.start_tension(), spring.lifetime.strength],
+            ([spring.start_tension(), spring.lifetime.strength], force_unit::<D>()),
             least,
         ));
     }
 }
 
 /// The finding about a line or a joint that breaks before the bodies are at rest.
-pub(super) fn overload<const D: usize>(Overload { kind, name, load, strength }: Overload) -> Finding {
+pub(super) fn overload<const D: usize>(overload: Overload) -> Finding {
+    let Overload { kind, name, load, strength, is_torque } = overload;
     let what = format!("{kind} \"{name}\" breaks before the bodies are at rest");
-    let key = if kind == "joint" { "force" } else { "tension" };
+    let key = match kind {
+        "joint" if is_torque => "torque",
+        "joint" => "force",
+        _ => "tension",
+    };
     let least = |load: &str| format!("breaks = {{ {key} = {load} }} or more, or less load on it");
-    strength_finding::<D>("breaks_at_rest", (&what, " then"), [load, strength], least)
+    let unit = match is_torque {
+        true if D == 2 => "N m/m",
+        true => "N m",
+        false => force_unit::<D>(),
+    };
+    strength_finding("breaks_at_rest", (&what, " then"), ([load, strength], unit), least)
 }
 
-/// The finding `what` that a load (N; N/m in 2-D), which acts `when`, exceeds the strength of the element that carries it; `mend` gets
+/// The unit of a force.
+pub(super) fn force_unit<const D: usize>() -> &'static str {
+    if D == 2 { "N/m" } else { "N" }
+}
+
+/// The finding `what` that a load of this unit, which acts `when`, exceeds the strength of the element that carries it; `mend` gets
 /// the load, rounded up.
-pub(super) fn strength_finding<const D: usize>(
+pub(super) fn strength_finding(
     topic: &'static str,
     (what, when): (&str, &str),
-    [load, bears]: [f64; 2],
+    ([load, bears], unit): ([f64; 2], &str),
     mend: impl Fn(&str) -> String,
 ) -> Finding {
-    let unit = if D == 2 { "N/m" } else { "N" };
     let what = format!("{what}: it has {} {unit}{when} and bears {} {unit}", three_digits(load), three_digits(bears));
     Finding::warning(topic, what, mend(&two_digits_up(load)))
 }

@@ -8,7 +8,7 @@ use crate::{
         format::{three_digits, two_digits_up},
     },
     scene::world_bounds,
-    solid::{Role, Solid},
+    solid::{FreeBody, Role, Solid},
 };
 
 impl<const D: usize> PreflightContext<'_, D> {
@@ -21,8 +21,11 @@ impl<const D: usize> PreflightContext<'_, D> {
                 findings.extend(self.outside_water(solid, &water));
             }
             let size = solid.spec.shape.bounds().size().norm();
-            let inertia = if D == 2 { body.inertia[(0, 0)] } else { body.inertia.diagonal().max() };
-            let gyration = (inertia / body.mass).sqrt();
+            let radius = |body: &FreeBody<D>| {
+                let inertia = if D == 2 { body.inertia[(0, 0)] } else { body.inertia.diagonal().max() };
+                (inertia / body.mass).sqrt()
+            };
+            let gyration = radius(body);
             if gyration > size {
                 let what = format!(
                     "\"{}\" has a radius of gyration of {} m and is {} m large: it hardly turns",
@@ -30,7 +33,12 @@ impl<const D: usize> PreflightContext<'_, D> {
                     three_digits(gyration),
                     three_digits(size)
                 );
-                let mend = "leave inertia out, which is then the homogeneous shape's".into();
+                let by_ballast = matches!(&solid.spec.role, Role::Free(own) if radius(own) <= size);
+                let mend = match by_ballast {
+                    true => "place its ballast nearer to it",
+                    false => "leave inertia out, which is then the homogeneous shape's",
+                };
+                let mend = mend.into();
                 findings.push(Finding::warning("large_inertia", what, mend));
             }
         }
@@ -41,6 +49,10 @@ impl<const D: usize> PreflightContext<'_, D> {
     fn outside_water(&self, solid: &Solid<D>, water: &Bounds<D>) -> Option<Finding> {
         let (name, own) = (&solid.spec.name, world_bounds(&solid.spec.shape, &solid.kinematics.pose));
         let (long, there) = (own.size(), water.size());
+        if own.contains(&water.min) && own.contains(&water.max) {
+            // All the water is its own.
+            return None;
+        }
         if own.max[D - 1] < water.min[D - 1] {
             let (up, low) = (["y", "z"][D - 2], three_digits(water.min[D - 1]));
             let what = format!("\"{name}\" starts below the water, whose lowest point is at {up} = {low} m");

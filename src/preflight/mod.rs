@@ -5,6 +5,7 @@
 //! findings of severity [`Severity::Warning`] at its start.
 
 mod absorption_limits;
+mod carried_bodies;
 mod lifetimes;
 mod misplaced_bodies;
 mod moorings;
@@ -211,7 +212,7 @@ pub fn preflight<const D: usize>(
     let hollow =
         |(solid, enclosure): (&Solid<D>, Option<_>)| Some(SolidHollows::new(enclosure?, solid, system.fluid().r));
     let hollows = system.solids().iter().zip(initial.enclosures).map(hollow).collect();
-    let boxes = initial.boxes;
+    let (boxes, inside) = (initial.boxes, initial.inside);
     let look = PreflightContext { system, plan, still_water: initial.still, g, surface_samples: samples, hollows };
     let mut findings = Vec::new();
     let sound = look.sound_speed(&mut findings);
@@ -219,7 +220,9 @@ pub fn preflight<const D: usize>(
     let size = look.size(&step, columns, initial.removed_by_solids, &mut findings);
     let gaps = look.gaps(&mut findings);
     hollows::check_hollows(&look, &mut findings);
-    let bodies = look.bodies(&gaps.touching, &mut findings);
+    hollows::check_own_water(&look, &inside, &mut findings);
+    let bodies = look.bodies(&gaps.touching, moorings::moored_ends(&look, sim), &mut findings);
+    carried_bodies::check(&look, (&gaps.touching, &inside), &bodies, &mut findings);
     look.misplaced_bodies(&gaps.touching, &mut findings);
     look.check_thickness(&mut findings);
     thin_parts::check_parts(&look, &mut findings);

@@ -2,11 +2,14 @@
 
 use serde::Serialize;
 
-use super::{Finding, PreflightContext, lifetimes::strength_finding};
+use super::{
+    Finding, PreflightContext,
+    lifetimes::{force_unit, strength_finding},
+};
 use crate::{
     math::{Vector, format::three_digits},
     simulation::Simulation,
-    solid::{MooringReading, MooringSpec, Role, WinchTarget},
+    solid::{MooringReading, MooringSpec, Role, WinchTarget, statics::MooredEnd},
 };
 
 /// A mooring line at rest that acts at the start.
@@ -57,17 +60,16 @@ pub(super) fn summaries<const D: usize>(
             return None;
         }
         // The touchdown point is where the lying part ends, seen from the lower end.
-        let segment = specs[i].length / specs[i].segments as f64;
-        let lying = (now.on_bed / segment).round() as usize;
         let from_second = now.nodes[0][D - 1] >= now.nodes[specs[i].segments][D - 1];
-        let node = if from_second { specs[i].segments.saturating_sub(lying) } else { lying.min(specs[i].segments) };
+        let lying = sim.mooring_lying_nodes(i);
+        let node = if from_second { lying.first() } else { lying.last() };
         Some(MooringSummary {
             name: specs[i].name.clone(),
             length_m: specs[i].length,
             fairlead_n: now.end_forces[0].norm(),
             anchor_n: now.end_forces[1].norm(),
             on_bed_m: now.on_bed,
-            touchdown_m: (now.on_bed > 0.0).then(|| now.nodes[node].iter().copied().collect()),
+            touchdown_m: node.map(|node| now.nodes[*node].iter().copied().collect()),
             anchor_angle_deg: now.anchor_angle.to_degrees(),
             shape_m: now.nodes.iter().map(|x| x.iter().copied().collect()).collect(),
             step_s: sim.mooring_step(i),
@@ -84,7 +86,7 @@ pub(super) fn summaries<const D: usize>(
         let mend = "fewer segments or a lower stiffness make it cheaper, as long as its strain stays below 1 %".into();
         findings.push(Finding::note("stiff_mooring", what, mend));
     }
-    let force = if D == 2 { "N/m" } else { "N" };
+    let force = force_unit::<D>();
     for (spec, own) in specs.iter().filter_map(|spec| Some((spec, lines.iter().find(|line| line.name == spec.name)?))) {
         let Some(WinchTarget::Tension { tension, .. }) = spec.winch.map(|winch| winch.target) else { continue };
         if (own.fairlead_n / tension - 1.0).abs() > 0.01 {
@@ -105,7 +107,7 @@ pub(super) fn summaries<const D: usize>(
         if most > strength {
             let what = format!("mooring \"{}\" breaks at the start", own.name);
             let least = |load: &str| format!("breaks = {load} or more, or a length with less tension");
-            findings.push(strength_finding::<D>("breaks_at_start", (&what, ""), [most, strength], least));
+            findings.push(strength_finding("breaks_at_start", (&what, ""), ([most, strength], force), least));
         }
     }
     let buried = readings.iter().zip(specs).filter_map(|(now, spec)| lies_in_solid(context, spec, &now.nodes));
@@ -123,6 +125,21 @@ pub(super) fn summaries<const D: usize>(
     };
     let surges = context.solids().iter().enumerate().filter_map(surge).collect();
     (lines, surges)
+}
+
+/// Returns the stiffness of the mooring lines at their ends on free bodies. A line between two free bodies has none to the ground.
+pub(super) fn moored_ends<const D: usize>(context: &PreflightContext<'_, D>, sim: &Simulation<D>) -> Vec<MooredEnd<D>> {
+    let is_free = |solid: usize| matches!(context.solids()[solid].spec.role, Role::Free(_));
+    let mut ends = Vec::new();
+    for (i, spec) in context.system.constraints().moorings.iter().enumerate().filter(|(i, _)| sim.mooring_acts(*i)) {
+        for (k, end) in spec.ends.iter().enumerate() {
+            let Some(solid) = end.solid.filter(|solid| is_free(*solid)) else { continue };
+            if !spec.ends[1 - k].solid.is_some_and(is_free) {
+                ends.push(MooredEnd { solid, at: end.at, stiffness: sim.mooring_end_stiffness(i, k) });
+            }
+        }
+    }
+    ends
 }
 
 /// A warning about a line with nodes deep in a fixed solid or behind it: deeper than a bed yields.

@@ -1,4 +1,4 @@
-//! Faces whose inflow and outflow differ, and currents too slow to take the surface under a body.
+//! Faces whose inflow and outflow differ or do not fit the water at the start, and currents too slow to take the surface under a body.
 
 use super::{Finding, PreflightContext};
 use crate::{
@@ -20,6 +20,7 @@ const SAMPLE_TIMES: [f64; 3] = [0.37, 0.71, 1.0];
 /// Adds findings about the discharges and about slow currents.
 pub(super) fn check<const D: usize>(context: &PreflightContext<D>, findings: &mut Vec<Finding>) {
     check_discharges(context, findings);
+    check_start(context, findings);
     check_surface(context, findings);
 }
 
@@ -67,6 +68,42 @@ fn check_surface<const D: usize>(context: &PreflightContext<D>, findings: &mut V
     }
 }
 
+/// Adds a finding about the face whose velocity at the start differs most from that of the water beside it, if the bore that the
+/// difference ΔU makes, ΔU √(d/g) high, is higher than dp. A closed tank that is filled or drained gets a note.
+fn check_start<const D: usize>(context: &PreflightContext<D>, findings: &mut Vec<Finding>) {
+    let (system, reach) = (context.system, context.system.model().support_radius());
+    let (faces, water) = (system.open_boundaries(), system.fluid());
+    let speeds = |face: &OpenBoundary<D>| {
+        let beside = || water.r.iter().zip(water.v).filter(|(x, _)| face.beyond(x) > -reach);
+        let wanted: Vec<f64> = beside().filter_map(|(x, _)| face.outward_velocity(x, 0.0)).collect();
+        let now = beside().map(|(_, v)| v[face.axis] * face.outward()).sum::<f64>();
+        let count = wanted.len().max(1) as f64;
+        (!wanted.is_empty()).then(|| [wanted.iter().sum::<f64>() / count, now / count])
+    };
+    let found = faces.iter().filter_map(|face| Some((face, speeds(face)?)));
+    let Some((face, [wanted, now])) =
+        found.max_by(|(_, a), (_, b)| (a[0] - a[1]).abs().total_cmp(&(b[0] - b[1]).abs()))
+    else {
+        return;
+    };
+    let bore = (wanted - now).abs() * (context.still_water.depth / context.g).sqrt();
+    if context.g == 0.0 || bore <= context.dp() {
+        return;
+    }
+    let [inward, water] = [wanted, now].map(|speed| three_digits(if face.is_inflow { -speed } else { speed }));
+    let what = format!(
+        "the flow through \"{}\" is {inward} m/s at the start, and that of the water beside it {water} m/s: a bore {} m high begins",
+        face.name,
+        three_digits(bore)
+    );
+    let along = |axis: usize| if axis == face.axis { three_digits(wanted * face.outward()) } else { "0.0".into() };
+    let velocity = (0..D).map(along).collect::<Vec<_>>().join(", ");
+    let mend = format!("give the [[water]]  velocity = [{velocity}],  or the face a factor that rises from 0");
+    let passes = faces.iter().any(|face| face.is_inflow) && faces.iter().any(|face| !face.is_inflow);
+    let finding = if passes { Finding::warning } else { Finding::note };
+    findings.push(finding("resting_water", what, mend));
+}
+
 /// Adds a finding if all faces have a velocity that does not change in time, and the discharges do not cancel.
 fn check_discharges<const D: usize>(context: &PreflightContext<D>, findings: &mut Vec<Finding>) {
     let (system, until) = (context.system, context.end_time());
@@ -85,18 +122,31 @@ fn check_discharges<const D: usize>(context: &PreflightContext<D>, findings: &mu
         return;
     }
     let unit = if D == 2 { "m²/s" } else { "m³/s" };
-    let what = format!(
-        "{} {unit} of water enter through the faces, and {} {unit} leave",
-        three_digits(enters),
-        three_digits(leaves)
-    );
+    let flows = [enters, leaves].map(three_digits);
+    // A face that absorbs gives way to the level, so that the discharges come to agree.
+    let absorbing = faces.iter().position(|face| face.absorbed_speed.is_some());
     let outflow = faces.iter().position(|face| !face.is_inflow);
-    let mend = match outflow.filter(|&i| outward[i] > 0.0 && outward[i] + enters > leaves) {
-        Some(i) => {
-            let (name, factor) = (&faces[i].name, 1.0 + (enters - leaves) / outward[i]);
-            format!("give \"{name}\" {} times its velocity, or a level without a velocity", three_digits(factor))
-        }
-        None => "a velocity is positive in the sense of the flow; give an outflow a level without a velocity".into(),
+    let factor = outflow.filter(|&i| outward[i] > 0.0 && outward[i] + enters > leaves).map(|i| {
+        let factor = three_digits(1.0 + (enters - leaves) / outward[i]);
+        format!("give \"{}\" {factor} times its velocity, or a level without a velocity", faces[i].name)
+    });
+    let sign = "a velocity is positive in the sense of the flow";
+    let (what, mend) = match absorbing.map(|i| &faces[i].name) {
+        Some(name) => (
+            format!(
+                "{} {unit} of water are to enter through the faces, and {} {unit} to leave; \"{name}\" absorbs, and its \
+                 discharge gives way to the level until they agree",
+                flows[0], flows[1]
+            ),
+            format!(
+                "absorb = false  keeps the discharge of \"{name}\", and the level changes; {}",
+                factor.map_or_else(|| sign.into(), |factor| format!("or {factor}"))
+            ),
+        ),
+        None => (
+            format!("{} {unit} of water enter through the faces, and {} {unit} leave", flows[0], flows[1]),
+            factor.unwrap_or_else(|| format!("{sign}; give an outflow a level without a velocity")),
+        ),
     };
     findings.push(Finding::warning("unequal_discharges", what, mend));
 }

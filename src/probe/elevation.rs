@@ -146,7 +146,7 @@ impl ProbeDefinition for ElevationPlan {
 const LOWER_SURFACES: usize = 3;
 
 /// Measures the level of the water (m) at a horizontal place, and its change η (m) since the creation of the probe. A gauge on a
-/// solid moves with a point of it, and η is relative to this point. Both values are NaN at a dry place. Spray that fills less
+/// solid moves with a point of it, above which it measures both. Both values are NaN at a dry place. Spray that fills less
 /// than half the kernel's weight does not count.
 pub struct ElevationProbe<const D: usize> {
     at: MountedPoint<D>,
@@ -173,7 +173,7 @@ impl<const D: usize> ElevationProbe<D> {
     }
 
     /// Creates the gauge of the highest surface at `at` (m; D − 1 coordinates) in the frame of the solid called `solid`, which
-    /// carries the gauge. The level is a height in the world; η is relative to the gauge's point of the solid.
+    /// carries the gauge. The level is a height above the gauge's point of the solid, and η the change of that.
     ///
     /// # Errors
     /// The errors of [`ElevationProbe::new`]; `Scene` if there is no such solid.
@@ -216,7 +216,9 @@ impl<const D: usize> Probe<D> for ElevationProbe<D> {
 
     fn sample(&self, sim: &Simulation<D>) -> Vec<f64> {
         let mut row = self.surface_heights(sim.system());
-        row.insert(1, row[0] - self.height(sim.system()) - self.start);
+        let height = self.height(sim.system());
+        row.iter_mut().for_each(|surface| *surface -= height);
+        row.insert(1, row[0] - self.start);
         row
     }
 }

@@ -59,6 +59,8 @@ pub struct InitialWater<const D: usize> {
     pub(crate) enclosures: Vec<Option<Enclosure<D>>>,
     /// The box around each body of water that no solid encloses, up to its level.
     pub(crate) boxes: Vec<Bounds<D>>,
+    /// The level (m) of each body of water inside a solid, with the number of the solid.
+    pub(crate) inside: Vec<(usize, f64)>,
 }
 
 /// All parts of a simulation except for the particles.
@@ -368,6 +370,7 @@ impl<const D: usize> SceneParts<D> {
             current: scene.current.as_ref().map(CurrentConfig::build),
             towed: scene.towed.as_ref().map(|towed| towed.build(ctx)).transpose()?,
         };
+        let own_levels = water.iter().filter_map(|body| Some((body.inside?, body.level))).collect();
         let open = water.iter().filter(|body| body.inside.is_none());
         let boxes: Vec<Bounds<D>> = open
             .map(|body| {
@@ -468,6 +471,7 @@ impl<const D: usize> SceneParts<D> {
                 removed_by_water: filled.removed_in_regions,
                 enclosures: placed.enclosures,
                 boxes,
+                inside: own_levels,
             },
             file_notes: ctx.file_notes.take(),
         })

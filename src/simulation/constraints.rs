@@ -3,6 +3,7 @@
 use super::Simulation;
 use crate::{
     error::{Error, ErrorCode, Result, nearest_name},
+    math::Matrix,
     solid::{
         ConstraintEvent, ForceCommand, JointReading, JointSpec, LineReading, MooringReading, MotorCommand,
         SpringParameters,
@@ -93,6 +94,21 @@ impl<const D: usize> Simulation<D> {
     /// Stiffness (N/m; N/m² in 2-D) of the mooring lines on solid number `solid` against surge.
     pub(crate) fn mooring_surge_stiffness(&self, solid: usize) -> f64 {
         self.bodies.moorings.surge_stiffness(&self.system, solid)
+    }
+
+    /// Stiffness (N/m; N/m² in 2-D) of mooring line number `mooring` against displacements of its end `end`, 0 or 1.
+    pub(crate) fn mooring_end_stiffness(&self, mooring: usize, end: usize) -> Matrix<D> {
+        self.bodies.moorings.end_stiffness(&self.system, mooring, end)
+    }
+
+    /// Nodes of mooring line number `mooring` that lie on fixed solids, from the first end on.
+    pub(crate) fn mooring_lying_nodes(&self, mooring: usize) -> Vec<usize> {
+        self.bodies.moorings.lying_nodes(&self.system, mooring)
+    }
+
+    /// Whether mooring line number `mooring` acts.
+    pub(crate) fn mooring_acts(&self, mooring: usize) -> bool {
+        self.bodies.moorings.acts(mooring)
     }
 
     /// Longest inner step of mooring line number `mooring`, s.

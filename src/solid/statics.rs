@@ -6,6 +6,7 @@
 //! bottom of the water is a stiff spring that only pushes.
 
 mod strength;
+mod support;
 mod ties;
 
 use nalgebra::{DMatrix, DVector};
@@ -20,6 +21,8 @@ use super::{
 use crate::math::{Bivector, Bounds, Pose, Vector};
 
 pub(crate) use strength::Overload;
+pub(crate) use support::Support;
+pub(crate) use ties::MooredEnd;
 use ties::{Drive, Line, SteadyForce, tension_towards};
 
 /// Stiffness of a taut rope and of the bottom over that of the largest waterplane.
@@ -38,21 +41,6 @@ pub(crate) struct WaterAtRest {
     pub(crate) g: f64,
     /// Height of the surface, m.
     pub(crate) level: f64,
-}
-
-/// The effect that carries a body at rest.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Support {
-    /// The water: the body, or the group that rises with it, cuts the surface.
-    Water,
-    /// Lines and forces: the body hangs in the air, or in the water below its surface.
-    Lines,
-    /// A joint or a lock holds its height.
-    Held,
-    /// The bottom, or a solid that it lies on.
-    Bottom,
-    /// None: its rim is below the surface, and water fills the hull.
-    Floods,
 }
 
 /// A free body of a static system.
@@ -80,6 +68,8 @@ pub(crate) struct StaticSystem<'a, const D: usize> {
     lines: Vec<Line<D>>,
     forces: Vec<SteadyForce<D>>,
     drives: Vec<Drive>,
+    /// Stiffness of mooring lines at their ends; the rises at rest leave it out.
+    moored: Vec<MooredEnd<D>>,
     water: WaterAtRest,
     /// Rise of each group from the start to rest, m.
     rise: Vec<f64>,
@@ -168,9 +158,26 @@ impl<'a, const D: usize> StaticSystem<'a, D> {
         let drives = constraints.joints.iter().filter_map(drive).collect();
         let (rise, held) = (vec![0.0; solids.len()], groups.held);
         let joints = constraints.joints.clone();
-        let mut made = Self { bodies, group, assembly, held, joints, lines, forces, drives, water, rise };
+        let moored = Vec::new();
+        let mut made = Self { bodies, group, assembly, held, joints, lines, forces, drives, moored, water, rise };
         made.find_rest();
         made
+    }
+
+    /// The same system, with mooring lines of this stiffness.
+    pub(crate) fn with_mooring_stiffness(self, moored: Vec<MooredEnd<D>>) -> Self {
+        Self { moored, ..self }
+    }
+
+    /// Returns the number of the body that is this solid.
+    fn number(&self, solid: usize) -> Option<usize> {
+        self.bodies.iter().position(|body| body.solid == solid)
+    }
+
+    /// Returns the stiffness (N/m) of mooring lines against a rise of body `i`.
+    fn mooring_stiffness(&self, i: usize) -> f64 {
+        let rises = |own: &&MooredEnd<D>| self.number(own.solid).is_some_and(|j| self.group[j] == self.group[i]);
+        self.moored.iter().filter(rises).map(|own| own.stiffness[(D - 1, D - 1)]).sum()
     }
 
     /// Finds the rises of all groups, those that lines connect at once.
@@ -276,6 +283,10 @@ impl<'a, const D: usize> StaticSystem<'a, D> {
         {
             let body = &self.bodies[i];
             let sinks = body.bottom - body.hull.extent(&body.pose)[0];
+            // In the air, on a solid.
+            if sinks >= 0.0 && self.is_in_air(i) {
+                return;
+            }
             self.rise[group] = body
                 .hull
                 .equilibrium_height(&body.pose, body.body.mass, self.water.rho0, self.water.level)
@@ -406,26 +417,6 @@ impl<'a, const D: usize> StaticSystem<'a, D> {
         self.bodies[i].hull.extent(&self.pose(i))[0] <= self.bodies[i].bottom + 1e-6 * self.size(i)
     }
 
-    /// Returns the effect that carries body `i` at rest.
-    pub(crate) fn support(&self, i: usize) -> Support {
-        let level = self.water.level;
-        if self.held[self.group[i]] {
-            return Support::Held;
-        }
-        let (mass, carried) =
-            self.group_of(i).fold((0.0, 0.0), |sum, j| (sum.0 + self.bodies[j].body.mass, sum.1 + self.displaced(j)));
-        if carried < (1.0 - 1e-6) * mass && self.group_of(i).any(|j| self.lies_on_bottom(j)) {
-            let open = self.bodies[i].hull.rim_height(&self.bodies[i].pose).is_finite();
-            return if open { Support::Floods } else { Support::Bottom };
-        }
-        let floods = |j: usize| self.bodies[j].hull.rim_height(&self.pose(j)) < level - 1e-6 * self.size(j);
-        if self.group_of(i).any(floods) {
-            return Support::Floods;
-        }
-        let floats = self.waterplane(i) > 1e-6 * plan_area(&self.bodies[i].hull, &self.bodies[i].pose);
-        if floats { Support::Water } else { Support::Lines }
-    }
-
     /// Returns the area (m²; m in 2-D) of the waterplane of the bodies that rise with body `i`.
     pub(crate) fn waterplane(&self, i: usize) -> f64 {
         let area = |j: usize| {
@@ -469,7 +460,7 @@ impl<'a, const D: usize> StaticSystem<'a, D> {
                 _ => (),
             }
         }
-        (mass, stiffness)
+        (mass, stiffness + self.mooring_stiffness(i))
     }
 
     /// Returns the righting lever (m, axial components) of the assembly of body `i`, turned from rest by `angle` (rad)
@@ -527,6 +518,12 @@ impl<'a, const D: usize> StaticSystem<'a, D> {
         for own in self.forces.iter().filter(|own| self.assembly[own.body] == self.assembly[i]) {
             let at = own.at + up::<D>() * self.rise[self.group[own.body]];
             add(&turned(&at, rise), &own.force);
+        }
+        for own in self.moored.iter().filter(|own| member(self.number(own.solid)).is_some()) {
+            let Some(j) = self.number(own.solid) else { continue };
+            let rest = own.at + up::<D>() * self.rise[self.group[j]];
+            let at = turned(&rest, rise);
+            add(&at, &(own.stiffness * (rest - at)));
         }
         for own in self.forces.iter().filter(|own| self.assembly[own.body] == self.assembly[i]) {
             torque = torque + own.torque;

@@ -1,8 +1,8 @@
 //! Wind on the dry part of free solids:  F = ½ ρ C_d A |U − V| (U − V)  at the centroid of the area A that is above the still
-//! water and projected along U − V, with V the velocity of the centre of mass @faltinsen1990.
+//! water and projected along U − V, with V the velocity of the centre of mass @faltinsen1990. Parts in the lee of others do not count.
 
 use crate::{
-    geometry::{Shape, projected_area, surface_facets},
+    geometry::{Shape, Silhouette},
     math::{Bivector, Vector},
     solid::{Kinematics, Lifetime, Load, TimeFunction},
 };
@@ -37,8 +37,7 @@ pub struct WindSpec<const D: usize> {
 #[derive(Clone, Debug)]
 pub(crate) struct WindTarget<const D: usize> {
     pub(crate) solid: usize,
-    /// Facets of its surface in its own frame, m.
-    facets: Vec<[Vector<D>; D]>,
+    silhouette: Silhouette<D>,
     pub(crate) lifetime: Lifetime,
 }
 
@@ -62,7 +61,7 @@ impl<const D: usize> WindSpec<D> {
 
     /// The same wind, on a solid during a lifetime.
     pub(crate) fn during(mut self, solid: usize, shape: &Shape<D>, lifetime: Lifetime) -> Self {
-        self.targets.push(WindTarget { solid, facets: surface_facets(shape), lifetime });
+        self.targets.push(WindTarget { solid, silhouette: Silhouette::new(shape), lifetime });
         self
     }
 
@@ -77,7 +76,7 @@ impl<const D: usize> WindSpec<D> {
             if speed == 0.0 {
                 return (target.solid, Load::zero());
             }
-            let (area, at) = projected_area(&target.facets, &now.pose, self.level, &(relative / speed));
+            let (area, at) = target.silhouette.projected_area(&now.pose, self.level, &(relative / speed));
             let force = relative * (0.5 * self.density * self.drag * area * speed);
             (target.solid, Load { force, torque: Bivector::torque(&(at - now.centre), &force) })
         })

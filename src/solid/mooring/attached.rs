@@ -193,17 +193,23 @@ impl<const D: usize> Mooring<D> {
         if !state.acts {
             return MooringReading::default();
         }
-        let lies = |i: &usize| around[*i].bed.is_some_and(|bed| line.material.depth(&bed, &state.x[*i]) > 0.0);
         let anchor = state.pulls[line.segments() - 1];
         MooringReading {
             nodes: state.x.clone(),
             tensions: (0..line.segments()).map(|s| line.tension(s)).collect(),
             end_forces: [0, 1].map(|k| self.end_force(k)),
             // The sum of no numbers would be −0.
-            on_bed: (0..around.len()).filter(lies).map(|i| line.share(i)).fold(0.0, |sum, length| sum + length),
+            on_bed: self.lying_nodes(around).map(|i| line.share(i)).fold(0.0, |sum, length| sum + length),
             anchor_angle: anchor.try_normalize(f64::MIN_POSITIVE).map_or(0.0, |q| (-q[D - 1]).clamp(-1.0, 1.0).asin()),
             broken: state.broken.map(|segment| segment as usize),
         }
+    }
+
+    /// The nodes that lie on fixed solids, in order; `around` are the surroundings of each node.
+    pub(crate) fn lying_nodes(&self, around: &[NodeSurroundings<D>]) -> impl Iterator<Item = usize> {
+        let lies =
+            |i: &usize| around[*i].bed.is_some_and(|bed| self.line.material.depth(&bed, &self.line.state.x[*i]) > 0.0);
+        (0..around.len()).filter(lies)
     }
 
     /// The force (N) of the line on the solid or the ground at end `k`; at a mooring point, the pull of the last segment.

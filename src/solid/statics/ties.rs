@@ -1,6 +1,6 @@
-//! What ties bodies at rest: lines, motors of sliders and steady forces.
+//! What ties bodies at rest: lines, motors of sliders, mooring lines as linear springs, and steady forces.
 
-use crate::math::{Bivector, Vector};
+use crate::math::{Bivector, Matrix, Vector};
 
 /// A line between two bodies, or a body and the ground.
 pub(super) struct Line<const D: usize> {
@@ -40,6 +40,16 @@ pub(super) struct Drive {
     pub(super) stiffness: f64,
     /// Largest force, N.
     pub(super) largest: f64,
+}
+
+/// The end of a mooring line on a free body.
+pub(crate) struct MooredEnd<const D: usize> {
+    /// Number of the solid.
+    pub(crate) solid: usize,
+    /// Initial place, m.
+    pub(crate) at: Vector<D>,
+    /// Force (N/m) against a displacement of this end, with the line at rest.
+    pub(crate) stiffness: Matrix<D>,
 }
 
 /// Returns the force (N) of a line at `at` towards its fixed end: for a spring by its length, for a rope as at rest.

@@ -43,6 +43,32 @@ fn the_wind_of_a_scene_acts_on_the_dry_half_of_a_float() -> Result<()> {
 }
 
 #[test]
+fn walls_in_the_lee_and_the_inside_of_a_sealed_hollow_do_not_count() -> Result<()> {
+    // An open boat, 0.14 m² of 800 kg/m³ over 0.8 m, floats 0.14 m deep and is 0.4 m high. A sealed ring around 0.6 m × 0.4 m,
+    // 0.1 m thick, has 0.24 m² of 700 kg/m³ over 0.8 m: 0.21 m of 0.6 m.
+    let boat =
+        "polygon = [[0.0, 0.0], [0.8, 0.0], [0.8, 0.4], [0.7, 0.4], [0.7, 0.1], [0.1, 0.1], [0.1, 0.4], [0.0, 0.4]]";
+    let ring =
+        "polyline = { points = [[-0.3, -0.2], [0.3, -0.2], [0.3, 0.2], [-0.3, 0.2]], thickness = 0.1, closed = true }";
+    for (shape, x, density, dry) in [(boat, 0.6, 800.0, 0.26), (ring, 1.0, 700.0, 0.39)] {
+        let text = format!(
+            "dimension = 2\ndp = 0.02\nuntil = 0.1\nwater = [{{ fill = {{ box = {{ min = [0.0, 0.0], max = [2.0, 0.6] }} }} }}]\n\
+             [[solid]]\nname = \"tank\"\nfixed = true\nshape = {{ tank = {{ size = [2.0, 1.0] }} }}\n\
+             [[solid]]\nname = \"float\"\nshape = {{ {shape} }}\nat = {{ x = {x}, draft = \"equilibrium\" }}\ndry = true\n\
+             free = {{ density = {density}, locked = [\"x\", \"turn\"] }}\n\
+             [[wind]]\nvelocity = [10.0, 0.0]\non = [\"float\"]\n"
+        );
+        let mut sim = scene_simulation::<2>(&text)?;
+        sim.enable_load_breakdown();
+        sim.step()?;
+        let (load, expected) = (sim.load_breakdown(1).unwrap().forces.force[0], 0.5 * 1.225 * 100.0 * dry);
+        // The first step begins at rest and afloat; the draft is found to 1e-9.
+        assert!((load / expected - 1.0).abs() < 1e-6, "{load} of {expected} N/m");
+    }
+    Ok(())
+}
+
+#[test]
 fn a_wind_that_cannot_be_meant_is_refused() {
     for (from, to, what) in [
         ("on = [\"float\"]", "on = []", "acts on nothing"),

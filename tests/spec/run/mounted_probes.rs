@@ -40,6 +40,27 @@ fn probes_on_a_tank_that_goes_with_its_water_measure_still_water() -> Result<()>
     Ok(())
 }
 
+/// Both columns of a gauge on a body that rises are heights above its point: the level falls by the rise.
+#[test]
+fn the_level_of_a_gauge_on_a_rising_body_is_a_height_above_its_point() -> Result<()> {
+    let text = GOING
+        .replace("velocity = [0.5, 0.0]", "velocity = [0.0, 0.0]")
+        .replace("driven = { along = [1.0, 0.0], distance = { formula = \"0.5*t\" } }", "fixed = true")
+        + "[[solid]]\nname = \"lift\"\nshape = { box = { size = [0.1, 0.1] } }\nat = { x = 0.2, y = 0.5 }\n\
+           driven = { along = [0.0, 1.0], distance = { formula = \"0.25*t\" } }\n";
+    let mut sim = scene_simulation::<2>(&text)?;
+    let (gauge, fixed) =
+        (ElevationProbe::on_solid(sim.system(), "lift", &[0.1])?, ElevationProbe::new(sim.system(), &[0.3])?);
+    run_to(&mut sim, 0.4)?;
+    let [level, eta] = gauge.sample(&sim)[..] else { panic!("two columns") };
+    let world = fixed.sample(&sim)[0];
+    // The body starts at 0.5 m and rises by 0.1 m up to the last step.
+    let height = sim.system().solids()[1].kinematics.pose.position[1];
+    assert!((height - 0.6).abs() < 1e-3 && (level - (world - height)).abs() < 1e-12, "{level} m of {world} m");
+    assert!((eta + 0.1).abs() < 2e-3, "{eta} m");
+    Ok(())
+}
+
 #[test]
 fn a_scene_mounts_gauges_and_points_and_refuses_other_probes() {
     let plan = |probe: &str| {

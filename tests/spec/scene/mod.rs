@@ -4,6 +4,7 @@ mod bad_input;
 mod bundled_scenes;
 mod errors;
 mod preflight;
+mod preflight_faults;
 mod records;
 mod reference;
 mod schema;

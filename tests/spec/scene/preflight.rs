@@ -320,8 +320,19 @@ fn faces_whose_discharges_do_not_cancel_are_a_warning() {
     };
     let less = found("velocity = 0.6", "velocity = 0.4").expect("0.1 m²/s stay");
     assert_eq!(less.severity, Severity::Warning);
-    assert_eq!(less.what, "0.3 m²/s of water enter through the faces, and 0.2 m²/s leave");
-    assert_eq!(less.mend, "give \"outflow\" 1.5 times its velocity, or a level without a velocity");
+    assert_eq!(
+        less.what,
+        "0.3 m²/s of water are to enter through the faces, and 0.2 m²/s to leave; \"outflow\" absorbs, and its discharge gives way \
+         to the level until they agree"
+    );
+    let factor = "give \"outflow\" 1.5 times its velocity, or a level without a velocity";
+    assert_eq!(
+        less.mend,
+        format!("absorb = false  keeps the discharge of \"outflow\", and the level changes; or {factor}")
+    );
+    let exact = found("velocity = 0.6", "velocity = 0.4, absorb = false").expect("0.1 m²/s stay");
+    assert_eq!(exact.what, "0.3 m²/s of water enter through the faces, and 0.2 m²/s leave");
+    assert_eq!(exact.mend, factor);
     let reversed = found("velocity = -0.6", "velocity = 0.6").expect("water leaves at both faces");
     assert!(reversed.mend.contains("positive in the sense of the flow"), "{}", reversed.mend);
     for (inflow, outflow) in [

@@ -3,7 +3,7 @@
 use super::*;
 
 fn area<const D: usize>(shape: &Shape<D>, pose: Pose<D>, level: f64, way: [f64; D]) -> (f64, Vector<D>) {
-    projected_area(&surface_facets(shape), &pose, level, &Vector::from(way).normalize())
+    Silhouette::new(shape).projected_area(&pose, level, &Vector::from(way).normalize())
 }
 
 #[test]
@@ -40,4 +40,47 @@ fn touching_parts_of_a_compound_do_not_show_their_common_face() {
     let part = |x: f64| (Pose::at(Vector::from([x, 0.0])), Shape::Box { size: Vector::from([0.2, 0.3]) });
     let pair = Shape::Compound(vec![part(0.0), part(0.2)]);
     assert!((area(&pair, Pose::identity(), -1.0, [1.0, 0.0]).0 - 0.3).abs() < 1e-15);
+}
+
+#[test]
+fn a_part_in_the_lee_of_another_counts_once_in_2d() {
+    // Two masts, 0.3 m high and 0.8 m apart, on a deck 0.2 m high: the union of intervals is exact.
+    let part =
+        |x: f64, y: f64, size: [f64; 2]| (Pose::at(Vector::from([x, y])), Shape::Box { size: Vector::from(size) });
+    let masts = vec![part(0.0, 0.0, [1.0, 0.2]), part(-0.4, 0.25, [0.1, 0.3]), part(0.4, 0.25, [0.1, 0.3])];
+    let ship = Shape::Compound(masts);
+    for way in [[1.0, 0.0], [-1.0, 0.0]] {
+        let (whole, centre) = area(&ship, Pose::identity(), 0.0, way);
+        assert!((whole - 0.4).abs() < 1e-13 && (centre[1] - 0.2).abs() < 1e-13, "{whole} at {centre}");
+    }
+    // Along the diagonal, from the foot of the deck to the top of the leeward mast: nothing shows between them but the deck.
+    let (across, _) = area(&ship, Pose::identity(), -1.0, [1.0, -1.0]);
+    let line = |x: f64, y: f64| (x + y) / 2f64.sqrt();
+    assert!((across - (line(0.45, 0.4) - line(-0.5, -0.1))).abs() < 1e-13, "{across}");
+    // An open boat: its walls hide each other and the floor between them.
+    let boat = Shape::Polygon {
+        points: [[0.0, 0.0], [0.8, 0.0], [0.8, 0.4], [0.7, 0.4], [0.7, 0.1], [0.1, 0.1], [0.1, 0.4], [0.0, 0.4]]
+            .map(Vector::from)
+            .to_vec(),
+    };
+    assert!((area(&boat, Pose::identity(), 0.15, [1.0, 0.0]).0 - 0.25).abs() < 1e-13);
+}
+
+#[test]
+fn a_part_in_the_lee_of_another_counts_once_in_3d() {
+    let part =
+        |x: f64, y: f64, size: [f64; 3]| (Pose::at(Vector::from([x, y, 0.0])), Shape::Box { size: Vector::from(size) });
+    // The second hides half of the first along x, and none of it along y; no line lies across an edge, so that the sum is exact.
+    let pair = Shape::Compound(vec![part(0.0, 0.0, [0.2, 0.2, 0.3]), part(0.5, 0.1, [0.2, 0.2, 0.3])]);
+    let (along, centre) = area(&pair, Pose::identity(), 0.0, [1.0, 0.0, 0.0]);
+    assert!((along - 0.3 * 0.15).abs() < 1e-13, "{along}");
+    assert!((centre[1] - 0.05).abs() < 1e-13 && (centre[2] - 0.075).abs() < 1e-13, "{centre}");
+    assert!((area(&pair, Pose::identity(), 0.0, [0.0, 1.0, 0.0]).0 - 0.4 * 0.15).abs() < 1e-13);
+    assert!((area(&pair, Pose::identity(), -1.0, [0.0, 0.0, 1.0]).0 - 0.08).abs() < 1e-13, "from below");
+    // Two balls in a row show one disc. Facets take 1e-4 of it, and 128 lines across a round outline 3e-4.
+    let ball = |x: f64| (Pose::at(Vector::from([x, 0.0, 0.0])), Shape::Ball { radius: 0.2 });
+    let row = Shape::Compound(vec![ball(0.0), ball(1.0)]);
+    let disc = std::f64::consts::PI * 0.04;
+    let seen = area(&row, Pose::identity(), -1.0, [1.0, 0.0, 0.0]).0;
+    assert!((seen / disc - 1.0).abs() < 1e-3, "{seen} of {disc}");
 }

@@ -1,0 +1,273 @@
+//! Preflight: scenes with a single mistake that a run would show late, and what is said of bodies on lines, joints and other bodies.
+
+use std::path::Path;
+
+use pontoon::{
+    preflight::{Finding, Preflight, Severity},
+    scene::Scene,
+};
+
+use crate::common::preflight_report;
+
+/// Water of 2 m × 0.6 m at dp = 0.02 m without any wall.
+const WATER: &str = "dimension = 2\ndp = 0.02\nuntil = 1.0\nframes = \"off\"\n\
+    water = [{ fill = { box = { min = [0.0, 0.0], max = [2.0, 0.6] } } }]\n";
+
+const TANK: &str = "[[solid]]\nname = \"tank\"\nfixed = true\nshape = { tank = { size = [2.0, 1.0] } }\n";
+
+/// Lines for [`line`].
+const LINE_TYPE: &str = "[[line_type]]\nname = \"c\"\ndiameter = 0.005\nmass_per_length = 0.05\nstiffness = 2000.0\n";
+
+fn report(text: &str) -> Preflight {
+    preflight_report(&Scene::parse(text, Path::new(""), &[]).unwrap())
+}
+
+fn find<'a>(of: &'a Preflight, topic: &str) -> Option<&'a Finding> {
+    of.findings.iter().find(|finding| finding.topic == topic)
+}
+
+#[track_caller]
+fn finding(text: &str, topic: &str) -> Finding {
+    let found = report(text);
+    find(&found, topic).unwrap_or_else(|| panic!("{topic} is not among {:#?}", found.findings)).clone()
+}
+
+#[track_caller]
+fn has_no(text: &str, topic: &str) {
+    let found = report(text);
+    assert!(find(&found, topic).is_none(), "{:#?}", found.findings);
+}
+
+fn body(name: &str, [wide, high]: [f64; 2], density: f64, at: &str) -> String {
+    format!(
+        "[[solid]]\nname = \"{name}\"\nshape = {{ box = {{ size = [{wide}, {high}] }} }}\nat = {{ {at} }}\n\
+         free = {{ density = {density} }}\n"
+    )
+}
+
+/// Two taut lines hold a float. Mooring lines with mass and springs of their stiffness give the same heave and roll, up to the weight
+/// of the lines, 0.05 kg/m beside 36 kg/m.
+#[test]
+fn taut_mooring_lines_stiffen_heave_and_roll_as_springs_do() {
+    let float = body("b", [0.4, 0.3], 300.0, "x = 1.0, draft = \"equilibrium\"");
+    let line = |section: &str, x: f64, key: &str| {
+        format!(
+            "[[{section}]]\nname = \"m{:.0}\"\nbetween = [\"b\"]\nfrom = [{x}, 0.48]\nto = [{x}, 0.0]\nlength = 0.47\n{key}\n",
+            100.0 * x
+        )
+    };
+    let moorings = [0.85, 1.15].map(|x| line("mooring", x, "line = \"c\"")).concat();
+    // EA/L of the lines.
+    let springs = [0.85, 1.15].map(|x| line("spring", x, "stiffness = 4255.3")).concat();
+    let rest = |ties: &str| report(&format!("{WATER}{TANK}{float}{ties}")).bodies.remove(0).afloat.unwrap();
+    let (moored, sprung) = (rest(&format!("{LINE_TYPE}{moorings}")), rest(&springs));
+    // 36 kg/m on ρ g A = 3924 N/m² and two lines of 4255 N/m each; the added mass is π/8 ρ b², 62.8 kg/m.
+    let heave = |mass: f64| std::f64::consts::TAU * (mass / (3924.0 + 2.0 * 4255.3)).sqrt();
+    assert!((moored.heave_s / heave(36.0) - 1.0).abs() < 0.01, "{} s of {} s", moored.heave_s, heave(36.0));
+    assert!((moored.heave_with_added_s / heave(98.83) - 1.0).abs() < 0.01, "{} s", moored.heave_with_added_s);
+    let [moored, sprung] = [&moored.tilts[0], &sprung.tilts[0]];
+    assert!((moored.gm_m / sprung.gm_m - 1.0).abs() < 0.02, "GM {} m of {} m", moored.gm_m, sprung.gm_m);
+    let [moored, sprung] = [moored.period_s.unwrap(), sprung.period_s.unwrap()];
+    assert!((moored / sprung - 1.0).abs() < 0.02, "roll {moored} s of {sprung} s");
+}
+
+#[test]
+fn the_touchdown_point_of_a_line_to_a_raised_anchor_is_on_the_bed() {
+    let text = format!(
+        "{WATER}{TANK}[[solid]]\nname = \"b\"\nshape = {{ box = {{ size = [0.4, 0.2] }} }}\nat = {{ x = 1.6, y = 0.6 }}\n\
+         driven = {{ along = [1.0, 0.0], distance = {{ formula = \"0\" }} }}\n\
+         [[line_type]]\nname = \"c\"\ndiameter = 0.01\nmass_per_length = 0.6\nstiffness = 2e4\n\
+         [[mooring]]\nname = \"m\"\nbetween = [\"b\"]\nfrom = [1.4, 0.5]\nto = [0.4, 0.2]\nlength = 1.3\nline = \"c\"\n"
+    );
+    let line = report(&text).moorings.remove(0);
+    let [x, y] = line.touchdown_m.as_ref().expect("part of it lies")[..] else { panic!("{line:?}") };
+    // A node on the bed lies within the radius of the line above it, and sinks by less than that.
+    assert!(y.abs() < 0.011, "{x} m, {y} m: {line:?}");
+    let node = line.shape_m.iter().position(|node| node[..] == [x, y]).expect("a node");
+    assert!(node > 0 && line.shape_m[..node].iter().all(|above| above[1] > y), "the line falls to it: {line:?}");
+}
+
+#[test]
+fn a_fixed_joint_that_breaks_by_the_torque_at_rest_is_told() {
+    // 10 kg/m with an arm of 0.3 m: 29.43 N m/m.
+    let text = |torque: f64| {
+        let body = body("b", [0.2, 0.2], 250.0, "x = 0.5, y = 1.9");
+        format!(
+            "{WATER}{TANK}{body}[[joint]]\nname = \"j\"\nkind = \"fixed\"\nbetween = [\"b\"]\nat = [0.2, 1.9]\n\
+             breaks = {{ torque = {torque} }}\n"
+        )
+    };
+    let found = finding(&text(25.0), "breaks_at_rest");
+    assert!(found.what.contains("it has 29.4 N m/m then and bears 25 N m/m"), "{}", found.what);
+    assert!(found.mend.contains("torque = 30"), "{}", found.mend);
+    has_no(&text(30.0), "breaks_at_rest");
+}
+
+#[test]
+fn water_without_walls_on_a_side_or_above_them_is_a_warning() {
+    let tank = |height: f64| TANK.replace("1.0]", &format!("{height:?}]"));
+    let side = "[[solid]]\nname = \"t\"\nfixed = true\nshape = { polyline = [[0.0, 1.0], [0.0, 0.0], [2.0, 0.0]] }\n";
+    let bed = "[[solid]]\nname = \"bed\"\nfixed = true\nshape = { box = { size = [3.0, 0.2] } }\nat = { x = 1.0, y = -0.1 }\n";
+    for (solids, place) in [(tank(0.4), "0.4"), (side.into(), "x = 2 m"), (bed.into(), "m high")] {
+        let found = finding(&format!("{WATER}{solids}"), "open_side");
+        assert!(found.severity == Severity::Warning && found.what.contains(place), "{solids}: {}", found.what);
+    }
+    has_no(&format!("{WATER}{TANK}"), "open_side");
+    // Faces and periodic sides hold the water too.
+    let ends = "inflow = [{ x = 0.0, velocity = 0.1 }]\noutflow = [{ x = 2.0, velocity = 0.1 }]\n";
+    let long = bed.replace("[3.0", "[6.0");
+    for ends in [ends, "periodic = { x = [0.0, 2.0] }\n"] {
+        has_no(&format!("{ends}{WATER}{long}"), "open_side");
+    }
+    // A column of water that collapses in a tank has a wall before it.
+    has_no(&format!("{}{TANK}", WATER.replace("max = [2.0", "max = [0.5")), "open_side");
+}
+
+#[test]
+fn gravity_that_points_upwards_is_a_warning() {
+    let found = finding(&format!("gravity = [0.0, 9.81]\n{WATER}{TANK}"), "gravity_direction");
+    assert!(found.severity == Severity::Warning && found.mend == "write  gravity = [0.0, -9.81]", "{found:?}");
+    has_no(&format!("gravity = [0.0, -9.81]\n{WATER}{TANK}"), "gravity_direction");
+    has_no(&format!("gravity = [9.81, 0.0]\n{WATER}{TANK}"), "gravity_direction");
+}
+
+#[test]
+fn water_at_rest_beside_faces_with_a_current_is_a_warning() {
+    let text = |current: &str, water: &str| {
+        format!(
+            "inflow = [{{ x = 0.0, velocity = 0.8{current} }}]\noutflow = [{{ x = 2.0, velocity = 0.8{current} }}]\n{}\
+             [[solid]]\nname = \"bed\"\nfixed = true\nshape = {{ box = {{ size = [6.0, 0.2] }} }}\nat = {{ x = 1.0, y = -0.1 }}\n",
+            WATER.replace("} } }]", &format!("}} }}{water} }}]"))
+        )
+    };
+    let found = finding(&text("", ""), "resting_water");
+    // 0.8 m/s √(0.6 m / 9.81 m/s²).
+    assert!(found.severity == Severity::Warning && found.what.contains("0.198 m high"), "{}", found.what);
+    assert!(found.mend.contains("velocity = [0.8, 0.0]"), "{}", found.mend);
+    has_no(&text("", ", velocity = [0.8, 0.0]"), "resting_water");
+    has_no(&text(", factor = \"t\"", ""), "resting_water");
+}
+
+#[test]
+fn an_outflow_that_absorbs_is_told_to_stop_by_itself() {
+    let text = |absorb: &str| {
+        format!(
+            "outflow = [{{ x = 2.0, velocity = 0.1{absorb} }}]\n{WATER}\
+             [[solid]]\nname = \"bed\"\nfixed = true\nshape = {{ box = {{ size = [6.0, 0.2] }} }}\nat = {{ x = 1.0, y = -0.1 }}\n\
+             [[solid]]\nname = \"w\"\nfixed = true\nshape = {{ box = {{ size = [0.2, 1.0] }} }}\nat = {{ x = -0.1, y = 0.5 }}\n"
+        )
+    };
+    let found = finding(&text(""), "unequal_discharges");
+    assert!(found.what.contains("0.06 m²/s to leave; \"outflow\" absorbs"), "{}", found.what);
+    assert!(found.mend.starts_with("absorb = false  keeps the discharge of \"outflow\""), "{}", found.mend);
+    let exact = finding(&text(", absorb = false"), "unequal_discharges");
+    assert!(!exact.what.contains("absorbs") && !exact.mend.contains("absorb"), "{exact:?}");
+}
+
+#[test]
+fn a_body_as_dense_as_the_water_is_neutral() {
+    for at in ["x = 1.0, y = 0.3", "x = 1.0, y = 0.3, angle_deg = 37.0"] {
+        for size in [[0.4, 0.2], [0.4, 0.006]] {
+            let found = report(&format!("{WATER}{TANK}{}", body("b", size, 1000.0, at)));
+            assert_eq!(found.bodies[0].support, "neutral", "{size:?} at {at}");
+            assert!(found.bodies[0].afloat.is_none() && find(&found, "hull_floods").is_none(), "{:?}", found.findings);
+        }
+    }
+}
+
+/// A ring of chords has a metacentric height of a few thousandths of its size, of either sign: it does not turn over.
+#[test]
+fn a_body_that_comes_to_rest_after_a_small_turn_does_not_turn_over() {
+    let corner = |k: usize| {
+        let angle = std::f64::consts::TAU * k as f64 / 24.0;
+        format!("[{:.4}, {:.4}]", 0.25 * angle.cos(), 0.25 * angle.sin())
+    };
+    let points = (0..24).map(corner).collect::<Vec<_>>().join(", ");
+    let found = report(&format!(
+        "{WATER}{TANK}[[solid]]\nname = \"b\"\nshape = {{ polyline = {{ points = [{points}], thickness = 0.02, closed = true }} }}\n\
+         at = {{ x = 1.0, draft = \"equilibrium\" }}\nfree = {{ density = 2000.0 }}\n"
+    ));
+    assert!(find(&found, "capsizes").is_none(), "{:#?}", found.findings);
+}
+
+#[test]
+fn ballast_far_out_is_told_to_come_nearer() {
+    let free = "free = { density = 400.0, ballast = [{ at = [3.0, 0.0], mass = \"5\" }] }";
+    let text =
+        body("b", [0.6, 0.3], 400.0, "x = 1.0, draft = \"equilibrium\"").replace("free = { density = 400 }", free);
+    assert!(text.contains("ballast"), "{text}");
+    let found = finding(&format!("{WATER}{TANK}{text}"), "large_inertia");
+    assert_eq!(found.mend, "place its ballast nearer to it");
+}
+
+#[test]
+fn a_body_that_carries_another_or_floats_in_a_hull_is_told() {
+    let raft = body("raft", [0.6, 0.2], 300.0, "x = 1.0, draft = 0.1");
+    let crate_on_it = body("crate", [0.2, 0.2], 600.0, "x = 1.0, bottom = 0.7");
+    let found = report(&format!("{WATER}{TANK}{raft}{crate_on_it}"));
+    assert_eq!((found.bodies[0].support, found.bodies[1].support), ("water", "solid"));
+    let note = find(&found, "carried_body").expect("the crate stands on the raft");
+    assert!(note.what.contains("\"crate\" stands on \"raft\""), "{}", note.what);
+    // A stone that falls into the water sinks.
+    let stone = report(&format!("{WATER}{TANK}{}", body("stone", [0.2, 0.2], 2000.0, "x = 1.0, bottom = 0.7")));
+    assert_eq!(stone.bodies[0].support, "bottom");
+    let dock = "[[water]]\ninside = \"dock\"\nfill = { box = { min = [0.5, 0.0], max = [1.5, 0.7] } }\n\
+         [[solid]]\nname = \"dock\"\nshape = { tank = { size = [1.0, 0.5], thickness = 0.1 } }\nat = { x = 0.5, y = 0.45 }\n\
+         dry = true\nfree = { density = 400.0 }\n";
+    let boat = body("boat", [0.4, 0.2], 500.0, "x = 1.0, y = 0.65");
+    let water = WATER.replace("water = [", "[[water]]\n").replace("{ fill", "fill").replace("} }]", "}");
+    let found = finding(&format!("{water}{TANK}{dock}{boat}"), "other_level");
+    assert!(
+        found.what.contains("\"boat\" starts in the water inside \"dock\", which stands to 0.7 m"),
+        "{}",
+        found.what
+    );
+}
+
+#[test]
+fn water_of_a_hull_off_the_lattice_or_above_its_rim_is_told() {
+    // The floor at 0.45 m lies midway between two rows, and the rim at 0.95 m.
+    let text = |top: f64, floor: f64| {
+        format!(
+            "dimension = 2\ndp = 0.02\nuntil = 1.0\nframes = \"off\"\n\
+             [[water]]\nfill = {{ box = {{ min = [0.0, 0.0], max = [2.0, 0.6] }} }}\n\
+             [[water]]\ninside = \"d\"\nfill = {{ box = {{ min = [0.5, 0.0], max = [1.5, {top}] }} }}\n{TANK}\
+             [[solid]]\nname = \"d\"\nshape = {{ tank = {{ size = [1.0, 0.5], thickness = 0.1 }} }}\n\
+             at = {{ x = 0.5, y = {floor} }}\ndry = true\nfree = {{ density = 400.0 }}\n"
+        )
+    };
+    let over = finding(&text(1.2, 0.45), "hull_floods");
+    assert!(over.what.contains("given to 1.2 m, above its rim at 0.9"), "{}", over.what);
+    let off = finding(&text(1.2, 0.45), "surface_off_lattice");
+    assert!(off.what.contains("kg, and its level gives"), "{}", off.what);
+    has_no(&text(0.8, 0.44), "surface_off_lattice");
+    has_no(&text(0.8, 0.44), "hull_floods");
+}
+
+#[test]
+fn an_equilibrium_draft_beside_a_load_that_a_joint_lets_through_is_noted() {
+    let float = body("b", [0.8, 0.3], 300.0, "x = 1.0, draft = \"equilibrium\"");
+    let hinge = "[[joint]]\nname = \"j\"\nkind = \"hinge\"\nbetween = [\"b\"]\nat = [0.6, 0.6]\n";
+    let force = "[[force]]\nname = \"f\"\non = \"b\"\nforce = [0.0, -300.0]\n";
+    let found = finding(&format!("{WATER}{TANK}{float}{hinge}{force}"), "off_draft");
+    // 300 N/m.
+    assert!(found.what.contains("without the load of 30.6 kg") && found.what.contains("\"j\""), "{}", found.what);
+    has_no(&format!("{WATER}{TANK}{float}{hinge}"), "off_draft");
+    has_no(&format!("{WATER}{TANK}{float}{}{force}", hinge.replace("hinge", "fixed")), "off_draft");
+}
+
+/// The loads of dry walls of 1, 1.5 and 2 dp that a tester measured.
+#[test]
+fn a_thin_dry_wall_is_told_with_the_error_of_its_load() {
+    let wall = |thickness: f64| {
+        format!(
+            "{WATER}{TANK}[[solid]]\nname = \"w\"\nfixed = true\nshape = {{ box = {{ size = [{thickness}, 0.8] }} }}\n\
+             at = {{ x = 1.0, bottom = 0.0 }}\n"
+        )
+    };
+    for (thickness, error) in [(0.02, "up to 40 %"), (0.03, "by 2 %")] {
+        let found = finding(&wall(thickness), "thin_wall");
+        assert!(found.what.contains(error), "{thickness} m: {}", found.what);
+    }
+    assert!(!finding(&wall(0.04), "thin_wall").what.contains('%'));
+}
