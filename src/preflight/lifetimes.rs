@@ -68,21 +68,24 @@ pub(super) fn check<const D: usize>(context: &PreflightContext<'_, D>, findings:
         ("solid", name, Lifetime::default().until(removal.at))
     });
     let end = context.end_time();
-    for check in &context.plan.checks {
+    let unreached = context.plan.checks.iter().filter_map(|check| {
         let of_response = match &check.reference {
             Reference::Response(response) => response.from,
             Reference::Table { .. } | Reference::Formula(_) => None,
         };
         let times = [("from", check.from), ("zero", check.zero), ("response.from", of_response)];
-        if let Some((key, at)) = times.iter().find_map(|(key, at)| Some((key, at.filter(|at| *at >= end)?))) {
-            let what = format!(
-                "the check of \"{}\" has {key} = {} s, and the run ends at {} s: nothing is judged",
-                check.series,
-                three_digits(at),
-                three_digits(end)
-            );
-            findings.push(Finding::warning("event_after_end", what, "begin earlier, or run longer".into()));
-        }
+        let (key, at) = times.into_iter().find_map(|(key, at)| Some((key, at.filter(|at| *at >= end)?)))?;
+        Some(format!("\"{}\" ({key} = {} s)", check.series, three_digits(at)))
+    });
+    let unreached: Vec<_> = unreached.collect();
+    if !unreached.is_empty() {
+        let what = format!(
+            "the run ends at {} s, before its checks of {} begin: they judge nothing",
+            three_digits(end),
+            unreached.join(", ")
+        );
+        // A shortened run is judged less on purpose, so that this is no warning.
+        findings.push(Finding::note("event_after_end", what, "begin them earlier, or run longer".into()));
     }
     for statistic in &context.plan.statistics {
         if let Some(from) = statistic.from.filter(|from| *from >= end) {

@@ -331,7 +331,7 @@ impl CheckConfig {
             self.series, ctx.until
         );
         let remedy = "run longer, end the check earlier by  until, or move the samples by  offset".into();
-        ctx.add_note(FileNote { is_warning: covered < 2, topic: "event_after_end", what, remedy });
+        ctx.add_note(FileNote { is_warning: false, topic: "event_after_end", what, remedy });
     }
 
     /// Returns the check of the run. Opens its table and verifies that it has the columns.

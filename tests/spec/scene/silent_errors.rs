@@ -356,20 +356,20 @@ fn a_check_that_the_run_does_not_reach_is_found() {
             "check-after",
             &check(words),
             &[],
-            &["\"box.heave_m\"", key, "the run ends at 2 s", "nothing is judged"],
+            &["\"box.heave_m\"", key, "the run ends at 2 s", "they judge nothing"],
         );
     }
-    assert_not_found("check-within", &check("formula = \"0\"\nfrom = 1.0"), &[], "judged");
+    assert_not_found("check-within", &check("formula = \"0\"\nfrom = 1.0"), &[], "judge");
     let table = [("r.csv", "t_s,z_m\n10,0\n11,0\n12,0\n")];
     let by_table = |words: &str| check(&format!("reference = \"r.csv\"\ncolumn = \"z_m\"\n{words}"));
     let words = ["\"box.heave_m\" is not judged", "from 0 to 2 s", "0 of the 3 samples of r.csv", "from 10 to 12 s"];
     assert_found("reference-after", &by_table(""), &table, &words);
-    assert_not_found("reference-moved", &by_table("offset = -10.0"), &table, "judged");
+    assert_not_found("reference-moved", &by_table("offset = -10.0"), &table, "judge");
     // A bound is judged over half of its reference or more.
     let long = [("r.csv", "t_s,z_m\n0,0\n1,0\n2,0\n3,0\n4,0\n5,0\n6,0\n")];
     assert_found("reference-longer", &by_table("bound = { off = 0.1 }"), &long, &["3 of the 7 samples", "until"]);
-    assert_not_found("reference-until", &by_table("until = 4.0\nbound = { off = 0.1 }"), &long, "judged");
-    assert_not_found("reference-free", &by_table(""), &long, "judged");
+    assert_not_found("reference-until", &by_table("until = 4.0\nbound = { off = 0.1 }"), &long, "judge");
+    assert_not_found("reference-free", &by_table(""), &long, "judge");
 }
 
 #[test]
