@@ -6,7 +6,7 @@ use super::{
     jacobian::{ConstraintJacobian, Mobility},
     joint::Joint,
     lifetime::{ConstraintEvent, Lifetime, Phase, Phases},
-    lines::{AttachedLine, RopeSpec, SpringParameters, SpringSpec, start_length},
+    lines::{AttachedLine, RopeSpec, SpringInput, SpringParameters, SpringSpec, start_length},
     links::{Constraints, InitialHold, TimedRemoval},
     motor::MotorCommand,
     reactions::{Reaction, project},
@@ -81,6 +81,8 @@ pub(crate) struct AssemblyState<const D: usize> {
     /// What a program has set of each force.
     pub(super) forces: Vec<Option<ForceCommand>>,
     pub(super) phases: Phases<D>,
+    /// Loads of joints, ropes and contacts on each solid in the last step, if there are springs.
+    reactions: Vec<Load<D>>,
 }
 
 pub(super) struct Spring<const D: usize> {
@@ -166,6 +168,7 @@ impl<const D: usize> Assembly<D> {
                 ropes: links.ropes.iter().map(rope).collect(),
                 forces: vec![None; links.forces.len()],
                 phases: Phases::at_start(links),
+                reactions: Vec::new(),
             },
             start,
         }
@@ -202,6 +205,14 @@ impl<const D: usize> Assembly<D> {
             self.tied[hold.solid].is_held = hold.is_active(t);
             engine.set_held(hold.solid, hold.is_active(t));
         }
+        let forces = self.forces.iter().zip(&self.state.forces).map(|(force, set)| {
+            (force.solid, force.load_at(&self.start[force.solid], &solids[force.solid], set.as_ref(), t + 0.5 * dt))
+        });
+        let winds = self.winds.iter().flat_map(|wind| wind.loads_at(solids, t + 0.5 * dt));
+        let forces: Vec<(usize, Load<D>)> = forces.chain(winds).collect();
+        let mut known = around.loads.clone();
+        forces.iter().for_each(|(solid, load)| known[*solid] += *load);
+        let reactions = &self.state.reactions;
         let phases = &mut self.state.phases;
         for (i, (spring, (elastic, reading))) in self.springs.iter().zip(&mut self.state.springs).enumerate() {
             if phases.springs[i] != Phase::Acting {
@@ -213,7 +224,19 @@ impl<const D: usize> Assembly<D> {
                 let ease = row.inverse_effective_mass(&row, &mobility);
                 let wet = spring.line.solids().into_iter().flatten().any(|i| around.wet[i]);
                 let elastic = if wet { elastic.damped_in_water(around.sound_crossing_time, ease) } else { *elastic };
-                reading.tension = elastic.tension(length, row.rate(&ends), ease, dt, spring.tension_only);
+                let between = spring.line.solids();
+                let acceleration = |load: &dyn Fn(usize) -> Load<D>| {
+                    row.acceleration(&between.map(|end| end.map_or_else(Load::zero, load)), &mobility)
+                };
+                let input = SpringInput {
+                    length,
+                    rate: row.rate(&ends),
+                    known_acceleration: acceleration(&|i| known[i] + engine.applied_push(i)),
+                    reaction: (reactions.len() == self.tied.len()).then(|| acceleration(&|i| reactions[i])),
+                    g: ease,
+                    dt,
+                };
+                reading.tension = elastic.tension(&input, spring.tension_only);
                 if reading.tension > spring.lifetime.strength {
                     phases.break_spring(i, &spring.name, t, reading.tension);
                     reading.tension = 0.0;
@@ -223,12 +246,7 @@ impl<const D: usize> Assembly<D> {
                 note(&mut self.tied, spring.line.solids(), &row.loads(-reading.tension), |tied| &mut tied.springs);
             }
         }
-        for (force, set) in self.forces.iter().zip(&self.state.forces) {
-            let load = force.load_at(&self.start[force.solid], &solids[force.solid], set.as_ref(), t + 0.5 * dt);
-            engine.add_load(force.solid, &load);
-            self.tied[force.solid].forces += load;
-        }
-        for (solid, load) in self.winds.iter().flat_map(|wind| wind.loads_at(solids, t + 0.5 * dt)) {
+        for (solid, load) in forces {
             engine.add_load(solid, &load);
             self.tied[solid].forces += load;
         }
@@ -293,6 +311,14 @@ impl<const D: usize> Assembly<D> {
         }
         for pull in of_ropes.iter().flatten() {
             note(&mut self.tied, pull.between, &pull.loads(), |tied| &mut tied.ropes);
+        }
+        if !self.springs.is_empty() {
+            self.state.reactions = self.tied.iter().map(|tied| tied.joints + tied.ropes).collect();
+            for contact in engine.contacts() {
+                for (solid, load) in contact.between.into_iter().zip(contact.loads) {
+                    self.state.reactions[solid] += load;
+                }
+            }
         }
     }
 
