@@ -84,11 +84,7 @@ pub(in crate::solid) fn series_forces<const D: usize>(
         let given = sum_loads(rows, &forces, loads.len());
         let mut changed = false;
         for (i, row) in rows.iter().enumerate().filter(|(i, row)| row.limit.is_some() && movable[*i]) {
-            let slack = if active[i] {
-                forces[i] > 0.0
-            } else {
-                row.acceleration(&given) <= wanted[i] + 1e-9 * scale
-            };
+            let slack = if active[i] { forces[i] > 0.0 } else { row.acceleration(&given) <= wanted[i] + 1e-9 * scale };
             changed |= active[i] == slack;
             active[i] = !slack;
         }
