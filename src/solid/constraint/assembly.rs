@@ -81,8 +81,6 @@ pub(crate) struct AssemblyState<const D: usize> {
     /// What a program has set of each force.
     pub(super) forces: Vec<Option<ForceCommand>>,
     pub(super) phases: Phases<D>,
-    /// Loads of joints, ropes and contacts on each solid in the last step, if there are springs.
-    reactions: Vec<Load<D>>,
 }
 
 pub(super) struct Spring<const D: usize> {
@@ -168,7 +166,6 @@ impl<const D: usize> Assembly<D> {
                 ropes: links.ropes.iter().map(rope).collect(),
                 forces: vec![None; links.forces.len()],
                 phases: Phases::at_start(links),
-                reactions: Vec::new(),
             },
             start,
         }
@@ -212,7 +209,7 @@ impl<const D: usize> Assembly<D> {
         let forces: Vec<(usize, Load<D>)> = forces.chain(winds).collect();
         let mut known = around.loads.clone();
         forces.iter().for_each(|(solid, load)| known[*solid] += *load);
-        let reactions = &self.state.reactions;
+        let reactions = if self.springs.is_empty() { Vec::new() } else { self.last_reactions(engine, solids) };
         let phases = &mut self.state.phases;
         for (i, (spring, (elastic, reading))) in self.springs.iter().zip(&mut self.state.springs).enumerate() {
             if phases.springs[i] != Phase::Acting {
@@ -232,7 +229,7 @@ impl<const D: usize> Assembly<D> {
                     length,
                     rate: row.rate(&ends),
                     known_acceleration: acceleration(&|i| known[i] + engine.applied_push(i)),
-                    reaction: (reactions.len() == self.tied.len()).then(|| acceleration(&|i| reactions[i])),
+                    reaction: (t > 0.0).then(|| acceleration(&|i| reactions[i])),
                     g: ease,
                     dt,
                 };
@@ -278,6 +275,36 @@ impl<const D: usize> Assembly<D> {
         }
     }
 
+    /// The loads of joints, ropes and contacts on each solid in the last step, at the present positions `solids`.
+    fn last_reactions(&self, engine: &dyn Engine<D>, solids: &[Kinematics<D>]) -> Vec<Load<D>> {
+        let mut sum = vec![Load::zero(); solids.len()];
+        let mut add = |ends: [Option<usize>; 2], loads: [Load<D>; 2]| {
+            for (end, load) in ends.into_iter().zip(loads) {
+                end.into_iter().for_each(|solid| sum[solid] += load);
+            }
+        };
+        let phases = &self.state.phases;
+        let joints = self.joints.iter().zip(&self.state.joints).zip(&phases.joints);
+        for ((joint, (_, reading)), _) in joints.filter(|(_, phase)| **phase == Phase::Acting) {
+            let ends = joint.end_kinematics(solids);
+            let at = joint.position_on_second(&ends);
+            let load = |k: usize, sign: f64| {
+                let own = Load::from_force_at(&(at - ends[k].centre), reading.force * sign);
+                Load { torque: own.torque + reading.torque * sign, ..own }
+            };
+            add(joint.spec.between, [load(0, -1.0), load(1, 1.0)]);
+        }
+        let ropes = self.ropes.iter().zip(&self.state.ropes).zip(&phases.ropes);
+        for ((rope, reading), _) in ropes.filter(|(_, phase)| **phase == Phase::Acting) {
+            let row = rope.line.length_and_jacobian(&rope.line.end_kinematics(solids)).1;
+            row.iter().for_each(|row| add(rope.line.solids(), row.loads(-reading.tension)));
+        }
+        for contact in engine.contacts() {
+            add(contact.between.map(Some), contact.loads);
+        }
+        sum
+    }
+
     /// Updates the readings of all constraints after the step of length `dt` (s) from `before` to `after`. If the engine reports
     /// only part of its impulses, `told` has the rate of change of momentum of each solid that no other load explains (N, N m).
     pub(crate) fn update_reactions(
@@ -311,14 +338,6 @@ impl<const D: usize> Assembly<D> {
         }
         for pull in of_ropes.iter().flatten() {
             note(&mut self.tied, pull.between, &pull.loads(), |tied| &mut tied.ropes);
-        }
-        if !self.springs.is_empty() {
-            self.state.reactions = self.tied.iter().map(|tied| tied.joints + tied.ropes).collect();
-            for contact in engine.contacts() {
-                for (solid, load) in contact.between.into_iter().zip(contact.loads) {
-                    self.state.reactions[solid] += load;
-                }
-            }
         }
     }
 

@@ -152,7 +152,7 @@ fn the_change_term_of_a_constrained_body_equals_its_angular_momentum_change_to_f
     Ok(())
 }
 
-/// A light box, whose added mass delays loads, with locked surge and pitch under a force along x.
+/// A box with acoustic added mass, and with locked surge and pitch, under a force along x.
 const LOCKED: &str = r#"
 dimension = 2
 dp        = 0.02
@@ -193,6 +193,5 @@ fn locks_of_a_light_body_bear_the_whole_load_along_locked_motions_at_once() -> R
         let (force, torque) = (shares.residual().force.norm(), shares.residual().torque.axial()[0].abs());
         assert!(force < 1e-9 && torque < 1e-9, "step {step}: {:?}", shares.residual());
     }
-    assert!(sim.load_breakdown(1).unwrap().delayed.force[1] != 0.0, "the box is light: its heave is delayed");
     Ok(())
 }
