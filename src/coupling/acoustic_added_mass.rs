@@ -212,7 +212,9 @@ impl<const D: usize> AcousticAddedMass<D> {
         self.state.pending += to_six(&Load { force: Vector::zeros(), torque: carried });
         lock(body, |i| self.state.pending[i] = 0.0);
         self.given = (impulse + join) / dt - self.state.contacts;
-        let given = self.given - to_six(&added);
+        let mut given = self.given - to_six(&added);
+        // Locks bear the whole load along locked motions.
+        lock(body, |i| given[i] = to_six(load)[i]);
         *load = Load { force: linear(&given), torque: angular::<D>(&given) };
         left - linear::<D>(&join)
     }

@@ -6,7 +6,7 @@ use super::{
     jacobian::{ConstraintJacobian, Mobility},
     joint::Joint,
     lifetime::{ConstraintEvent, Lifetime, Phase, Phases},
-    lines::{AttachedLine, RopeSpec, SpringParameters, SpringSpec, start_length},
+    lines::{AttachedLine, RopeSpec, SpringInput, SpringParameters, SpringSpec, start_length},
     links::{Constraints, InitialHold, TimedRemoval},
     motor::MotorCommand,
     reactions::{Reaction, project},
@@ -202,6 +202,14 @@ impl<const D: usize> Assembly<D> {
             self.tied[hold.solid].is_held = hold.is_active(t);
             engine.set_held(hold.solid, hold.is_active(t));
         }
+        let forces = self.forces.iter().zip(&self.state.forces).map(|(force, set)| {
+            (force.solid, force.load_at(&self.start[force.solid], &solids[force.solid], set.as_ref(), t + 0.5 * dt))
+        });
+        let winds = self.winds.iter().flat_map(|wind| wind.loads_at(solids, t + 0.5 * dt));
+        let forces: Vec<(usize, Load<D>)> = forces.chain(winds).collect();
+        let mut known = around.loads.clone();
+        forces.iter().for_each(|(solid, load)| known[*solid] += *load);
+        let reactions = if self.springs.is_empty() { Vec::new() } else { self.last_reactions(engine, solids) };
         let phases = &mut self.state.phases;
         for (i, (spring, (elastic, reading))) in self.springs.iter().zip(&mut self.state.springs).enumerate() {
             if phases.springs[i] != Phase::Acting {
@@ -213,7 +221,19 @@ impl<const D: usize> Assembly<D> {
                 let ease = row.inverse_effective_mass(&row, &mobility);
                 let wet = spring.line.solids().into_iter().flatten().any(|i| around.wet[i]);
                 let elastic = if wet { elastic.damped_in_water(around.sound_crossing_time, ease) } else { *elastic };
-                reading.tension = elastic.tension(length, row.rate(&ends), ease, dt, spring.tension_only);
+                let between = spring.line.solids();
+                let acceleration = |load: &dyn Fn(usize) -> Load<D>| {
+                    row.acceleration(&between.map(|end| end.map_or_else(Load::zero, load)), &mobility)
+                };
+                let input = SpringInput {
+                    length,
+                    rate: row.rate(&ends),
+                    known_acceleration: acceleration(&|i| known[i] + engine.applied_push(i)),
+                    reaction: (t > 0.0).then(|| acceleration(&|i| reactions[i])),
+                    g: ease,
+                    dt,
+                };
+                reading.tension = elastic.tension(&input, spring.tension_only);
                 if reading.tension > spring.lifetime.strength {
                     phases.break_spring(i, &spring.name, t, reading.tension);
                     reading.tension = 0.0;
@@ -223,12 +243,7 @@ impl<const D: usize> Assembly<D> {
                 note(&mut self.tied, spring.line.solids(), &row.loads(-reading.tension), |tied| &mut tied.springs);
             }
         }
-        for (force, set) in self.forces.iter().zip(&self.state.forces) {
-            let load = force.load_at(&self.start[force.solid], &solids[force.solid], set.as_ref(), t + 0.5 * dt);
-            engine.add_load(force.solid, &load);
-            self.tied[force.solid].forces += load;
-        }
-        for (solid, load) in self.winds.iter().flat_map(|wind| wind.loads_at(solids, t + 0.5 * dt)) {
+        for (solid, load) in forces {
             engine.add_load(solid, &load);
             self.tied[solid].forces += load;
         }
@@ -258,6 +273,36 @@ impl<const D: usize> Assembly<D> {
             }
             self.rows.push(rows);
         }
+    }
+
+    /// The loads of joints, ropes and contacts on each solid in the last step, at the present positions `solids`.
+    fn last_reactions(&self, engine: &dyn Engine<D>, solids: &[Kinematics<D>]) -> Vec<Load<D>> {
+        let mut sum = vec![Load::zero(); solids.len()];
+        let mut add = |ends: [Option<usize>; 2], loads: [Load<D>; 2]| {
+            for (end, load) in ends.into_iter().zip(loads) {
+                end.into_iter().for_each(|solid| sum[solid] += load);
+            }
+        };
+        let phases = &self.state.phases;
+        let joints = self.joints.iter().zip(&self.state.joints).zip(&phases.joints);
+        for ((joint, (_, reading)), _) in joints.filter(|(_, phase)| **phase == Phase::Acting) {
+            let ends = joint.end_kinematics(solids);
+            let at = joint.position_on_second(&ends);
+            let load = |k: usize, sign: f64| {
+                let own = Load::from_force_at(&(at - ends[k].centre), reading.force * sign);
+                Load { torque: own.torque + reading.torque * sign, ..own }
+            };
+            add(joint.spec.between, [load(0, -1.0), load(1, 1.0)]);
+        }
+        let ropes = self.ropes.iter().zip(&self.state.ropes).zip(&phases.ropes);
+        for ((rope, reading), _) in ropes.filter(|(_, phase)| **phase == Phase::Acting) {
+            let row = rope.line.length_and_jacobian(&rope.line.end_kinematics(solids)).1;
+            row.iter().for_each(|row| add(rope.line.solids(), row.loads(-reading.tension)));
+        }
+        for contact in engine.contacts() {
+            add(contact.between.map(Some), contact.loads);
+        }
+        sum
     }
 
     /// Updates the readings of all constraints after the step of length `dt` (s) from `before` to `after`. If the engine reports

@@ -151,7 +151,7 @@ impl<const D: usize> JointSpec<D> {
 pub(in crate::solid) struct Joint<const D: usize> {
     pub(in crate::solid) spec: JointSpec<D>,
     /// Its frames in the two solids; x is its axis.
-    pub(super) frames: [Pose<D>; 2],
+    pub(in crate::solid) frames: [Pose<D>; 2],
 }
 
 impl<const D: usize> Joint<D> {

@@ -210,6 +210,23 @@ impl<const D: usize> AttachedLine<D> {
     }
 }
 
+/// State of a spring for which it computes its tension.
+pub(in crate::solid) struct SpringInput {
+    /// Its length, m.
+    pub(in crate::solid) length: f64,
+    /// Rate of its length, m/s.
+    pub(in crate::solid) rate: f64,
+    /// Acceleration of its length by the known loads without its own, m/s².
+    pub(in crate::solid) known_acceleration: f64,
+    /// Acceleration of its length by the joints, ropes and contacts of the last step, m/s². It counts as far as it opposes the known
+    /// acceleration, because the load of an impact does not last. `None` before the first step: it opposes all of it.
+    pub(in crate::solid) reaction: Option<f64>,
+    /// Inverse effective mass of its ends, 1/kg.
+    pub(in crate::solid) g: f64,
+    /// The step, s.
+    pub(in crate::solid) dt: f64,
+}
+
 impl SpringParameters {
     /// The same parameters for ends in water. `crossing` (s) is the time in which sound crosses a smoothing length, and `g`
     /// (1/kg) is the inverse effective mass of the ends.
@@ -219,14 +236,17 @@ impl SpringParameters {
         Self { damping: self.damping.max(calmed), ..*self }
     }
 
-    /// The tension (N) at this `length` (m), which grows at `rate` (m/s), over a step `dt` (s). `g` (1/kg) is the inverse
-    /// effective mass of the ends.
-    pub(in crate::solid) fn tension(&self, length: f64, rate: f64, g: f64, dt: f64, tension_only: bool) -> f64 {
+    /// The tension (N) over a step, in which the damping acts at the rate at the end of the step.
+    pub(in crate::solid) fn tension(&self, input: &SpringInput, tension_only: bool) -> f64 {
+        let SpringInput { length, rate, known_acceleration, reaction, g, dt } = *input;
         let stretch = length - self.rest_length;
         if tension_only && stretch <= 0.0 {
             return 0.0;
         }
-        let tension = self.stiffness * stretch + self.damping * rate / (1.0 + dt * self.damping * g);
+        let known = known_acceleration - g * self.stiffness * stretch;
+        let borne = reaction.map_or(-known, |reaction| reaction.clamp((-known).min(0.0), (-known).max(0.0)));
+        let damped = self.damping * (rate + dt * (known + borne)) / (1.0 + dt * self.damping * g);
+        let tension = self.stiffness * stretch + damped;
         if tension_only { tension.max(0.0) } else { tension }
     }
 }

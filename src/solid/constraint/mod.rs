@@ -9,6 +9,7 @@ pub(crate) mod lines;
 pub(crate) mod links;
 mod motor;
 mod reactions;
+pub(in crate::solid) mod series;
 
 pub use assembly::{JointReading, LineReading};
 pub use jacobian::Mobility;

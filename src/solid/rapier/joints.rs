@@ -6,22 +6,25 @@
 
 use super::super::rapier::{
     dynamics::{
-        GenericJoint, ImpulseJointHandle, JointAxesMask, JointLimits, RigidBodyBuilder, RigidBodyHandle,
+        GenericJoint, ImpulseJoint, ImpulseJointHandle, JointAxesMask, JointLimits, RigidBodyBuilder, RigidBodyHandle,
         SpringCoefficients,
     },
     geometry::{ColliderHandle, ColliderSet, SolverFlags},
     math::Pose as Frame,
     pipeline::{ContactModificationContext, PairFilterContext, PhysicsHooks, PhysicsWorld},
 };
-use super::{super::align, D, from_angular, to_frame};
+use super::{
+    super::align, D, from_angular, from_frame, from_point, kinematics_of, mobility_of, to_angular, to_frame, to_point,
+};
 use crate::{
     math::Pose,
     solid::{
-        Kinematics,
+        Kinematics, Load, Mobility,
         constraint::{
-            joint::modes_rotations_first,
+            joint::{Joint, modes_rotations_first},
             lines::{AttachedLine, start_length},
             links::{Constraints, ContactPairs, ContactSpec},
+            series::{SeriesRow, series_forces, sum_loads},
         },
     },
 };
@@ -35,6 +38,10 @@ pub(super) struct RapierJoints {
     joints: Vec<ImpulseJointHandle>,
     /// Handle and largest length (m) of each rope.
     ropes: Vec<(ImpulseJointHandle, f64)>,
+    /// The joints and ropes, for the loads of those in series.
+    specs: (Vec<Joint<D>>, Vec<AttachedLine<D>>),
+    /// Impulses (N s, N m s) of the last step along the rows of joints and then of ropes in series, applied as forces.
+    in_series: Vec<Vec<f64>>,
     pub(super) contact_pairs: ContactPairHooks,
 }
 
@@ -83,7 +90,12 @@ impl RapierJoints {
             let [first, second] = spec.ends.map(|end| body(end.solid));
             ropes.push((world.insert_impulse_joint(first, second, joint), longest));
         }
-        Self { joints, ropes, contact_pairs: ContactPairHooks(links.contacts.clone()) }
+        let specs = (
+            links.joints.iter().map(|joint| Joint::new(joint.clone(), start)).collect(),
+            links.ropes.iter().map(|rope| AttachedLine::new(&rope.ends, start)).collect(),
+        );
+        let contact_pairs = ContactPairHooks(links.contacts.clone());
+        Self { joints, ropes, specs, in_series: Vec::new(), contact_pairs }
     }
 
     /// Connects joint number `i` with these frames, or disconnects it.
@@ -122,6 +134,85 @@ impl RapierJoints {
         }
     }
 
+    /// Applies the loads of joints and ropes in series as forces on `bodies`, for a step of `dt` (s) in which driven solids
+    /// move as `driven`.
+    pub(super) fn apply_series_loads(
+        &mut self,
+        world: &mut PhysicsWorld,
+        bodies: &[RigidBodyHandle],
+        driven: &[Option<Kinematics<D>>],
+        dt: f64,
+    ) {
+        self.in_series.clear();
+        for (joint, handle) in self.specs.0.iter_mut().zip(&self.joints) {
+            let now = world.impulse_joints.get(*handle).map(|joint| &joint.data);
+            joint.frames = now.map_or(joint.frames, |now| [&now.local_frame1, &now.local_frame2].map(from_frame));
+        }
+        let handles: Vec<_> = self.joints.iter().copied().chain(self.ropes.iter().map(|rope| rope.0)).collect();
+        let joint_count = self.joints.len();
+        let enabled = |handle| world.impulse_joints.get(handle).filter(|joint: &&ImpulseJoint| joint.data.is_enabled());
+        let ends = |i: usize| match i.checked_sub(joint_count) {
+            None => self.specs.0[i].spec.between,
+            Some(rope) => self.specs.1[rope].solids(),
+        };
+        let free = |end: Option<usize>| end.filter(|&solid| world.bodies[bodies[solid]].is_dynamic());
+        let mut count = vec![0; bodies.len()];
+        for i in (0..handles.len()).filter(|&i| enabled(handles[i]).is_some()) {
+            ends(i).into_iter().filter_map(free).for_each(|solid| count[solid] += 1);
+        }
+        if count.iter().all(|&count| count < 2) {
+            return;
+        }
+        let motion = |(body, target): (&RigidBodyHandle, &Option<Kinematics<D>>)| {
+            let now = kinematics_of(&world.bodies[*body]);
+            target.map_or(now, |to| Kinematics { velocity: (to.centre - now.centre) / dt, spin: to.spin, ..now })
+        };
+        let solids: Vec<_> = bodies.iter().zip(driven).map(motion).collect();
+        let other = |body: &RigidBodyHandle| {
+            let body = &world.bodies[*body];
+            let force = from_point(body.user_force() + world.gravity * body.mass());
+            Load { force, torque: from_angular(body.user_torque()) }
+        };
+        let loads: Vec<Load<D>> = bodies.iter().map(other).collect();
+        let (mut rows, mut sizes) = (Vec::new(), Vec::new());
+        for (i, &handle) in handles.iter().enumerate() {
+            let (between, before) = (ends(i), rows.len());
+            if let Some(joint) = enabled(handle)
+                && between.into_iter().filter_map(free).any(|solid| count[solid] > 1)
+            {
+                let mobility =
+                    between.map(|end| end.map_or_else(Mobility::none, |i| mobility_of(&world.bodies[bodies[i]])));
+                let row = |jacobian, limit| SeriesRow { between, jacobian, mobility, limit };
+                if i < joint_count {
+                    let own = &self.specs.0[i];
+                    let (all, locks) = own.jacobians(&own.end_kinematics(&solids), &mobility);
+                    rows.extend(all.into_iter().take(locks).map(|jacobian| row(jacobian, None)));
+                } else {
+                    let line = &self.specs.1[i - joint_count];
+                    let (length, jacobian) = line.length_and_jacobian(&line.end_kinematics(&solids));
+                    let limit = (joint.data.limits[0].max - length).max(0.0) / dt;
+                    rows.extend(jacobian.map(|jacobian| row(jacobian, Some(limit))));
+                }
+            }
+            sizes.push(rows.len() - before);
+        }
+        let forces = series_forces(&rows, &solids, &loads, dt);
+        for (load, &body) in sum_loads(&rows, &forces, bodies.len()).iter().zip(bodies) {
+            let body = &mut world.bodies[body];
+            if body.is_dynamic() {
+                body.add_force(to_point(&load.force), false);
+                body.add_torque(to_angular(&load.torque), false);
+            }
+        }
+        let mut impulses = forces.into_iter().map(|force| force * dt);
+        self.in_series = sizes.into_iter().map(|size| impulses.by_ref().take(size).collect()).collect();
+    }
+
+    /// Returns the impulse (N s, N m s) that row number `row` of tie number `i`, joints before ropes, has as a force.
+    fn series_impulse(&self, i: usize, row: usize) -> f64 {
+        self.in_series.get(i).and_then(|rows| rows.get(row)).copied().unwrap_or(0.0)
+    }
+
     /// Returns the impulses (N s, N m s) of joint number `i` on its second solid in the last step: of its locks in
     /// order, then of its end stops.
     pub(super) fn joint_impulses(&self, world: &PhysicsWorld, i: usize, iterations: usize) -> Vec<f64> {
@@ -131,12 +222,15 @@ impl RapierJoints {
         let stops =
             modes_rotations_first::<D>().filter(|i| limited >> i & 1 == 1).map(|i| joint.data.limits[i].impulse);
         // The engine stores the impulses of its last iteration only.
-        locks.chain(stops).map(|impulse| -impulse * iterations as f64).collect()
+        let all = locks.chain(stops).map(|impulse| -impulse * iterations as f64).enumerate();
+        all.map(|(row, impulse)| impulse + self.series_impulse(i, row)).collect()
     }
 
     /// Returns the impulse (N s) of rope number `i` in the last step.
     pub(super) fn rope_impulse(&self, world: &PhysicsWorld, i: usize, iterations: usize) -> f64 {
-        world.impulse_joints.get(self.ropes[i].0).map_or(0.0, |rope| rope.data.limits[0].impulse * iterations as f64)
+        let rest = |rope: &ImpulseJoint| rope.data.limits[0].impulse * iterations as f64;
+        let rest = world.impulse_joints.get(self.ropes[i].0).map_or(0.0, rest);
+        rest - self.series_impulse(self.joints.len() + i, 0)
     }
 }
 

@@ -274,13 +274,7 @@ impl RapierWorld {
 
 impl Engine<D> for RapierWorld {
     fn kinematics(&self, solid: usize) -> Kinematics<D> {
-        let body = self.body(solid);
-        Kinematics {
-            pose: from_frame(body.position()),
-            centre: from_point(body.center_of_mass()),
-            velocity: from_point(body.linvel()),
-            spin: from_angular(body.angvel()),
-        }
+        kinematics_of(self.body(solid))
     }
 
     fn step(
@@ -298,6 +292,7 @@ impl Engine<D> for RapierWorld {
             self.ties.contact_pairs.restitution_and_friction(a, b, &self.restitution, mu)
         });
         self.ties.update_rope_limits(&mut self.world, dt);
+        self.ties.apply_series_loads(&mut self.world, &self.bodies, driven, dt);
         let turnings = wind(&mut self.world, &self.bodies, dt);
         self.world.step_with_events(&self.ties.contact_pairs, &());
         self.turned = unwind(&mut self.world, &self.bodies, turnings, &spins, dt);
@@ -382,11 +377,7 @@ impl Engine<D> for RapierWorld {
     }
 
     fn mobility(&self, solid: usize) -> Mobility<D> {
-        let mass = self.body(solid).mass_properties();
-        Mobility {
-            linear: from_point(mass.effective_inv_mass),
-            angular: inverse_inertia(&mass.effective_world_inv_inertia),
-        }
+        mobility_of(self.body(solid))
     }
 
     fn solver_iterations(&self) -> usize {
@@ -413,6 +404,23 @@ impl Engine<D> for RapierWorld {
         (self.world, self.tuned_for, self.met, self.pushes) = self.read_state(bytes)?;
         self.when_near = registry::iterations_in_contact(&self.world);
         Ok(())
+    }
+}
+
+fn kinematics_of(body: &RigidBody) -> Kinematics<D> {
+    Kinematics {
+        pose: from_frame(body.position()),
+        centre: from_point(body.center_of_mass()),
+        velocity: from_point(body.linvel()),
+        spin: from_angular(body.angvel()),
+    }
+}
+
+fn mobility_of(body: &RigidBody) -> Mobility<D> {
+    let mass = body.mass_properties();
+    Mobility {
+        linear: from_point(mass.effective_inv_mass),
+        angular: inverse_inertia(&mass.effective_world_inv_inertia),
     }
 }
 

@@ -151,3 +151,47 @@ fn the_change_term_of_a_constrained_body_equals_its_angular_momentum_change_to_f
     assert!((0.15..0.35).contains(&(fine / coarse)), "{fine} after {coarse} N m s");
     Ok(())
 }
+
+/// A box with acoustic added mass, and with locked surge and pitch, under a force along x.
+const LOCKED: &str = r#"
+dimension = 2
+dp        = 0.02
+until     = 0.3
+
+[[water]]
+fill = { box = { min = [0.0, 0.0], max = [1.0, 0.4] } }
+
+[[solid]]
+name  = "tank"
+fixed = true
+shape = { tank = { size = [1.0, 0.6] } }
+
+[[solid]]
+name  = "box"
+shape = { box = { size = [0.4, 0.2] } }
+at    = { x = 0.5, draft = "equilibrium" }
+free  = { density = 300, locked = ["x", "turn"] }
+
+[[force]]
+name  = "push"
+on    = "box"
+force = [30.0, 0.0]
+"#;
+
+#[test]
+fn locks_of_a_light_body_bear_the_whole_load_along_locked_motions_at_once() -> Result<()> {
+    let mut sim = common::scene_simulation::<2>(LOCKED)?;
+    sim.enable_load_breakdown();
+    for step in 0..50 {
+        sim.step()?;
+        let shares = sim.load_breakdown(1).unwrap();
+        let water = shares.pressure.force[0] + shares.viscous.force[0];
+        // Round-off of pressures: the hydrostatic force on one side is 24 N.
+        assert!(shares.delayed.force[0].abs() < 1e-9, "step {step}: {} N are delayed", shares.delayed.force[0]);
+        assert!((shares.locks.force[0] + 30.0 + water).abs() < 1e-9, "step {step}: {:?}", shares.locks);
+        assert_eq!(shares.delayed.torque.axial()[0], 0.0, "step {step}");
+        let (force, torque) = (shares.residual().force.norm(), shares.residual().torque.axial()[0].abs());
+        assert!(force < 1e-9 && torque < 1e-9, "step {step}: {:?}", shares.residual());
+    }
+    Ok(())
+}

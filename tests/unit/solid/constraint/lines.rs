@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use crate::{
     math::{Bivector, Vector},
     solid::{
-        Constraints, Dim, HasEngine, Lifetime, LineEnd, RopeSpec, SpringParameters, SpringSpec,
+        Constraints, Dim, HasEngine, Lifetime, LineEnd, Role, RopeSpec, SolidSpec, SpringParameters, SpringSpec,
         constraint::assembly::tests::{DrySystem, G, bar, body, point},
     },
 };
@@ -86,6 +86,46 @@ fn a_damped_spring_reaches_its_static_deflection_for_any_damping() {
             continue;
         }
         assert!((sag - 1.0).abs() < 1e-6 && (reading.tension / weight - 1.0).abs() < 1e-6, "{damping}: {reading:?}");
+    }
+}
+
+/// A box of 20 kg on a vertical damper of `damping` (N s/m) without stiffness, and its weight (N).
+fn damper(damping: f64, more: Constraints<2>, solids: Vec<SolidSpec<2>>) -> (DrySystem<2>, f64) {
+    let solids: Vec<_> = std::iter::once(bar::<2>("box", 0.2, point(0.0, 0.0), true)).chain(solids).collect();
+    let weight = body(&solids[0]).mass * G;
+    let ends = [LineEnd { solid: Some(0), at: point(0.0, 0.05) }, LineEnd { solid: None, at: point(0.0, 1.0) }];
+    let spring = SpringSpec::new("damper", ends, 0.0).damping(damping);
+    (DrySystem::new(solids, Constraints { springs: vec![spring], ..more }, G), weight)
+}
+
+#[test]
+fn a_load_on_a_damper_moves_at_load_over_damping_for_any_damping() {
+    // Δt c/m is 0.0075 to 75. The damping acts at the end of the step, so that the steady speed has no error of the step.
+    for damping in [100.0, 1e3, 3e3, 1e4, 1e6] {
+        let (mut air, weight) = damper(damping, Constraints::default(), Vec::new());
+        air.run(1.5e-3, 4.0);
+        let fall = -air.now()[0].velocity[1] / (weight / damping);
+        assert!((fall - 1.0).abs() < 1e-8, "{damping} N s/m: {fall} of the speed");
+    }
+}
+
+#[test]
+fn a_damper_bears_nothing_of_a_box_at_rest_on_a_rope_or_on_a_floor() {
+    let ends = [LineEnd { solid: Some(0), at: point(0.0, 0.05) }, LineEnd { solid: None, at: point(0.0, 1.0) }];
+    let rope = Constraints { ropes: vec![RopeSpec::new("rope", ends)], ..Constraints::default() };
+    let mut floor = bar::<2>("floor", 1.0, point(0.0, -0.1), true);
+    floor.role = Role::Fixed;
+    for (more, solids) in [(rope, Vec::new()), (Constraints::default(), vec![floor])] {
+        let on_rope = solids.is_empty();
+        let (mut air, weight) = damper(1e4, more, solids);
+        let mut most = 0.0f64;
+        while air.t < 0.5 {
+            air.step(1.5e-3);
+            let borne = air.assembly.spring_reading(0).tension.abs() / weight;
+            most = most.max(if on_rope || air.t > 0.4 { borne } else { 0.0 });
+        }
+        // The rope holds the box from the first step. The contact of the floor is a spring, which the damper slows down first.
+        assert!(most < 1e-6, "rope {on_rope}: {most} of the weight");
     }
 }
 
