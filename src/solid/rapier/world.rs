@@ -49,7 +49,7 @@ use crate::{
     },
 };
 use colliders::{ConvexParts, check_overlap, collect_parts, thickness};
-use joints::RapierJoints;
+use joints::{RapierJoints, SWEEPS};
 use restitution::Impact;
 
 /// Largest overlap at the start, in dp: it allows for round-off of the placement.
@@ -428,7 +428,7 @@ fn mobility_of(body: &RigidBody) -> Mobility<D> {
 fn settle(world: &mut PhysicsWorld, reach: f64) {
     let parameters = &mut world.integration_parameters;
     parameters.num_solver_iterations = 1;
-    parameters.num_internal_pgs_iterations = 4;
+    parameters.num_internal_pgs_iterations = SWEEPS;
     parameters.num_internal_stabilization_iterations = 4;
     parameters.contact_recycling = false;
     parameters.length_unit = 1.0;
