@@ -62,7 +62,10 @@ impl<const D: usize> Silhouette<D> {
     /// The surface of `shape`.
     pub(crate) fn new(shape: &Shape<D>) -> Self {
         let facets = surface_facets(shape);
-        let is_convex = is_convex(&facets, OFFSET * shape.bounds().size().max());
+        let is_convex = match shape {
+            Shape::Box { .. } | Shape::Ball { .. } | Shape::Capsule { .. } | Shape::Cylinder { .. } => true,
+            _ => is_convex(&facets, OFFSET * shape.bounds().size().max()),
+        };
         Self { facets, is_convex }
     }
 

@@ -1,6 +1,10 @@
 //! Unit tests of `src/math/table.rs`.
 
-use std::{f64::consts::PI, path::PathBuf};
+use std::{
+    f64::consts::PI,
+    path::PathBuf,
+    sync::atomic::{AtomicUsize, Ordering},
+};
 
 use super::*;
 
@@ -9,7 +13,9 @@ struct TestFile(PathBuf);
 
 impl TestFile {
     fn new(name: &str, bytes: impl AsRef<[u8]>) -> Self {
-        let path = std::env::temp_dir().join(format!("pontoon-table-{name}-{}.csv", std::process::id()));
+        static COUNT: AtomicUsize = AtomicUsize::new(0);
+        let (process, number) = (std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed));
+        let path = std::env::temp_dir().join(format!("pontoon-table-{name}-{process}-{number}.csv"));
         std::fs::write(&path, bytes).unwrap();
         Self(path)
     }
