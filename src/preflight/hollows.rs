@@ -100,13 +100,14 @@ pub(super) fn check_hollows<const D: usize>(context: &PreflightContext<D>, findi
     }
 }
 
-/// Returns whether the middle of solid number `i` lies in a hollow of solid number `hull`.
+/// Returns whether solid number `i` lies between the sides of solid number `hull`, with its middle in a hollow of this hull.
 pub(super) fn lies_in_hollow<const D: usize>(context: &PreflightContext<D>, i: usize, hull: usize) -> bool {
     let (solid, other) = (&context.solids()[hull], &context.solids()[i]);
-    let bounds = other.spec.shape.bounds_at(&other.kinematics.pose);
+    let [around, bounds] = [solid, other].map(|one| one.spec.shape.bounds_at(&one.kinematics.pose));
+    let is_between = (0..D - 1).all(|k| around.min[k] <= bounds.min[k] && bounds.max[k] <= around.max[k]);
     let middle = solid.kinematics.pose.local(&((bounds.min + bounds.max) * 0.5));
     let place = context.hollows[hull].as_ref().map(|own| own.enclosure.place(&solid.spec.shape, &middle));
-    i != hull && matches!(place, Some(Place::Hollow(_)))
+    i != hull && is_between && matches!(place, Some(Place::Hollow(_)))
 }
 
 /// The volume (m³; m² in 2-D) of solid number `i` below `level` (m).

@@ -239,7 +239,7 @@ fn water_of_a_hull_off_the_lattice_or_above_its_rim_is_told() {
     let over = finding(&text(1.2, 0.45), "hull_floods");
     assert!(over.what.contains("given to 1.2 m, above its rim at 0.9"), "{}", over.what);
     let off = finding(&text(1.2, 0.45), "surface_off_lattice");
-    assert!(off.what.contains("kg, and its level gives"), "{}", off.what);
+    assert!(off.what.contains("kg, and its level gives 500 kg"), "{}", off.what);
     has_no(&text(0.8, 0.44), "surface_off_lattice");
     has_no(&text(0.8, 0.44), "hull_floods");
 }
