@@ -290,8 +290,8 @@ fn a_refused_state_changes_nothing() -> Result<()> {
     let line =
         "[[spring]]\nname = \"line\"\nbetween = [\"crate\"]\nfrom = [0.6, 0.6]\nto = [0.6, 0.9]\nstiffness = 10.0\n";
     let more_water = "[[water]]\nfill = { box = { min = [0.0, 0.5], max = [0.3, 0.6] } }\n";
-    let other_ball = "[[solid]]\nname = \"ball\"\nfree = { density = 700.0 }\nshape = { ball = { radius = 0.08 } }\nat = [0.2, 0.2]\n";
-    let leaving = "[[solid]]\nname = \"plate\"\nfixed = true\nuntil = 0.01\nshape = { box = { size = [0.1, 0.1] } }\nat = [0.2, 0.2]\n";
+    let other_ball = "[[solid]]\nname = \"ball\"\nfree = { density = 700.0 }\nshape = { ball = { radius = 0.08 } }\nat = { x = 0.2, y = 0.2 }\n";
+    let leaving = "[[solid]]\nname = \"plate\"\nfixed = true\nuntil = 0.01\nshape = { box = { size = [0.1, 0.1] } }\nat = { x = 0.2, y = 0.2 }\n";
     let mut states: Vec<(&str, Vec<u8>)> = Vec::new();
     for (what, more) in [("water", more_water), ("joint", rail), ("spring", line), ("solid", other_ball)] {
         states.push((what, own(more)?.save()?));
