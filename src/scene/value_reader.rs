@@ -130,15 +130,18 @@ impl<'de> Deserializer<'de> for ValueReader<'de> {
         choice.and_then(|choice| visitor.visit_enum(choice)).map_err(|e| e.at(&self.span))
     }
 
-    /// A derived visitor would also take a list of the fields, in their order and without their names.
+    /// A derived visitor would also take a list of the fields, in their order and without their names. Only a place may be written as
+    /// the list of its coordinates.
     fn deserialize_struct<V: Visitor<'de>>(
         self,
-        _name: &'static str,
+        name: &'static str,
         _fields: &'static [&'static str],
         visitor: V,
     ) -> Result<V::Value, ReadError> {
-        match self.value {
-            DeValue::Array(_) => Err(ReadError::invalid_type(Unexpected::Seq, &visitor).at(&self.span)),
+        match &self.value {
+            DeValue::Array(items) if name != "PlacementConfig" || items.len() > 3 => {
+                Err(ReadError::invalid_type(Unexpected::Seq, &visitor).at(&self.span))
+            }
             _ => self.deserialize_any(visitor),
         }
     }

@@ -379,8 +379,11 @@ fn lists_in_place_of_tables_and_longer_lists_are_refused_with_the_form() {
     let shaped = |shape: &str| scene(REST, "").replace(box_shape, shape);
     let probed = |probe: &str| scene(REST, &format!("[[probe]]\n{probe}\n"));
     let check = "motion = \"box\"\n[[check]]\nseries = \"box.heave_m\"\nformula = \"0\"\n";
+    let solid_at = |at: &str| format!("[[solid]]\nname = \"sill\"\nfixed = true\nshape = {box_shape}\nat = {at}\n");
     for (text, words) in [
         (scene(REST, "").replace(free, "free = [500]"), ["free must be a table, not a list", "free = { density"]),
+        // The position alone may be a list.
+        (scene(REST, &solid_at("[1.0, 0.4, 0.0, 0.1]")), ["at must be a table, not a list", "at = { x"]),
         (probed(&format!("{check}bound = [0.1]")), ["bound must be a table, not a list", "bound = { N"]),
         (scene(REST, "").replacen("[[water]]", "model = []\n[[water]]", 1), ["model must be a table", "[model]"]),
         (shaped("{ ball = [0.1] }"), ["ball must be a table, not a list", "{ ball = { radius"]),
