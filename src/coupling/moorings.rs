@@ -102,35 +102,31 @@ impl<const D: usize> Moorings<D> {
     /// Stiffness (N/m) of the lines against a displacement of solid number `solid` along the x axis from its present position.
     /// The lines are in equilibrium at each displacement.
     pub(crate) fn surge_stiffness(&self, system: &System<D>, solid: usize) -> f64 {
-        let own = || {
-            let ends = self.lines.iter().enumerate().flat_map(|(i, line)| [0, 1].map(|k| (i, k, line.solids()[k])));
-            ends.filter(|(.., at)| *at == Some(solid)).map(|(i, k, _)| (i, k))
-        };
-        let way = own().map(|(i, _)| 1e-3 * self.lines[i].line.length()).fold(f64::INFINITY, f64::min);
-        let force = |way: f64| {
-            let mut moved: Vec<_> = self.lines.iter().map(|mooring| mooring.line.clone()).collect();
-            for (i, k) in own() {
-                let node = moved[i].end_node(k);
-                moved[i].state.x[node][0] += way;
-            }
-            self.find_rest(system, &mut moved.iter_mut().collect::<Vec<_>>());
-            own().map(|(i, k)| moved[i].state.end_forces[k][0]).sum::<f64>()
-        };
-        (force(-way) - force(way)) / (2.0 * way)
+        let ends = self.lines.iter().enumerate().flat_map(|(i, line)| [0, 1].map(|k| (i, k, line.solids()[k])));
+        let own: Vec<_> = ends.filter(|(.., at)| *at == Some(solid)).map(|(i, k, _)| (i, k)).collect();
+        self.stiffness_of(system, &own, 0)[0]
     }
 
     /// Stiffness (N/m) of line number `i` against displacements of its end `k`. The lines are in equilibrium at each displacement.
     pub(crate) fn end_stiffness(&self, system: &System<D>, i: usize, k: usize) -> Matrix<D> {
-        let way = 1e-3 * self.lines[i].line.length();
-        let force = |axis: usize, way: f64| {
+        let columns: Vec<_> = (0..D).map(|axis| self.stiffness_of(system, &[(i, k)], axis)).collect();
+        Matrix::from_columns(&columns)
+    }
+
+    /// Sum of the forces against a common displacement of `ends`, given as (line, end), along the `axis`, over the displacement,
+    /// N/m.
+    fn stiffness_of(&self, system: &System<D>, ends: &[(usize, usize)], axis: usize) -> Vector<D> {
+        let way = ends.iter().map(|(i, _)| 1e-3 * self.lines[*i].line.length()).fold(f64::INFINITY, f64::min);
+        let force = |way: f64| {
             let mut moved: Vec<_> = self.lines.iter().map(|mooring| mooring.line.clone()).collect();
-            let node = moved[i].end_node(k);
-            moved[i].state.x[node][axis] += way;
+            for &(i, k) in ends {
+                let node = moved[i].end_node(k);
+                moved[i].state.x[node][axis] += way;
+            }
             self.find_rest(system, &mut moved.iter_mut().collect::<Vec<_>>());
-            moved[i].state.end_forces[k]
+            ends.iter().map(|&(i, k)| moved[i].state.end_forces[k]).sum::<Vector<D>>()
         };
-        let columns: Vec<Vector<D>> = (0..D).map(|axis| (force(axis, -way) - force(axis, way)) / (2.0 * way)).collect();
-        Matrix::from_fn(|row, column| columns[column][row])
+        (force(-way) - force(way)) / (2.0 * way)
     }
 
     /// Nodes of line number `i` that lie on fixed solids, in order.

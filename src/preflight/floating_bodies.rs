@@ -85,8 +85,8 @@ pub struct BodySummary {
     /// Equilibrium in the initial orientation; absent unless the water carries it.
     pub afloat: Option<Equilibrium>,
     /// The effect that carries it at rest: `water`, `lines` (it hangs on them, or they hold it down), `held` (by a joint
-    /// or a lock), `bottom` (it sinks, or lies on a solid), `solid` (it stands on one in the air), `floods` (water runs over its rim), `neutral` (as dense as the
-    /// water), `none` without gravity.
+    /// or a lock), `bottom` (it sinks, or lies on a solid), `solid` (it stands on one in the air), `floods` (water runs over its
+    /// rim), `neutral` (as dense as the water), `none` without gravity.
     pub support: &'static str,
     /// Names of the other bodies of its assembly, between which there are joints.
     pub tied_to: Vec<String>,

@@ -1,7 +1,7 @@
 //! Bodies of water whose initial state is probably a mistake: off the lattice, in the air, without walls, on one another, or not as
 //! long as a period.
 
-use std::collections::BTreeMap;
+use std::collections::HashMap;
 
 use super::{Finding, PreflightContext};
 use crate::math::{
@@ -99,45 +99,51 @@ fn check_support<const D: usize>(
 fn check_walls<const D: usize>(context: &PreflightContext<D>, findings: &mut Vec<Finding>) {
     let (system, dp) = (context.system, context.dp());
     let mut worst: Option<(usize, String)> = None;
-    for (axis, sense) in (0..D - 1).flat_map(|axis| [(axis, -1.0), (axis, 1.0)]) {
-        let plane = system.symmetry_planes().0[axis].is_some_and(|plane| plane.is_upper == (sense < 0.0));
-        let face = system.open_boundaries().iter().any(|face| face.axis == axis && face.outward() == sense);
-        if plane || face || system.periodic()[axis].is_some() {
-            continue;
-        }
-        // The place of a particle across the axis, in cells of dp, and how far out the outermost one is there.
+    for axis in 0..D - 1 {
+        // The place of a particle across the axis, in cells of dp, and how far out the outermost ones are there on both sides.
         let cell = |x: &Vector<D>| -> [i64; D] {
             std::array::from_fn(|i| if i == axis { 0 } else { (x[i] / dp).floor() as i64 })
         };
-        let outermost = |all: &mut dyn Iterator<Item = &Vector<D>>| {
-            let mut ends: BTreeMap<[i64; D], f64> = BTreeMap::new();
+        let outermost = |all: &[Vector<D>]| {
+            let mut ends: HashMap<[i64; D], [f64; 2]> = HashMap::new();
             for x in all {
-                let end = ends.entry(cell(x)).or_insert(f64::NEG_INFINITY);
-                *end = end.max(sense * x[axis]);
+                let [low, high] = ends.entry(cell(x)).or_insert([f64::NEG_INFINITY; 2]);
+                (*low, *high) = (low.max(-x[axis]), high.max(x[axis]));
             }
             ends
         };
-        let water = outermost(&mut system.fluid().r.iter());
-        let walls = outermost(&mut system.boundary().r.iter());
-        let is_open = |(at, end): &(&[i64; D], &f64)| {
-            let near = (0..3usize.pow(D as u32)).map(|k| -> [i64; D] {
-                std::array::from_fn(|i| if i == axis { 0 } else { at[i] + (k / 3usize.pow(i as u32) % 3) as i64 - 1 })
-            });
-            near.filter_map(|cell| walls.get(&cell)).all(|wall| wall < *end)
+        let is_held = |sense: f64| {
+            let plane = system.symmetry_planes().0[axis].is_some_and(|plane| plane.is_upper == (sense < 0.0));
+            plane || system.open_boundaries().iter().any(|face| face.axis == axis && face.outward() == sense)
         };
-        let open: Vec<(&[i64; D], &f64)> = water.iter().filter(is_open).collect();
-        let heights = || open.iter().map(|(at, _)| at[D - 1]);
-        let (Some(low), Some(high)) = (heights().min(), heights().max()) else { continue };
-        if worst.as_ref().is_none_or(|(most, _)| open.len() > *most) {
-            let end = open.iter().map(|(_, end)| **end).fold(f64::NEG_INFINITY, f64::max);
-            let what = format!(
-                "no wall and no face holds the water at {} = {} m, {} to {} m high: it runs out",
-                ["x", "y"][axis],
-                three_digits(sense * (end + 0.5 * dp)),
-                three_digits(low as f64 * dp),
-                three_digits((high + 1) as f64 * dp)
-            );
-            worst = Some((open.len(), what));
+        let senses: Vec<_> = [-1.0, 1.0].into_iter().enumerate().filter(|(_, sense)| !is_held(*sense)).collect();
+        if senses.is_empty() || system.periodic()[axis].is_some() {
+            continue;
+        }
+        let (water, walls) = (outermost(system.fluid().r), outermost(system.boundary().r));
+        for (side, sense) in senses {
+            let is_open = |(at, ends): &(&[i64; D], &[f64; 2])| {
+                let near = (0..3usize.pow(D as u32)).map(|k| -> [i64; D] {
+                    std::array::from_fn(
+                        |i| if i == axis { 0 } else { at[i] + (k / 3usize.pow(i as u32) % 3) as i64 - 1 },
+                    )
+                });
+                near.filter_map(|cell| walls.get(&cell)).all(|wall| wall[side] < ends[side])
+            };
+            let open: Vec<_> = water.iter().filter(is_open).collect();
+            let heights = || open.iter().map(|(at, _)| at[D - 1]);
+            let (Some(low), Some(high)) = (heights().min(), heights().max()) else { continue };
+            if worst.as_ref().is_none_or(|(most, _)| open.len() > *most) {
+                let end = open.iter().map(|(_, ends)| ends[side]).fold(f64::NEG_INFINITY, f64::max);
+                let what = format!(
+                    "no wall and no face holds the water at {} = {} m, {} to {} m high: it runs out",
+                    ["x", "y"][axis],
+                    three_digits(sense * (end + 0.5 * dp)),
+                    three_digits(low as f64 * dp),
+                    three_digits((high + 1) as f64 * dp)
+                );
+                worst = Some((open.len(), what));
+            }
         }
     }
     findings.extend(worst.map(|(_, what)| {

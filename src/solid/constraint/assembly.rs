@@ -207,9 +207,12 @@ impl<const D: usize> Assembly<D> {
         });
         let winds = self.winds.iter().flat_map(|wind| wind.loads_at(solids, t + 0.5 * dt));
         let forces: Vec<(usize, Load<D>)> = forces.chain(winds).collect();
-        let mut known = around.loads.clone();
-        forces.iter().for_each(|(solid, load)| known[*solid] += *load);
-        let reactions = if self.springs.is_empty() { Vec::new() } else { self.last_reactions(engine, solids) };
+        let (mut known, mut reactions) = (Vec::new(), Vec::new());
+        if !self.springs.is_empty() {
+            known.clone_from(&around.loads);
+            forces.iter().for_each(|(solid, load)| known[*solid] += *load);
+            reactions = self.last_reactions(engine, solids);
+        }
         let phases = &mut self.state.phases;
         for (i, (spring, (elastic, reading))) in self.springs.iter().zip(&mut self.state.springs).enumerate() {
             if phases.springs[i] != Phase::Acting {

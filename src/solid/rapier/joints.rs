@@ -152,6 +152,9 @@ impl RapierJoints {
     ) {
         self.in_series.clear();
         world.integration_parameters.num_internal_pgs_iterations = SWEEPS;
+        if self.joints.len() + self.ropes.len() < 2 {
+            return;
+        }
         for (joint, handle) in self.specs.0.iter_mut().zip(&self.joints) {
             let now = world.impulse_joints.get(*handle).map(|joint| &joint.data);
             joint.frames = now.map_or(joint.frames, |now| [&now.local_frame1, &now.local_frame2].map(from_frame));
