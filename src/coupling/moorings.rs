@@ -123,7 +123,14 @@ impl<const D: usize> Moorings<D> {
                 let node = moved[i].end_node(k);
                 moved[i].state.x[node][axis] += way;
             }
-            self.find_rest(system, &mut moved.iter_mut().collect::<Vec<_>>());
+            if ends.iter().any(|(i, _)| self.junctions.joins(*i)) {
+                self.find_rest(system, &mut moved.iter_mut().collect::<Vec<_>>());
+            } else {
+                // The other lines stay as they are.
+                for (i, _) in ends.iter().filter(|(i, _)| self.acts(*i)) {
+                    moved[*i].find_rest(&|x| self.surroundings(system, x), &system.gravity());
+                }
+            }
             ends.iter().map(|&(i, k)| moved[i].state.end_forces[k]).sum::<Vector<D>>()
         };
         (force(-way) - force(way)) / (2.0 * way)
