@@ -39,13 +39,13 @@ use crate::{
     coupling::{Accounting, AccountingState, AcousticAddedMass, Bodies, BodiesState, Hook, Interval, Moorings},
     error::{Error, ErrorCode, ErrorKind, Fault, Result},
     interaction::{PairLoop, RequestedSums},
-    math::{Bivector, Vector},
+    math::{Bivector, Bounds, Vector},
     model::HasPairLoop as _,
     ranks::Ranks,
     solid::{ContactForce, Dim, HasEngine as _, Role, SolidSpec, constraint::assembly::Assembly},
     system::{
         LimitViolation, SavedWater, System, SystemState,
-        own_water::{self, OwnNames, WaterAtSetup},
+        own_water::{self, OwnNames},
         set_buffer_time, set_gravity_at, update_buffer, update_current,
     },
     time_integration::{Stepper, step_size},
@@ -129,21 +129,17 @@ impl<const D: usize> Simulation<D> {
     where
         Dim<D>: Dimension<D>,
     {
-        Self::set_up(setup, ranks, WaterAtSetup::All)
+        let mut simulation = Self::set_up(setup, ranks)?;
+        simulation.gather_water(true);
+        Ok(simulation)
     }
 
-    /// As [`Simulation::on_ranks`], with this `water` together.
-    pub(crate) fn set_up(setup: Setup<D>, ranks: &Ranks, water: WaterAtSetup) -> Result<Self>
+    /// As [`Simulation::on_ranks`], but each rank may have its own water alone.
+    pub(crate) fn set_up(setup: Setup<D>, ranks: &Ranks) -> Result<Self>
     where
         Dim<D>: Dimension<D>,
     {
-        let mut simulation = (Dim::<D>::compiled().set_up)(setup, None, false, ranks)?;
-        match water {
-            WaterAtSetup::All => simulation.gather_water(true),
-            WaterAtSetup::First => simulation.gather_water(false),
-            WaterAtSetup::Places => own_water::gather_places(&mut simulation.system),
-        }
-        Ok(simulation)
+        (Dim::<D>::compiled().set_up)(setup, None, false, ranks)
     }
 
     /// As [`Simulation::new`], with a pair loop of your own terms: see [`Model::custom_pair_loop`](crate::model::Model).
@@ -183,7 +179,7 @@ impl<const D: usize> Simulation<D> {
         let rig = Assembly::new(&setup.constraints, start.clone());
         let stepper = Stepper::new(&setup.model);
         let mut system = System::new(setup, pair_loop, ranks)?;
-        let moorings = Moorings::new(&system, &start)?;
+        let moorings = Moorings::new(&mut system, &start)?;
         let bodies = Bodies::new(engine, AcousticAddedMass::find_all(&mut system), rig, moorings, external);
         let clock = Clock { time: 0.0, dt: 0.0, steps: 0 };
         let (rescue, lost, stepping) = (RollbackControl::default(), Vec::new(), Duration::ZERO);
@@ -245,7 +241,24 @@ impl<const D: usize> Simulation<D> {
         (self.compiled.gather_water)(self, everyone);
     }
 
-    /// Leaves the first rank the places of its own water, if it got those of all at the set-up.
+    /// Gives all ranks the water within the boxes (m) that the first rank names, where they lack it. All ranks must call this.
+    pub(crate) fn know_water_within(&mut self, ranges: &[Bounds<D>]) {
+        let ranges = own_water::share_ranges(&self.system, ranges);
+        own_water::know_within(&mut self.system, &ranges);
+    }
+
+    /// Gives the first rank the water that the checks before the first step read: places and velocities, with mooring lines all. All ranks
+    /// must call this at the set-up.
+    pub(crate) fn gather_for_checks(&mut self) {
+        if self.system.status.has_all_water {
+        } else if self.bodies.moorings.is_empty() {
+            own_water::gather_places(&mut self.system);
+        } else {
+            self.gather_water(false);
+        }
+    }
+
+    /// Leaves the first rank the places of its own water, if it got those of all for the checks.
     pub(crate) fn forget_places(&mut self) {
         own_water::forget_places(&mut self.system);
     }
@@ -397,7 +410,7 @@ impl<const D: usize> Simulation<D> {
     }
 
     fn advance(&mut self, end: f64, hook: &mut Hook<D>) -> Result<()> {
-        let divided = own_water::may_be_divided(&self.system, self.clock.time) && !self.bodies.read_water();
+        let divided = own_water::may_be_divided(&self.system) && !self.bodies.read_all_water();
         own_water::divide(&mut self.system, divided);
         set_buffer_time(&mut self.system, self.clock.time);
         self.rebuild_neighbours();

@@ -12,13 +12,13 @@ use super::{
 };
 use crate::{
     error::{Error, ErrorCode, ErrorKind, Fault, Result},
-    math::{Bivector, Pose, Vector},
+    math::{Bivector, Bounds, Pose, Vector},
     solid::{
         ContactForce, Engine, EngineFault, Kinematics, Load, Role, Solid,
         constraint::assembly::{Assembly, AssemblyState, ConstraintLoads},
         mooring::LineState,
     },
-    system::{MomentumTransfer, System, face_reached, return_impulse, spread_impulses},
+    system::{MomentumTransfer, System, bounds_beside, face_reached, own_water, return_impulse, spread_impulses},
 };
 
 /// The rigid bodies of a run with their engine. A scene without free bodies has no engine.
@@ -57,9 +57,25 @@ impl<const D: usize> Bodies<D> {
         Self { engine, added_masses, constraints, moorings, accounting: None, external, steps, spent }
     }
 
-    /// Whether the bodies or their accounting read or change the water itself, besides its loads.
+    /// Whether the bodies read or change the water itself, besides its loads.
+    #[cfg(feature = "gpu")]
     pub(crate) fn read_water(&self) -> bool {
-        self.external || self.accounting.is_some() || !self.added_masses.is_empty() || !self.moorings.is_empty()
+        !self.added_masses.is_empty() || !self.moorings.is_empty()
+    }
+
+    /// Whether an external program or the accounting may read all water.
+    pub(crate) fn read_all_water(&self) -> bool {
+        self.external || self.accounting.as_ref().is_some_and(Accounting::reads_water)
+    }
+
+    /// The boxes (m) in which light bodies and mooring lines read the water at the end of a step, before they move.
+    pub(crate) fn water_ranges(&self, system: &System<D>, over: Interval) -> Vec<Bounds<D>> {
+        let of_body = |added_mass: &AcousticAddedMass<D>| {
+            let way = system.solids[added_mass.solid].kinematics.velocity.norm() * over.dt;
+            bounds_beside(system, added_mass.solid, system.model().support_radius() + way)
+        };
+        let lines = self.moorings.water_ranges(system, over.t);
+        self.added_masses.iter().map(of_body).chain(lines).collect()
     }
 
     /// Whether an external program moves the free bodies.
@@ -205,6 +221,7 @@ impl<const D: usize> Bodies<D> {
         hook: &mut Hook<D>,
     ) -> Result<Vec<MomentumTransfer<D>>> {
         let end = over.t + over.dt;
+        own_water::know_within(system, &self.water_ranges(system, over));
         // The engine itself adds the weight once.
         let gravity = system.gravity() * (weight - 1.0);
         let weighed = |solid: &Solid<D>| {

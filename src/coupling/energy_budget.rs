@@ -120,6 +120,11 @@ impl<const D: usize> Accounting<D> {
         }
     }
 
+    /// Whether it reads the water: for the energy budget or for power breakdowns.
+    pub(crate) fn reads_water(&self) -> bool {
+        self.energy || self.interval.is_some()
+    }
+
     /// Whether the energy budget is recorded.
     pub(crate) fn has_energy_budget(&self) -> bool {
         self.energy

@@ -14,7 +14,7 @@ use crate::{
         ConstraintChange, Kinematics, Load, Mobility, MooringReading, Role,
         mooring::{BedPlane, Junctions, LineState, LineStep, Mooring, MooringLine, NodeSurroundings, junctions},
     },
-    system::System,
+    system::{System, own_water},
 };
 
 /// Largest force that may remain on a node at the start over its weight, –: on a line that sinks, and on one that may float, whose
@@ -41,11 +41,12 @@ pub(crate) struct Moorings<const D: usize> {
 pub(crate) type Change = (String, ConstraintChange);
 
 impl<const D: usize> Moorings<D> {
-    /// Makes the lines of `system`, at rest between their ends, with the solids at `start`.
+    /// Makes the lines of `system`, at rest between their ends, with the solids at `start`. Where ranks share the water, all ranks
+    /// must call this.
     ///
     /// # Errors
     /// `Scene` if no equilibrium of a line is found.
-    pub(crate) fn new(system: &System<D>, start: &[Kinematics<D>]) -> Result<Self> {
+    pub(crate) fn new(system: &mut System<D>, start: &[Kinematics<D>]) -> Result<Self> {
         let specs = &system.constraints().moorings;
         let (junctions, bodies) = junctions(&system.constraints().mooring_points, specs);
         let mut made = Self {
@@ -69,8 +70,9 @@ impl<const D: usize> Moorings<D> {
         made.fixed = system.solids().iter().enumerate().filter_map(near).collect();
         let mut all: Vec<_> = lines.iter_mut().map(|mooring| &mut mooring.line).collect();
         made.junctions.attach(&mut all, &bodies);
+        own_water::know_within(system, &all.iter().map(|line| range_around(line)).collect::<Vec<_>>());
         let rests = made.find_rest(system, &mut all);
-        for ((spec, left), line) in specs.iter().zip(rests).zip(&all) {
+        for ((spec, left), line) in system.constraints().moorings.iter().zip(rests).zip(&all) {
             if left.is_nan() || left > LARGEST_REST[usize::from(line.may_float())] {
                 let what =
                     format!("mooring \"{}\" finds no rest: {left:.1e} of the weight of a node remains", spec.name);
@@ -89,9 +91,13 @@ impl<const D: usize> Moorings<D> {
 
     /// Shape and tension of line number `i`.
     pub(crate) fn reading(&self, system: &System<D>, i: usize) -> MooringReading<D> {
-        let mooring = &self.lines[i];
-        let around: Vec<_> = mooring.line.state.x.iter().map(|x| self.surroundings(system, x)).collect();
-        mooring.reading(&around)
+        self.lines[i].reading(&self.beds(system, i))
+    }
+
+    /// The bed near each node of line number `i`.
+    fn beds(&self, system: &System<D>, i: usize) -> Vec<Option<BedPlane<D>>> {
+        let bed = |x: &Vector<D>| self.bed_near(system, x).map(|(bed, _)| bed);
+        self.lines[i].line.state.x.iter().map(bed).collect()
     }
 
     /// Whether there are no lines.
@@ -138,8 +144,7 @@ impl<const D: usize> Moorings<D> {
 
     /// Nodes of line number `i` that lie on fixed solids, in order.
     pub(crate) fn lying_nodes(&self, system: &System<D>, i: usize) -> Vec<usize> {
-        let around: Vec<_> = self.lines[i].line.state.x.iter().map(|x| self.surroundings(system, x)).collect();
-        self.lines[i].lying_nodes(&around).collect()
+        self.lines[i].lying_nodes(&self.beds(system, i)).collect()
     }
 
     /// Whether line number `i` acts.
@@ -163,14 +168,13 @@ impl<const D: usize> Moorings<D> {
         &self.on_water
     }
 
-    /// The boxes (m) in which the lines read the water in a step from time `t` (s) on. `None` if a line begins in this step,
-    /// because that line may read water anywhere.
-    #[cfg(feature = "gpu")]
-    pub(crate) fn water_ranges(&self, t: f64, reach: f64) -> Option<Vec<Bounds<D>>> {
-        let begins = |mooring: &Mooring<D>| !mooring.line.state.acts && mooring.lifetime().contains(t);
-        let around = |x: &Vector<D>| Bounds { min: *x, max: *x }.grown(reach);
-        let nodes = self.lines.iter().flat_map(|mooring| &mooring.line.state.x).map(around);
-        (!self.lines.iter().any(begins)).then(|| nodes.collect())
+    /// The boxes (m) in which the lines read the water in a step from time `t` (s) on.
+    pub(super) fn water_ranges(&self, system: &System<D>, t: f64) -> Vec<Bounds<D>> {
+        let of_line = |mooring: &Mooring<D>| match !mooring.line.state.acts && mooring.lifetime().contains(t) {
+            true => vec![range_around(&mooring.line)],
+            false => reading_ranges(system, &mooring.line).collect(),
+        };
+        self.lines.iter().flat_map(of_line).collect()
     }
 
     /// Time (s) from `t` (s) to the next begin or end of a line; infinite if there is none.
@@ -263,22 +267,27 @@ impl<const D: usize> Moorings<D> {
         rates.into_iter().fold(0.0, f64::max).sqrt().recip()
     }
 
-    /// What is around the world position `x` (m).
-    pub(crate) fn surroundings(&self, system: &System<D>, x: &Vector<D>) -> NodeSurroundings<D> {
-        let (at, reach) = (system.wrapped(x), system.model().support_radius());
-        let solids = system.solids();
+    /// The fixed solid near the world position `x` (m), and the distance (m) from it.
+    fn bed_near(&self, system: &System<D>, x: &Vector<D>) -> Option<(BedPlane<D>, f64)> {
+        let (at, solids) = (system.wrapped(x), system.solids());
         let distance = |(i, bounds): &(usize, Bounds<D>)| {
             let solid = &solids[*i];
             let there = bounds.contains(&at) && !solid.boundary.is_empty();
             there.then(|| (*i, solid.distance(&at)))
         };
         let nearest = self.fixed.iter().filter_map(distance).min_by(|a, b| a.1.total_cmp(&b.1));
-        let bed = nearest.filter(|(_, distance)| *distance < self.bed_reach).map(|(i, distance)| {
+        nearest.filter(|(_, distance)| *distance < self.bed_reach).map(|(i, distance)| {
             let (solid, step) = (&solids[i], 1e-3 * system.model().dp);
             let pose = &solid.kinematics.pose;
             let normal = pose.rotation * solid.spec.shape.outward_normal(&pose.local(&at), step);
             (BedPlane { point: x - normal * distance, normal }, distance)
-        });
+        })
+    }
+
+    /// What is around the world position `x` (m).
+    pub(crate) fn surroundings(&self, system: &System<D>, x: &Vector<D>) -> NodeSurroundings<D> {
+        let (at, reach) = (system.wrapped(x), system.model().support_radius());
+        let bed = self.bed_near(system, x);
         let (mass, fluid) = (system.particle_mass(), system.fluid());
         let (mut weight, mut flow) = (0.0, Vector::zeros());
         system.visit_fluid_near(&at, &mut |b, _, w| {
@@ -307,6 +316,16 @@ impl<const D: usize> Moorings<D> {
     pub(super) fn restore(&mut self, states: Vec<LineState<D>>) {
         self.lines.iter_mut().zip(states).for_each(|(mooring, state)| mooring.line.state = state);
     }
+}
+
+/// The boxes (m) of the water around the nodes of `line`.
+fn reading_ranges<const D: usize>(system: &System<D>, line: &MooringLine<D>) -> impl Iterator<Item = Bounds<D>> {
+    line.state.x.iter().map(|x| system.reading_range(&system.wrapped(x)))
+}
+
+/// A box (m) that contains the shapes that `line` may have between its present ends, and all water around them.
+fn range_around<const D: usize>(line: &MooringLine<D>) -> Bounds<D> {
+    Bounds::around(&line.state.x).grown(2.0 * line.length())
 }
 
 /// Returns the share (–) of a kernel's weight behind a plane: ∫ (1 − s²)³ ds from `t` to 1 over the same integral from −1 to 1.

@@ -17,9 +17,10 @@ const COLUMNS_PER_PARTICLE: f64 = 4.0;
 /// The division of space into columns.
 #[derive(Clone, Debug)]
 pub(crate) struct Columns<const D: usize> {
+    /// Around the water.
+    pub(super) bounds: Bounds<D>,
     /// Around all places within reach of the water.
     around: Bounds<D>,
-    min: Vector<D>,
     inv_width: f64,
     /// Axis along which slabs follow one another.
     along: usize,
@@ -63,7 +64,6 @@ impl<const D: usize> Columns<D> {
         }
         Self {
             around: bounds.grown(reach),
-            min: bounds.min,
             inv_width: 1.0 / width,
             along,
             across,
@@ -72,6 +72,7 @@ impl<const D: usize> Columns<D> {
             ring: (reach / width).ceil().max(1.0) as usize,
             lowest: bounds.min[up] - reach,
             fine: u32::MAX as f64 / (size[up] + 2.0 * reach),
+            bounds,
         }
     }
 
@@ -111,7 +112,8 @@ impl<const D: usize> Columns<D> {
 
     /// The column that a place is in, or the nearest.
     pub(super) fn column_at(&self, x: &Vector<D>) -> usize {
-        let place = |axis: usize, count: usize| (((x[axis] - self.min[axis]) * self.inv_width) as usize).min(count - 1);
+        let place =
+            |axis: usize, count: usize| (((x[axis] - self.bounds.min[axis]) * self.inv_width) as usize).min(count - 1);
         let across = if D == 2 { 0 } else { place(self.across, self.count[1]) };
         place(self.along, self.count[0]) * self.count[1] + across
     }

@@ -60,10 +60,14 @@ pub struct NeighbourLists<const D: usize> {
     boundary_near_fluid: Vec<u32>,
     /// Positions of the water at the last build, m.
     positions_at_build: Vec<Vector<D>>,
+    /// Around all water at the last build.
+    bounds_at_build: Bounds<D>,
     /// The positions of water and boundary particles at the last build in grids, for queries at a point; made at the first query.
     grids: [OnceLock<CellGrid<D>>; 2],
     /// The water particles whose places are known, if a device or other ranks have told those of some alone.
     known: Option<Vec<u32>>,
+    /// The water particles that this rank advances and their positions at the last build in a grid; made when first asked for.
+    own_grid: OnceLock<(Vec<u32>, CellGrid<D>)>,
 }
 
 impl<const D: usize> NeighbourLists<D> {
@@ -80,8 +84,10 @@ impl<const D: usize> NeighbourLists<D> {
             pair_lists: pairs,
             boundary_near_fluid: Vec::new(),
             positions_at_build: Vec::new(),
+            bounds_at_build: Bounds::empty(),
             grids: Default::default(),
             known: None,
+            own_grid: OnceLock::new(),
         }
     }
 
@@ -192,6 +198,7 @@ impl<const D: usize> NeighbourLists<D> {
 
     fn build_sorted(&mut self, columns: &Columns<D>, (water, sorted): (&[Vector<D>], &Sorted), skin: &[Vector<D>]) {
         self.forget_known();
+        (self.bounds_at_build, self.own_grid) = (columns.bounds, OnceLock::new());
         let look = self.list_radius();
         let mut heights = columns.heights(water, sorted, look);
         if let Some(division) = self.division().filter(|division| division.is_apart) {
@@ -219,14 +226,30 @@ impl<const D: usize> NeighbourLists<D> {
         };
     }
 
-    /// Restricts queries at a point to `these` particles of the `water` (m), which this rank knows. The order of the results is
-    /// the same as in a query of all particles.
-    pub(crate) fn know(&mut self, these: Vec<u32>, water: &[Vector<D>]) {
-        let bounds = Bounds::around(self.own_indices().map(|i| &water[i as usize]));
-        let bounds = self.division().map_or(bounds, |division| division.union(&bounds));
-        let places: Vec<Vector<D>> = these.iter().map(|&i| water[i as usize]).collect();
-        let grid = CellGrid::of_part(&places, (bounds, water.len()), self.list_radius());
-        (self.grids, self.known) = ([OnceLock::from(grid), OnceLock::new()], Some(these));
+    /// Restricts queries at a point to `these` particles of water, in ascending order, which were at `places` (m) at the last build. The
+    /// order of the results is the same as in a query of all particles.
+    pub(crate) fn know(&mut self, these: Vec<u32>, places: &[Vector<D>]) {
+        let all = (self.bounds_at_build, self.positions_at_build.len());
+        let grid = CellGrid::of_part(places, all, self.list_radius());
+        (self.grids[0], self.known) = (OnceLock::from(grid), Some(these));
+    }
+
+    /// The water particles of this rank that may be within one of the `ranges` (m), in ascending order.
+    pub(crate) fn own_within(&self, ranges: &[Bounds<D>]) -> Vec<u32> {
+        let (own, grid) = self.own_grid.get_or_init(|| {
+            let own: Vec<u32> = self.own_indices().collect();
+            let places: Vec<_> = own.iter().map(|&i| self.positions_at_build[i as usize]).collect();
+            let grid = CellGrid::new(&places, self.list_radius());
+            (own, grid)
+        });
+        let mut these = Vec::new();
+        for range in ranges {
+            let range = range.grown(self.margin());
+            grid.visit_rows(&range, |row| these.extend(row.iter().map(|&k| own[k as usize])));
+        }
+        these.sort_unstable();
+        these.dedup();
+        these
     }
 
     /// Makes queries at a point use the positions `water` (m), for which the lists were built. This rank may lack some of the

@@ -71,6 +71,10 @@ impl EnergyBudgetProbe {
 }
 
 impl<const D: usize> Probe<D> for EnergyBudgetProbe {
+    fn read_start(&mut self, system: &System<D>) {
+        *self = Self::new(system);
+    }
+
     fn columns(&self) -> Vec<String> {
         let unit = if D == 2 { "J_per_m" } else { "J" };
         let entries = EnergyBudget::default().entries().map(|(name, _)| name);

@@ -64,7 +64,7 @@ pub(crate) trait ProbeDefinition: Sized {
     {
     }
 
-    /// Builds the probe.
+    /// Builds the probe. [`Probe::read_start`](super::Probe::read_start) is called next, when the water is known.
     ///
     /// # Errors
     /// `Scene` or `Usage` if the system lacks an object that the probe names.

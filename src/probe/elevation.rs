@@ -7,7 +7,12 @@ use super::{
     PointRowConfig, Probe, ProbeDefinition, ProbeLocation, ProbeRow, ProbeScope, column_at_place,
     mounting::MountedPoint,
 };
-use crate::{error::Result, math::NumberOrArray, simulation::Simulation, system::System};
+use crate::{
+    error::Result,
+    math::{Bounds, NumberOrArray},
+    simulation::Simulation,
+    system::System,
+};
 
 /// The surface that an elevation gauge measures if several surfaces lie above one another.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -137,7 +142,7 @@ impl ProbeDefinition for ElevationPlan {
     }
 
     fn build<const D: usize>(&self, system: &System<D>) -> Result<Box<dyn Probe<D>>> {
-        let gauge = |at: &[f64]| ElevationProbe::mounted(system, at, self.surface, self.on.as_deref());
+        let gauge = |at: &[f64]| ElevationProbe::unread(system, at, self.surface, self.on.as_deref());
         ProbeRow::at_places(&self.places, |at| Ok(Box::new(gauge(at)?)))
     }
 }
@@ -182,10 +187,13 @@ impl<const D: usize> ElevationProbe<D> {
     }
 
     fn mounted(system: &System<D>, at: &[f64], surface: GaugeSurface, on: Option<&str>) -> Result<Self> {
-        let at = MountedPoint::in_world(at, D - 1)?.on(system, on)?;
-        let mut gauge = Self { at, surface, start: f64::NAN };
-        gauge.start = gauge.surface_heights(system)[0] - gauge.height(system);
+        let mut gauge = Self::unread(system, at, surface, on)?;
+        gauge.read_start(system);
         Ok(gauge)
+    }
+
+    fn unread(system: &System<D>, at: &[f64], surface: GaugeSurface, on: Option<&str>) -> Result<Self> {
+        Ok(Self { at: MountedPoint::in_world(at, D - 1)?.on(system, on)?, surface, start: f64::NAN })
     }
 
     /// The height (m) of the gauge's point of the solid; 0 for a gauge of the world.
@@ -208,6 +216,14 @@ impl<const D: usize> ElevationProbe<D> {
 }
 
 impl<const D: usize> Probe<D> for ElevationProbe<D> {
+    fn water_ranges(&self, system: &System<D>) -> Option<Vec<Bounds<D>>> {
+        Some(vec![system.surface_range(&self.at.position(system))])
+    }
+
+    fn read_start(&mut self, system: &System<D>) {
+        self.start = self.surface_heights(system)[0] - self.height(system);
+    }
+
     fn columns(&self) -> Vec<String> {
         let below = if self.surface == GaugeSurface::All { LOWER_SURFACES } else { 0 };
         let below = (1..=below).map(|i| format!("below_{i}_m"));

@@ -72,6 +72,10 @@ impl EnergyProbe {
 }
 
 impl<const D: usize> Probe<D> for EnergyProbe {
+    fn read_start(&mut self, system: &System<D>) {
+        *self = Self::new(system);
+    }
+
     fn columns(&self) -> Vec<String> {
         let unit = if D == 2 { "J_per_m" } else { "J" };
         ["water_kinetic", "water_potential", "water_compression", "bodies_kinetic", "bodies_potential", "total"]

@@ -81,7 +81,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     error::{Error, ErrorKind, Result},
-    math::Vector,
+    math::{Bounds, Vector},
     simulation::{Dimension, Simulation, find_by_name},
     solid::Dim,
     system::System,
@@ -105,6 +105,18 @@ pub trait Probe<const D: usize>: Send {
     /// that are read.
     fn reads(&self) -> ProbeReads {
         ProbeReads::Water
+    }
+
+    /// Returns the boxes (m) in which a probe of the water reads it now, or `None` if it may read all water. Where several ranks have
+    /// the water, the run fetches only the water that is read.
+    fn water_ranges(&self, system: &System<D>) -> Option<Vec<Bounds<D>>> {
+        let _ = system;
+        None
+    }
+
+    /// Reads what later readings refer to, as the level at the start. The default implementation reads nothing.
+    fn read_start(&mut self, system: &System<D>) {
+        let _ = system;
     }
 
     /// Returns the number of cumulative columns, which are the last columns. The program takes no time mean of them.
@@ -283,6 +295,13 @@ macro_rules! probe_kinds {
             /// # Errors
             /// `Scene` or `Usage` if the system lacks an object that the probe names.
             pub fn build<const D: usize>(&self, system: &System<D>) -> Result<Box<dyn Probe<D>>> {
+                let mut probe = self.build_unread(system)?;
+                probe.read_start(system);
+                Ok(probe)
+            }
+
+            /// As [`ProbeKind::build`]; the probe has not read the water.
+            pub(crate) fn build_unread<const D: usize>(&self, system: &System<D>) -> Result<Box<dyn Probe<D>>> {
                 match self { $($(Self::$variant(plan) => plan.build(system),)?)* }
             }
         }

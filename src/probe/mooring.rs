@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Probe, ProbeDefinition, ProbeScope};
+use super::{Probe, ProbeDefinition, ProbeReads, ProbeScope};
 use crate::{
     error::Result,
     simulation::{Simulation, find_by_name},
@@ -63,6 +63,10 @@ impl MooringProbe {
 }
 
 impl<const D: usize> Probe<D> for MooringProbe {
+    fn reads(&self) -> ProbeReads {
+        ProbeReads::Solids
+    }
+
     fn columns(&self) -> Vec<String> {
         let unit = if D == 2 { "N_per_m" } else { "N" };
         let tensions = ["fairlead", "anchor"].into_iter().chain(ALONG.map(|(name, _)| name)).chain(["largest"]);

@@ -6,7 +6,12 @@ use serde::{Deserialize, Serialize};
 use super::{
     PointsConfig, Probe, ProbeDefinition, ProbeLocation, ProbeRow, ProbeScope, interpolate, mounting::MountedPoint,
 };
-use crate::{error::Result, math::Vector, simulation::Simulation, system::System};
+use crate::{
+    error::Result,
+    math::{Bounds, Vector},
+    simulation::Simulation,
+    system::System,
+};
 
 /// Pressure at points.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -73,6 +78,10 @@ impl<const D: usize> PressureProbe<D> {
 }
 
 impl<const D: usize> Probe<D> for PressureProbe<D> {
+    fn water_ranges(&self, system: &System<D>) -> Option<Vec<Bounds<D>>> {
+        Some(vec![system.reading_range(&self.at.position(system))])
+    }
+
     fn columns(&self) -> Vec<String> {
         vec!["p_Pa".into()]
     }

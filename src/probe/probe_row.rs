@@ -1,7 +1,12 @@
 //! Several probes of one kind as one probe. The names of its columns contain the places.
 
 use super::Probe;
-use crate::{error::Result, math::format::decimals, simulation::Simulation};
+use crate::{
+    error::Result,
+    math::{Bounds, format::decimals},
+    simulation::Simulation,
+    system::System,
+};
 
 /// A row of probes. The column `eta_m` of the probe at x = 1.5 m is called `eta_at_1.5_m`.
 pub struct ProbeRow<const D: usize> {
@@ -46,6 +51,15 @@ impl<const D: usize> Probe<D> for ProbeRow<D> {
     fn columns(&self) -> Vec<String> {
         let each = self.members.iter();
         each.flat_map(|(at, probe)| probe.columns().into_iter().map(|column| column_at_place(&column, at))).collect()
+    }
+
+    fn water_ranges(&self, system: &System<D>) -> Option<Vec<Bounds<D>>> {
+        let each = self.members.iter().map(|(_, probe)| probe.water_ranges(system));
+        each.collect::<Option<Vec<_>>>().map(|ranges| ranges.concat())
+    }
+
+    fn read_start(&mut self, system: &System<D>) {
+        self.members.iter_mut().for_each(|(_, probe)| probe.read_start(system));
     }
 
     fn sample(&self, sim: &Simulation<D>) -> Vec<f64> {

@@ -6,7 +6,12 @@ use super::{
     PointsConfig, Probe, ProbeDefinition, ProbeLocation, ProbeRow, ProbeScope, axes, interpolate,
     mounting::MountedPoint,
 };
-use crate::{error::Result, math::Vector, simulation::Simulation, system::System};
+use crate::{
+    error::Result,
+    math::{Bounds, Vector},
+    simulation::Simulation,
+    system::System,
+};
 
 /// Velocity of the water at points.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -74,6 +79,10 @@ impl<const D: usize> VelocityProbe<D> {
 }
 
 impl<const D: usize> Probe<D> for VelocityProbe<D> {
+    fn water_ranges(&self, system: &System<D>) -> Option<Vec<Bounds<D>>> {
+        Some(vec![system.reading_range(&self.at.position(system))])
+    }
+
     fn columns(&self) -> Vec<String> {
         axes::<D>().iter().map(|a| format!("v{a}_mps")).collect()
     }

@@ -12,6 +12,7 @@ use crate::error::ErrorCode;
 use crate::probe::ProbeReads;
 use crate::{
     error::{Error, ErrorKind, Result},
+    math::Bounds,
     ranks::Ranks,
     scene::Scene,
     simulation::Simulation,
@@ -96,16 +97,30 @@ pub(super) fn step<const D: usize>(
     }
     leader.order(Order::Step, sim.time())?;
     sim.step_with_own_water(until)?;
-    fetch(sim, leader, outputs.read_water(Some(sim.time())))
+    let ranges = outputs.water_ranges(sim.system(), sim.time());
+    fetch(sim, leader, ranges)
 }
 
-/// Fetches the state from a device, if it is on one. If `from_ranks`, also fetches the water of other ranks, if it is on them.
-pub(super) fn fetch<const D: usize>(sim: &mut Simulation<D>, leader: &Leader, from_ranks: bool) -> Result<()> {
+/// Fetches the state from a device, if it is on one. Also fetches the water of other ranks, if it is on them: that within the boxes
+/// `ranges` (m), or all without a list of boxes.
+pub(super) fn fetch<const D: usize>(
+    sim: &mut Simulation<D>,
+    leader: &Leader,
+    ranges: Option<Vec<Bounds<D>>>,
+) -> Result<()> {
     #[cfg(feature = "gpu")]
     sim.fetch_from_device()?;
-    if from_ranks && !sim.system().status.has_all_water {
-        leader.order(Order::Gather, sim.time())?;
-        sim.gather_water(false);
+    match ranges {
+        _ if sim.system().status.has_all_water => {}
+        Some(ranges) if ranges.is_empty() => {}
+        Some(ranges) => {
+            leader.order(Order::GatherNear, sim.time())?;
+            sim.know_water_within(&ranges);
+        }
+        None => {
+            leader.order(Order::Gather, sim.time())?;
+            sim.gather_water(false);
+        }
     }
     Ok(())
 }

@@ -12,7 +12,6 @@ use crate::{
     scene::{BuiltScene, Scene},
     simulation::{Dimension, Setup, Simulation},
     solid::Dim,
-    system::own_water::WaterAtSetup,
 };
 
 /// An order of the first rank to the others.
@@ -22,6 +21,8 @@ pub(super) enum Order {
     Step,
     /// Complete the water on the first rank.
     Gather,
+    /// Exchange the water within boxes that the first rank names.
+    GatherNear,
     /// Send the first rank the data of the water for a frame, also after a fault that occurred on all ranks.
     Frame,
     /// Send the first rank the data of the water for a checkpoint with the first `rollbacks` rollbacks.
@@ -53,6 +54,7 @@ impl Message {
             Some(Order::Gather) => (4, 0, 0.0),
             Some(Order::Save { rollbacks }) => (5, rollbacks as u32, 0.0),
             Some(Order::Frame) => (6, 0, 0.0),
+            Some(Order::GatherNear) => (7, 0, 0.0),
         };
         let ([t0, t1], [v0, v1]) = (words_of(self.time), words_of(value));
         [kind, control, v0, v1, t0, t1, u32::from(self.failed)]
@@ -66,6 +68,7 @@ impl Message {
             4 => Some(Order::Gather),
             5 => Some(Order::Save { rollbacks: control as usize }),
             6 => Some(Order::Frame),
+            7 => Some(Order::GatherNear),
             _ => None,
         };
         Self { order, failed: failed != 0, time: from_words(t0, t1) }
@@ -147,11 +150,6 @@ pub(super) fn water_digest<const D: usize>(setup: &Setup<D>) -> String {
     format!("{} solids, {hash:x}", setup.solids.len())
 }
 
-/// The water that is gathered for the set-up of a run of this plan: probes may read all water from the start.
-pub(super) fn water_at_setup(plan: &Plan) -> WaterAtSetup {
-    if plan.probes.is_empty() { WaterAtSetup::Places } else { WaterAtSetup::First }
-}
-
 /// Follows the first of the `ranks` through a run, from the start of `scene` or from `checkpoint`, until that rank ends the run.
 ///
 /// # Errors
@@ -196,9 +194,10 @@ where
     Dim<D>: Dimension<D>,
 {
     fn new(setup: Setup<D>, ranks: &Ranks, plan: Plan, checkpoint: Option<Checkpoint>) -> Result<Self> {
-        let mut sim = Simulation::set_up(setup, ranks, water_at_setup(&plan))?;
+        let mut sim = Simulation::set_up(setup, ranks)?;
         // This rank does not read the probes, but it has to record the data that they read.
         probe_factory::probes_from_plan(&plan, &mut sim)?;
+        sim.gather_for_checks();
         let mut changes = Vec::new();
         if let Some(checkpoint) = checkpoint {
             sim.restore(&checkpoint.state)?;
@@ -222,6 +221,7 @@ where
                 self.changes.extend(self.controls.set(&mut self.sim, control, value));
             }
             Order::Gather => self.sim.gather_water(false),
+            Order::GatherNear => self.sim.know_water_within(&[]),
             Order::Frame => {
                 if let Some(FramesPlan { fields, crop, .. }) = &self.plan.frames {
                     let written = frame::write_water(&mut io::empty(), self.sim.system(), fields, crop.as_ref());

@@ -8,13 +8,18 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use super::orders::{Leader, Order};
+use super::{
+    orders::{Leader, Order},
+    probe_factory,
+};
 use crate::{
     error::{Error, ErrorCode, ErrorKind, Result},
+    math::Bounds,
     output::{CsvTable, FrameWriter, IntervalMean, OutputPositions, manifest::FrameTotals},
-    probe::{self, Probe, ProbeReads},
+    probe::{self, Probe},
     scene::Plan,
     simulation::Simulation,
+    system::System,
 };
 
 /// The multiples of an interval; an interval of zero means every step.
@@ -199,9 +204,9 @@ impl<const D: usize> Outputs<D> {
         self.due_probes(t).map(|own| own.probe.reads()).chain(rest.map(|_| ProbeReads::Water)).collect()
     }
 
-    /// Returns whether a probe that is due at time `t` (s) reads the water; without a time, whether any probe does.
-    pub(crate) fn read_water(&self, t: Option<f64>) -> bool {
-        self.due_probes(t.unwrap_or(f64::INFINITY)).any(|own| own.probe.reads() == ProbeReads::Water)
+    /// Returns the boxes (m) in which the probes that are due at time `t` (s) read the water, or `None` if they may read all water.
+    pub(crate) fn water_ranges(&self, system: &System<D>, t: f64) -> Option<Vec<Bounds<D>>> {
+        probe_factory::water_ranges(self.due_probes(t).map(|own| &*own.probe), system)
     }
 
     /// Returns the probes that are due at time `t` (s).

@@ -3,14 +3,16 @@
 use crate::{
     analysis::ReferenceCheck,
     error::{Error, ErrorCode, Result, nearest_name},
+    math::Bounds,
     plan::{CheckPlan, Plan, Reference},
-    probe::{Probe, ProbePlan},
+    probe::{Probe, ProbePlan, ProbeReads},
     simulation::{Dimension, Simulation},
     solid::Dim,
     system::System,
 };
 
-/// Builds the probes of `plan` at the start of the simulation and enables the records that they read.
+/// Builds the probes of `plan` at the start of the simulation and enables the records that they read. Where ranks share the water, all
+/// ranks must call this; the first has the water then that these probes read.
 ///
 /// # Errors
 /// `Scene` or `Usage` if a probe names an unknown solid, or a place with the wrong number of coordinates.
@@ -19,15 +21,30 @@ where
     Dim<D>: Dimension<D>,
 {
     plan.probes.iter().for_each(|probe| probe.kind.enable_records(sim));
-    let system = sim.system();
-    plan.probes.iter().map(|probe| build_probe(probe, system)).collect()
+    let mut probes: Vec<_> = plan.probes.iter().map(|probe| build_probe(probe, sim.system())).collect::<Result<_>>()?;
+    match water_ranges(probes.iter().map(|probe| &**probe), sim.system()) {
+        Some(ranges) => sim.know_water_within(&ranges),
+        None => sim.gather_water(false),
+    }
+    probes.iter_mut().for_each(|probe| probe.read_start(sim.system()));
+    Ok(probes)
+}
+
+/// The boxes (m) in which those of `probes` that read the water read it now, or `None` if they may read all water.
+pub(crate) fn water_ranges<'a, const D: usize>(
+    probes: impl Iterator<Item = &'a dyn Probe<D>>,
+    system: &System<D>,
+) -> Option<Vec<Bounds<D>>> {
+    let of_water = probes.filter(|probe| probe.reads() == ProbeReads::Water);
+    let ranges: Option<Vec<_>> = of_water.map(|probe| probe.water_ranges(system)).collect();
+    ranges.map(|ranges| ranges.concat())
 }
 
 fn build_probe<const D: usize>(plan: &ProbePlan, system: &System<D>) -> Result<Box<dyn Probe<D>>> {
     if plan.name.is_empty() || plan.name.starts_with('.') || plan.name.contains(['/', '\\', ':', '\0']) {
         return Err(Error::scene(format!("{:?} cannot name a file, so no probe either", plan.name)));
     }
-    plan.kind.build(system)
+    plan.kind.build_unread(system)
 }
 
 /// The error for a `series` of the check or the statistic at `key` that is none of `known`.

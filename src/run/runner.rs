@@ -69,9 +69,9 @@ where
         let digest = |built: &BuiltScene<D>| orders::water_digest(&built.setup);
         let BuiltScene { setup, plan, initial_water, file_notes } = ranks.agree(built, digest)?;
         let leader = Leader::new(ranks.clone());
-        let mut sim =
-            Simulation::set_up(setup, ranks, orders::water_at_setup(&plan)).map_err(|e| scene.with_location(e))?;
+        let mut sim = Simulation::set_up(setup, ranks).map_err(|e| scene.with_location(e))?;
         let probes = probe_factory::probes_from_plan(&plan, &mut sim)?;
+        sim.gather_for_checks();
         let checks = probe_factory::checks_from_plan(&plan, &probes).map_err(|e| scene.with_location(e))?;
         let columns: Vec<usize> = probes.iter().map(|p| p.columns().len()).collect();
         let preflight = preflight::preflight(&sim, &plan, initial_water, &columns);
@@ -174,6 +174,8 @@ impl<const D: usize> Runner<D> {
     /// Steps and writes the outputs, and returns the resulting status.
     fn advance(&mut self, watch: &mut dyn RunObserver) -> Result<RunStatus> {
         if !self.resumed {
+            let ranges = self.outputs.water_ranges(self.sim.system(), self.sim.time());
+            device::fetch(&mut self.sim, &self.leader, ranges)?;
             self.outputs.write_due(&self.sim, &self.leader)?;
         }
         let until = self.manifest.until_s;
@@ -212,7 +214,8 @@ impl<const D: usize> Runner<D> {
             self.write_removed()?;
             return Ok(RunStatus::Interrupted);
         }
-        device::fetch(&mut self.sim, &self.leader, self.outputs.read_water(None))?;
+        let ranges = self.outputs.water_ranges(self.sim.system(), f64::INFINITY);
+        device::fetch(&mut self.sim, &self.leader, ranges)?;
         self.outputs.finish(&self.sim, &self.leader)?;
         self.write_removed()?;
         Ok(RunStatus::Finished)
@@ -278,7 +281,7 @@ impl<const D: usize> Runner<D> {
 
     /// Writes the checkpoint after all outputs are on the disk.
     fn save_checkpoint(&mut self) -> Result<()> {
-        device::fetch(&mut self.sim, &self.leader, false)?;
+        device::fetch(&mut self.sim, &self.leader, Some(Vec::new()))?;
         self.outputs.sync()?;
         self.write_checkpoint(self.sim.rollbacks().len(), self.outputs.positions())
     }

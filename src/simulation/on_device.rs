@@ -11,7 +11,7 @@ use crate::{
     math::Bounds,
     model::TimeScheme,
     solid::{Role, Solid},
-    system::{System, device_state},
+    system::{System, device_state, has_water_beside},
 };
 
 /// The water of a simulation on a device.
@@ -200,7 +200,7 @@ fn body_step<const D: usize>(
     let Simulation { device: Some(own), system, bodies, clock, stepper, .. } = sim else { return Ok(None) };
     (own.host_is_current, own.loads_are_current) = (false, true);
     let start: Vec<_> = system.solids.iter().map(|solid| solid.kinematics).collect();
-    let gauges = device_state::gauge_ranges(system, clock.time);
+    let gauges = system.absorption_ranges(clock.time);
     let (over, SecondHalf { done, loads, near }) = loop {
         let first = match own.device.first_half(request, &gauges)? {
             Ok(first) => first,
@@ -215,7 +215,7 @@ fn body_step<const D: usize>(
             drift_half_step(system, over);
         }
         own.watched_solids.iter().for_each(|solid| device_state::place_solid(system, *solid));
-        if let Some(second) = own.device.second_half(system, request.end, &ranges_at_end(system, bodies, over))? {
+        if let Some(second) = own.device.second_half(system, request.end, &bodies.water_ranges(system, over))? {
             break (over, second);
         }
         system.solids.iter_mut().zip(&start).for_each(|(solid, start)| solid.kinematics = *start);
@@ -227,7 +227,7 @@ fn body_step<const D: usize>(
     }
     if bodies.read_water() {
         device_state::take_near(system, near);
-        if reads_all_water(system, bodies, over.t) {
+        if reads_all_water(system, bodies) {
             own.device.fetch(system, stepper)?;
         }
     }
@@ -237,23 +237,10 @@ fn body_step<const D: usize>(
     Ok(Some(done))
 }
 
-/// The boxes (m) in which light bodies and mooring lines read the water at the end of a step, before they move.
-fn ranges_at_end<const D: usize>(system: &System<D>, bodies: &Bodies<D>, over: Interval) -> Vec<Bounds<D>> {
-    let of_body = |added_mass: &AcousticAddedMass<D>| {
-        let solid = added_mass.solid();
-        device_state::range_beside(system, solid, system.solids[solid].kinematics.velocity.norm() * over.dt)
-    };
-    let lines = bodies.moorings.water_ranges(over.t, system.model().support_radius());
-    bodies.added_masses().iter().map(of_body).chain(lines.into_iter().flatten()).collect()
-}
-
-/// Whether bodies or lines read water outside the boxes of [`ranges_at_end`]: a light body that has left the water and returns
-/// its pending impulse to it, or a line that begins.
-fn reads_all_water<const D: usize>(system: &System<D>, bodies: &Bodies<D>, t: f64) -> bool {
-    let gives_far = |added_mass: &AcousticAddedMass<D>| {
-        added_mass.was_wet() && !device_state::has_water_beside(system, added_mass.solid())
-    };
-    bodies.moorings.water_ranges(t, 0.0).is_none() || bodies.added_masses().iter().any(gives_far)
+/// Whether bodies read water outside the boxes of [`Bodies::water_ranges`]: a light body that has left the water returns its pending
+/// impulse to it.
+fn reads_all_water<const D: usize>(system: &System<D>, bodies: &Bodies<D>) -> bool {
+    bodies.added_masses().iter().any(|own| own.was_wet() && !has_water_beside(system, own.solid()))
 }
 
 /// Removes the water that has left the domain on the host, and loads the remaining water onto the device.

@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 
 use super::{
     ParticleLimits, System,
-    impulses::{MomentumTransfer, bounds_beside, water_beside},
+    impulses::MomentumTransfer,
     thin_layers::{self, WaterAround},
 };
 use crate::{
-    math::{Bounds, Matrix, Vector},
+    math::{Matrix, Vector},
     model::Slip,
     solid::{Load, Role, Solid},
 };
@@ -155,30 +155,6 @@ pub(crate) fn thin_particles<const D: usize>(system: &System<D>) -> Vec<u32> {
 pub(crate) fn place_solid<const D: usize>(system: &mut System<D>, solid: usize) {
     let System { boundary, solids, fluid, .. } = system;
     boundary.place(solid, &solids[solid], &fluid.images);
-}
-
-/// The boxes (m) in which absorbing paddles read the surface at time `t` (s), the start of a step.
-pub(crate) fn gauge_ranges<const D: usize>(system: &System<D>, t: f64) -> Vec<Bounds<D>> {
-    let reach = system.model.support_radius().max(2.0 * system.model.h);
-    let range = |solid: &Solid<D>| match &solid.spec.role {
-        Role::Driven(motion) => motion.gauge_position(&solid.absorption, t).map(|gauge| {
-            let mut range = Bounds { min: gauge, max: gauge }.grown(reach);
-            (range.min[D - 1], range.max[D - 1]) = (f64::NEG_INFINITY, f64::INFINITY);
-            range
-        }),
-        _ => None,
-    };
-    system.solids.iter().filter_map(range).collect()
-}
-
-/// The box (m) in which solid number `solid` gives impulses to the water, after the water has moved by `way` (m).
-pub(crate) fn range_beside<const D: usize>(system: &System<D>, solid: usize, way: f64) -> Bounds<D> {
-    bounds_beside(system, solid, system.model.support_radius() + way)
-}
-
-/// Whether there is water within the support of solid number `solid`.
-pub(crate) fn has_water_beside<const D: usize>(system: &System<D>, solid: usize) -> bool {
-    !water_beside(system, solid, system.model.support_radius()).is_empty()
 }
 
 /// Takes water particles from a device, which are all that are known until [`take_from_device`].

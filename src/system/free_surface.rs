@@ -3,8 +3,12 @@
 
 use rayon::prelude::*;
 
-use super::System;
-use crate::{math::Vector, particles::PARTICLES_PER_TASK, solid::Role};
+use super::{System, own_water};
+use crate::{
+    math::{Bounds, Vector},
+    particles::PARTICLES_PER_TASK,
+    solid::{Role, Solid},
+};
 
 impl<const D: usize> System<D> {
     /// Heights (m) of the water surfaces at the horizontal position `at` (m; its last coordinate does not count), from the
@@ -32,6 +36,7 @@ impl<const D: usize> System<D> {
 
     /// Updates the absorbing paddles for the surface in front of them at time `t` (s), the start of a step; the lists must hold.
     pub(crate) fn update_absorption(&mut self, t: f64) {
+        own_water::know_within(self, &self.absorption_ranges(t));
         for i in 0..self.solids.len() {
             let solid = &self.solids[i];
             let Role::Driven(motion) = &solid.spec.role else { continue };
@@ -39,6 +44,22 @@ impl<const D: usize> System<D> {
             let level = self.surface_heights(&gauge).next();
             self.solids[i].absorption = motion.update_absorption(&solid.absorption, t, level);
         }
+    }
+
+    /// The boxes (m) in which absorbing paddles read the surface at time `t` (s), the start of a step.
+    pub(crate) fn absorption_ranges(&self, t: f64) -> Vec<Bounds<D>> {
+        let range = |solid: &Solid<D>| match &solid.spec.role {
+            Role::Driven(motion) => Some(self.surface_range(&motion.gauge_position(&solid.absorption, t)?)),
+            _ => None,
+        };
+        self.solids.iter().filter_map(range).collect()
+    }
+
+    /// The box (m) in which [`System::surface_heights`] reads the water.
+    pub(crate) fn surface_range(&self, at: &Vector<D>) -> Bounds<D> {
+        let mut range = Bounds { min: *at, max: *at }.grown(self.model.support_radius().max(2.0 * self.model.h));
+        (range.min[D - 1], range.max[D - 1]) = (f64::NEG_INFINITY, f64::INFINITY);
+        range
     }
 }
 

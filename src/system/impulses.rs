@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{System, periodic::Images, reflected};
+use super::{System, own_water, periodic::Images, reflected};
 use crate::math::{Bounds, Vector};
 
 /// A momentum that some water particles and their images have received.
@@ -37,16 +37,24 @@ pub(crate) fn return_impulse<const D: usize>(
         if !distance.is_finite() {
             return None;
         }
+        let range = bounds_beside(system, solid, distance);
+        own_water::know_within(system, &[range]);
     }
 }
 
 /// Returns the box around `solid`, grown by `distance` (m).
-pub(super) fn bounds_beside<const D: usize>(system: &System<D>, solid: usize, distance: f64) -> Bounds<D> {
+pub(crate) fn bounds_beside<const D: usize>(system: &System<D>, solid: usize, distance: f64) -> Bounds<D> {
     Bounds::around(&system.boundary.particles.r[system.home_boundary(solid)]).grown(distance)
 }
 
+/// Whether there is water within the support of solid number `solid`.
+#[cfg(feature = "gpu")]
+pub(crate) fn has_water_beside<const D: usize>(system: &System<D>, solid: usize) -> bool {
+    !water_beside(system, solid, system.model.support_radius()).is_empty()
+}
+
 /// Returns the water particles in the box around `solid`, grown by `distance` (m).
-pub(super) fn water_beside<const D: usize>(system: &System<D>, solid: usize, distance: f64) -> Vec<usize> {
+fn water_beside<const D: usize>(system: &System<D>, solid: usize, distance: f64) -> Vec<usize> {
     let around = bounds_beside(system, solid, distance);
     let mut particles = system.neighbours.fluid_within(&around);
     let count = system.particle_count();

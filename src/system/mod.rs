@@ -35,7 +35,9 @@ pub use driving::{Current, Driving, TowedFrame};
 pub(crate) use driving::{driven_speeds, set_gravity_at, update_current};
 pub(crate) use fluid::{Fluid, permute};
 use gap_pressure::GapPressure;
-pub(crate) use impulses::{MomentumTransfer, return_impulse, spread_impulses};
+#[cfg(feature = "gpu")]
+pub(crate) use impulses::has_water_beside;
+pub(crate) use impulses::{MomentumTransfer, bounds_beside, return_impulse, spread_impulses};
 pub use open_boundary::{FaceExchange, OpenBoundary};
 pub(crate) use open_boundary::{
     buffer_length, check as check_open_boundary, face_reached, prescribed_discharge, set_buffer_time, update_buffer,

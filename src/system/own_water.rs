@@ -7,32 +7,16 @@ use rayon::prelude::*;
 
 use super::{ExitPath, Fluid, RemovedParticle, StepCheck, System};
 use crate::{
-    math::{Matrix, Vector},
+    math::{Bounds, Matrix, Vector},
     model::{Slip, TimeScheme},
     neighbours::{Columns, Division, IndexRanges, NeighbourLists},
     particles::{PARTICLES_PER_TASK, Particles, zeros},
     ranks::{self, Ranks},
-    solid::Role,
 };
 
-/// What comes together at set-up where each rank has its own water.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum WaterAtSetup {
-    /// All, on all ranks.
-    All,
-    /// All, on the first rank.
-    First,
-    /// Places and velocities, on the first rank, as the checks of a run before its first step read them.
-    Places,
-}
-
-/// Whether no part of a step of `system` at time `t` (s) reads water of other ranks, but through pairs.
-pub(crate) fn may_be_divided<const D: usize>(system: &System<D>, t: f64) -> bool {
+/// Whether a step of `system` reads water of other ranks only through pairs and within ranges that all ranks know.
+pub(crate) fn may_be_divided<const D: usize>(system: &System<D>) -> bool {
     let (model, fluid) = (&system.model, &system.fluid);
-    let is_absorbing = |role: &Role<D>, solid: usize| match role {
-        Role::Driven(motion) => motion.gauge_position(&system.solids[solid].absorption, t).is_some(),
-        _ => false,
-    };
     system.neighbours.division().is_some_and(|division| division.ranks.count() > 1)
         && model.scheme == TimeScheme::Symplectic
         && model.viscosity.stress().is_none()
@@ -42,7 +26,6 @@ pub(crate) fn may_be_divided<const D: usize>(system: &System<D>, t: f64) -> bool
         && system.fluid_domain.open_boundaries.is_empty()
         && system.driving.driving.current.is_none()
         && system.driving.driving.towed.is_none()
-        && !system.solids.iter().enumerate().any(|(i, solid)| is_absorbing(&solid.spec.role, i))
 }
 
 /// The ranks that share the pairs of `system`; a single one if each has all pairs.
@@ -73,7 +56,7 @@ pub(crate) fn divide<const D: usize>(system: &mut System<D>, by_owner: bool) {
 
 /// Leaves each rank its own water before the first lists are made, where it may advance that alone. All ranks have all water until then.
 pub(super) fn divide_at_start<const D: usize>(system: &mut System<D>) {
-    if !may_be_divided(system, 0.0) || !system.constraints.moorings.is_empty() {
+    if !may_be_divided(system) {
         return;
     }
     divide(system, true);
@@ -104,6 +87,7 @@ pub(crate) fn gather<const D: usize>(system: &mut System<D>, everyone: bool) {
     }
     let Fluid { particles, gradient_correction, .. } = &mut system.fluid;
     system.neighbours.share_water(particles, gradient_correction.as_deref_mut().filter(|_| everyone), everyone);
+    system.neighbours.forget_known();
     set_apart(system, !everyone);
     system.status.has_all_water = everyone || is_first;
 }
@@ -464,7 +448,44 @@ pub(super) fn know_adjacent_slabs<const D: usize>(system: &mut System<D>) {
         }
     }
     known.sort_unstable();
-    neighbours.know(known, r);
+    let places: Vec<_> = known.iter().map(|&i| r[i as usize]).collect();
+    neighbours.know(known, &places);
+}
+
+/// The boxes (m) of the first rank.
+pub(crate) fn share_ranges<const D: usize>(system: &System<D>, own: &[Bounds<D>]) -> Vec<Bounds<D>> {
+    let numbers: Vec<f64> = own.iter().flat_map(|range| range.min.iter().chain(range.max.iter())).copied().collect();
+    let all = ranks(system).gather_bytes(bytemuck::cast_slice(&numbers));
+    let numbers: Vec<f64> = bytemuck::pod_collect_to_vec(&all[0]);
+    let range = |ends: &[f64]| Bounds {
+        min: Vector::from_column_slice(&ends[..D]),
+        max: Vector::from_column_slice(&ends[D..]),
+    };
+    numbers.chunks_exact(2 * D).map(range).collect()
+}
+
+/// Gives all ranks the present water of all within `ranges` (m), the same on all of them, where ranks lack the water of others. Until
+/// the next lists are made, queries at a point find this water alone.
+pub(crate) fn know_within<const D: usize>(system: &mut System<D>, ranges: &[Bounds<D>]) {
+    let System { neighbours, fluid: Fluid { particles, .. }, .. } = system;
+    let Some(division) = divided(neighbours).filter(|_| !ranges.is_empty()) else { return };
+    let is_within = |i: &u32| ranges.iter().any(|range| range.contains(&particles.r[*i as usize]));
+    let own: Vec<u32> = neighbours.own_within(ranges).into_iter().filter(is_within).collect();
+    let then = neighbours.positions_at_build();
+    let mut known: Vec<(u32, Vector<D>)> = own.iter().map(|&i| (i, then[i as usize])).collect();
+    let numbers = Particles::<D>::NUMBERS;
+    let give = |(water, _): &(&mut Particles<D>, &mut Vec<(u32, Vector<D>)>), i: usize, given: &mut Vec<f64>| {
+        water.give(i, given);
+        given.extend(then[i].iter());
+    };
+    let take = |(water, known): &mut (&mut Particles<D>, &mut Vec<(u32, Vector<D>)>), i: usize, given: &[f64]| {
+        water.take(i, given);
+        known.push((i as u32, Vector::from_column_slice(&given[numbers..])));
+    };
+    division.share_water(&IndexRanges::new(own), &mut (particles, &mut known), numbers + D, give, take);
+    known.sort_unstable_by_key(|(i, _)| *i);
+    let (these, places): (Vec<_>, Vec<_>) = known.into_iter().unzip();
+    neighbours.know(these, &places);
 }
 
 /// Arrays as long as those of `all`, of which only the places `these` are written, and no names.

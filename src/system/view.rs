@@ -308,6 +308,11 @@ impl<const D: usize> System<D> {
         });
     }
 
+    /// The box (m) of the water whose support holds `x` (m).
+    pub(crate) fn reading_range(&self, x: &Vector<D>) -> Bounds<D> {
+        Bounds { min: *x, max: *x }.grown(self.model.support_radius())
+    }
+
     /// Calls `visit` with index, place (m) and kernel value W (1/mᴰ) of each boundary particle whose support holds `x` (m).
     pub fn visit_boundary_near(&self, x: &Vector<D>, visit: &mut dyn FnMut(usize, &Vector<D>, f64)) {
         let at_rebuild = || match &self.boundary.poses_at_rebuild {

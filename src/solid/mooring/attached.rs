@@ -6,7 +6,7 @@
 //! the next step corrects.
 
 use super::{
-    forces::NodeSurroundings,
+    forces::BedPlane,
     line::{LineState, MooringLine},
     specification::MooringSpec,
 };
@@ -187,8 +187,8 @@ impl<const D: usize> Mooring<D> {
         swing(length).max(radiation.min(swing(length * self.line.segments() as f64)))
     }
 
-    /// Shape and tension; `around` are the surroundings of each node.
-    pub(crate) fn reading(&self, around: &[NodeSurroundings<D>]) -> MooringReading<D> {
+    /// Shape and tension; `beds` are what is below each node.
+    pub(crate) fn reading(&self, beds: &[Option<BedPlane<D>>]) -> MooringReading<D> {
         let (line, state) = (&self.line, &self.line.state);
         if !state.acts {
             return MooringReading::default();
@@ -199,17 +199,16 @@ impl<const D: usize> Mooring<D> {
             tensions: (0..line.segments()).map(|s| line.tension(s)).collect(),
             end_forces: [0, 1].map(|k| self.end_force(k)),
             // The sum of no numbers would be −0.
-            on_bed: self.lying_nodes(around).map(|i| line.share(i)).fold(0.0, |sum, length| sum + length),
+            on_bed: self.lying_nodes(beds).map(|i| line.share(i)).fold(0.0, |sum, length| sum + length),
             anchor_angle: anchor.try_normalize(f64::MIN_POSITIVE).map_or(0.0, |q| (-q[D - 1]).clamp(-1.0, 1.0).asin()),
             broken: state.broken.map(|segment| segment as usize),
         }
     }
 
-    /// The nodes that lie on fixed solids, in order; `around` are the surroundings of each node.
-    pub(crate) fn lying_nodes(&self, around: &[NodeSurroundings<D>]) -> impl Iterator<Item = usize> {
-        let lies =
-            |i: &usize| around[*i].bed.is_some_and(|bed| self.line.material.depth(&bed, &self.line.state.x[*i]) > 0.0);
-        (0..around.len()).filter(lies)
+    /// The nodes that lie on fixed solids, in order; `beds` are what is below each node.
+    pub(crate) fn lying_nodes(&self, beds: &[Option<BedPlane<D>>]) -> impl Iterator<Item = usize> {
+        let lies = |i: &usize| beds[*i].is_some_and(|bed| self.line.material.depth(&bed, &self.line.state.x[*i]) > 0.0);
+        (0..beds.len()).filter(lies)
     }
 
     /// The force (N) of the line on the solid or the ground at end `k`; at a mooring point, the pull of the last segment.

@@ -144,6 +144,109 @@ fn splash(dimension: usize, gradient: &str) -> String {
     )
 }
 
+/// A wave basin: a paddle that absorbs, a damping zone, a light body that is thrown out of the water, a moored float, a line that acts on
+/// the water and one that begins later, gauges that read every step.
+fn basin(dimension: usize) -> String {
+    let of = |texts: [&'static str; 2]| texts[dimension - 2];
+    let center = ["", "y = 0.15, "];
+    let line = |name: &str, from: [&'static str; 2], to: [&'static str; 2], length: f64, more: &str| {
+        let (from, to) = (of(from), of(to));
+        format!(
+            "[[mooring]]\nname = {name:?}\nbetween = [\"float\"]\nfrom = {from}\nto = {to}\nlength = {length}\nline = \"chain\"\n\
+             segments = 8\n{more}\n"
+        )
+    };
+    let lines = [
+        line(
+            "west",
+            ["[0.6, 0.2]", "[0.6, 0.15, 0.2]"],
+            ["[0.3, 0.0]", "[0.3, 0.15, 0.0]"],
+            0.4,
+            "acts_on_water = true",
+        ),
+        line("east", ["[0.8, 0.2]", "[0.8, 0.15, 0.2]"], ["[1.3, 0.0]", "[1.3, 0.15, 0.0]"], 0.6, "since = 0.15"),
+    ];
+    format!(
+        r#"
+        dimension = {dimension}
+        dp = {}
+        until = 0.35
+        guard = {{ escape = "remove" }}
+        frames = {{ every = 0.12 }}
+        checkpoint = {{ every = 0.1 }}
+        [[water]]
+        fill = {{ box = {{ min = {min}, max = {} }} }}
+        [[solid]]
+        name = "tank"
+        fixed = true
+        shape = {{ tank = {{ size = {} }} }}
+        at = {{ x = {} }}
+        [[solid]]
+        name = "paddle"
+        shape = {{ box = {{ size = {} }} }}
+        at = {{ x = -0.06, {}bottom = 0.0 }}
+        driven = {{ along = {}, wave = {{ regular = {{ height = 0.05, period = 0.8 }}, ramp = 0.1, absorb = true }} }}
+        [[solid]]
+        name = "float"
+        shape = {{ box = {{ size = {} }} }}
+        at = {{ x = 0.7, {}draft = "equilibrium" }}
+        free = {{ density = 500.0 }}
+        [[solid]]
+        name = "foam"
+        shape = {{ box = {{ size = {} }} }}
+        at = {{ x = 1.1, {}bottom = 0.16 }}
+        free = {{ density = 20.0, velocity = {} }}
+        [[line_type]]
+        name = "chain"
+        diameter = 0.02
+        mass_per_length = 0.6
+        stiffness = 2e3
+        {}
+        [[damping]]
+        from = {}
+        to = {}
+        [[probe]]
+        name = "row"
+        elevation = {{ from = {}, to = {}, count = 4 }}
+        average = true
+        every = 0.01
+        [[probe]]
+        pressure = {{ at = {} }}
+        every = 0.005
+        [[probe]]
+        velocity = {{ at = {} }}
+        on = "float"
+        every = 0.01
+        [[probe]]
+        mooring = "west"
+        every = 0.01
+        [[probe]]
+        balance = "foam"
+        every = 0.01
+        "#,
+        ["0.02", "0.03"][dimension - 2],
+        of(["[1.6, 0.24]", "[1.6, 0.3, 0.24]"]),
+        of(["[1.8, 0.5]", "[1.8, 0.3, 0.5]"]),
+        of(["-0.2", "-0.2, y = 0.0"]),
+        of(["[0.12, 0.42]", "[0.12, 0.3, 0.42]"]),
+        of(center),
+        of(["[1.0, 0.0]", "[1.0, 0.0, 0.0]"]),
+        of(["[0.2, 0.1]", "[0.2, 0.15, 0.12]"]),
+        of(center),
+        of(["[0.12, 0.1]", "[0.12, 0.12, 0.12]"]),
+        of(center),
+        of(["[0.0, 2.0]", "[0.0, 0.0, 2.0]"]),
+        lines.concat(),
+        of(["[1.3, 0.0]", "[1.3, 0.0, 0.0]"]),
+        of(["[1.6, 0.0]", "[1.6, 0.3, 0.0]"]),
+        of(["0.1", "[0.1, 0.15]"]),
+        of(["1.3", "[1.3, 0.15]"]),
+        of(["[0.4, 0.1]", "[0.4, 0.15, 0.1]"]),
+        of(["[0.0, -0.08]", "[0.0, 0.0, -0.09]"]),
+        min = of(["[0.0, 0.0]", "[0.0, 0.0, 0.0]"]),
+    )
+}
+
 /// Where nothing but pairs reads the water of other ranks, a rank has its own, and receives little between two readings.
 #[test]
 fn ranks_with_water_of_their_own_write_the_files_of_one() -> Result<()> {
@@ -168,6 +271,38 @@ fn ranks_with_water_of_their_own_write_the_files_of_one() -> Result<()> {
             // All sums of both passes of a step: 108 B in 2-D and 107 B in 3-D were measured on two ranks.
             let all = 215.0 * (1.0 - 1.0 / count as f64);
             assert!(each < all, "{each} B a step and particle, and all sums are {all} B");
+        }
+        let parted = home.join("parted");
+        run_on(3, &file, &parted, 0.13)?;
+        resume_on(2, &parted, 0.27)?;
+        resume_on(1, &parted, f64::INFINITY)?;
+        assert_same_files(&whole, &parted, "a run in three parts");
+    }
+    Ok(())
+}
+
+/// Absorbing paddles, light bodies, mooring lines and gauges read the water of other ranks near them alone.
+#[test]
+fn ranks_with_water_of_their_own_compute_a_wave_basin() -> Result<()> {
+    for dimension in [2, 3] {
+        let home = TestFolder::new(&format!("ranks-basin-{dimension}"));
+        let (file, budgeted) = (home.join("scene.toml"), home.join("budgeted.toml"));
+        fs::write(&file, basin(dimension)).unwrap();
+        fs::write(&budgeted, basin(dimension) + "[[probe]]\nbudget = true\n").unwrap();
+        let whole = home.join("whole");
+        run_on(1, &file, &whole, f64::INFINITY)?;
+        let bytes = |outcome: RunOutcome| {
+            let manifest = outcome.manifest;
+            manifest.ranks.map_or(f64::NAN, |ranks| ranks.received_bytes as f64) / manifest.steps as f64
+        };
+        // With an energy budget each rank has all water.
+        let of_all = bytes(run_on(2, &budgeted, &home.join("budgeted"), 0.1)?);
+        for count in [2, 3, 5] {
+            let out = home.join(count.to_string());
+            let near = bytes(run_on(count, &file, &out, f64::INFINITY)?);
+            assert_same_files(&whole, &out, &format!("{dimension}-D, {count} ranks"));
+            println!("{dimension}-D, {count} ranks: {near:.0} B a step, and {of_all:.0} B with all water");
+            assert!(count > 2 || near < of_all, "{near} B a step, and {of_all} B with all water");
         }
         let parted = home.join("parted");
         run_on(3, &file, &parted, 0.13)?;

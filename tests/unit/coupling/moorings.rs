@@ -33,7 +33,7 @@ fn a_line_and_the_water_around_it_exchange_momentum() {
     let start: Vec<_> = setup.solids.iter().map(SolidSpec::initial_kinematics).collect();
     let mut system = System::new(setup, Dim::<2>::pair_loop(&model), &Ranks::default()).unwrap();
     system.rebuild_neighbours();
-    let mut moorings = Moorings::new(&system, &start).unwrap();
+    let mut moorings = Moorings::new(&mut system, &start).unwrap();
     // The loop moves through the water and across its side.
     let state = &mut moorings.lines[0].line.state;
     state.v.iter_mut().zip(&state.x).for_each(|(v, x)| *v = [0.8 * (1.4 - x[1]), 0.3].into());

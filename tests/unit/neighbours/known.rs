@@ -30,7 +30,8 @@ fn a_query_finds_the_known_water_in_the_order_of_all() {
                 let division = part.division_mut().expect("lists of clusters");
                 division.by_owner = true;
                 division.set_own_water(own, water.len());
-                part.know(these.clone(), &water);
+                (part.bounds_at_build, part.positions_at_build) = (Bounds::around(&water), water.clone());
+                part.know(these.clone(), &these.iter().map(|&i| water[i as usize]).collect::<Vec<_>>());
                 let mut unknown = 0;
                 for x in [[0.3, 0.3], [1.9, 2.2], [2.0, 3.9], [3.7, 1.0], [-0.2, 4.1]] {
                     let whole = found(&all, x);
