@@ -1,5 +1,7 @@
 //! The parallel arrays of particle quantities, of the water and of the boundary particles. No laws.
 
+use std::ops::Range;
+
 use bytemuck::Zeroable;
 use serde::{Deserialize, Serialize};
 
@@ -51,6 +53,25 @@ impl<const D: usize> Particles<D> {
             rho: &self.rho[..n],
             id: self.id.get(..n).unwrap_or_default(),
         }
+    }
+
+    /// Those in `range`.
+    pub(crate) fn slice(&self, range: Range<usize>) -> Self {
+        let Self { r, v, rho, id } = self;
+        Self {
+            r: r[range.clone()].to_vec(),
+            v: v[range.clone()].to_vec(),
+            rho: rho[range.clone()].to_vec(),
+            id: id[range].to_vec(),
+        }
+    }
+
+    /// Appends the particle that [`Particles::give`] appended to `numbers`.
+    pub(crate) fn push_given(&mut self, numbers: &[f64]) {
+        self.r.push(Vector::from_column_slice(&numbers[..D]));
+        self.v.push(Vector::from_column_slice(&numbers[D..2 * D]));
+        self.rho.push(numbers[2 * D]);
+        self.id.push(numbers[2 * D + 1] as u32);
     }
 
     /// Memory of the arrays, B.

@@ -41,10 +41,10 @@ use crate::{
     interaction::{PairLoop, RequestedSums},
     math::{Bivector, Bounds, Vector},
     model::HasPairLoop as _,
-    ranks::Ranks,
+    ranks::{Ranks, WaterShare},
     solid::{ContactForce, Dim, HasEngine as _, Role, SolidSpec, constraint::assembly::Assembly},
     system::{
-        LimitViolation, SavedWater, System, SystemState,
+        LimitViolation, SavedWater, System, SystemState, known_water,
         own_water::{self, OwnNames},
         set_buffer_time, set_gravity_at, update_buffer, update_current,
     },
@@ -129,17 +129,17 @@ impl<const D: usize> Simulation<D> {
     where
         Dim<D>: Dimension<D>,
     {
-        let mut simulation = Self::set_up(setup, ranks)?;
+        let mut simulation = Self::set_up(setup, ranks.with_all_water())?;
         simulation.gather_water(true);
         Ok(simulation)
     }
 
-    /// As [`Simulation::on_ranks`], but each rank may have its own water alone.
-    pub(crate) fn set_up(setup: Setup<D>, ranks: &Ranks) -> Result<Self>
+    /// As [`Simulation::on_ranks`], but `setup` has this rank's `share` of the water, and each rank may have its own alone after this.
+    pub(crate) fn set_up(setup: Setup<D>, share: WaterShare<'_>) -> Result<Self>
     where
         Dim<D>: Dimension<D>,
     {
-        (Dim::<D>::compiled().set_up)(setup, None, false, ranks)
+        (Dim::<D>::compiled().set_up)(setup, None, false, share)
     }
 
     /// As [`Simulation::new`], with a pair loop of your own terms: see [`Model::custom_pair_loop`](crate::model::Model).
@@ -150,14 +150,20 @@ impl<const D: usize> Simulation<D> {
     where
         Dim<D>: Dimension<D>,
     {
-        let simulation = (Dim::<D>::compiled().set_up)(setup, Some(pair_loop), false, &Ranks::default())?;
+        let simulation =
+            (Dim::<D>::compiled().set_up)(setup, Some(pair_loop), false, Ranks::default().with_all_water())?;
         #[cfg(feature = "gpu")]
         let simulation = Self { custom_terms: true, ..simulation };
         Ok(simulation)
     }
 
     /// Sets up a simulation whose free solids the engine moves, or an `external` program, with its own pair loop or that of the model.
-    fn with_bodies(mut setup: Setup<D>, pair_loop: OwnPairLoop<D>, external: bool, ranks: &Ranks) -> Result<Self>
+    fn with_bodies(
+        mut setup: Setup<D>,
+        pair_loop: OwnPairLoop<D>,
+        external: bool,
+        share: WaterShare<'_>,
+    ) -> Result<Self>
     where
         Dim<D>: Dimension<D>,
     {
@@ -178,7 +184,7 @@ impl<const D: usize> Simulation<D> {
         };
         let rig = Assembly::new(&setup.constraints, start.clone());
         let stepper = Stepper::new(&setup.model);
-        let mut system = System::new(setup, pair_loop, ranks)?;
+        let mut system = System::new(setup, pair_loop, share)?;
         let moorings = Moorings::new(&mut system, &start)?;
         let bodies = Bodies::new(engine, AcousticAddedMass::find_all(&mut system), rig, moorings, external);
         let clock = Clock { time: 0.0, dt: 0.0, steps: 0 };
@@ -243,8 +249,8 @@ impl<const D: usize> Simulation<D> {
 
     /// Gives all ranks the water within the boxes (m) that the first rank names, where they lack it. All ranks must call this.
     pub(crate) fn know_water_within(&mut self, ranges: &[Bounds<D>]) {
-        let ranges = own_water::share_ranges(&self.system, ranges);
-        own_water::know_within(&mut self.system, &ranges);
+        let ranges = known_water::share_ranges(&self.system, ranges);
+        known_water::know_within(&mut self.system, &ranges);
     }
 
     /// Gives the first rank the water that the checks before the first step read: places and velocities, with mooring lines all. All ranks
@@ -252,7 +258,7 @@ impl<const D: usize> Simulation<D> {
     pub(crate) fn gather_for_checks(&mut self) {
         if self.system.status.has_all_water {
         } else if self.bodies.moorings.is_empty() {
-            own_water::gather_places(&mut self.system);
+            known_water::gather_places(&mut self.system);
         } else {
             self.gather_water(false);
         }
@@ -260,7 +266,7 @@ impl<const D: usize> Simulation<D> {
 
     /// Leaves the first rank the places of its own water, if it got those of all for the checks.
     pub(crate) fn forget_places(&mut self) {
-        own_water::forget_places(&mut self.system);
+        known_water::forget_places(&mut self.system);
     }
 
     fn complete_water(&mut self, everyone: bool) {

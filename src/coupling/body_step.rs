@@ -18,7 +18,7 @@ use crate::{
         constraint::assembly::{Assembly, AssemblyState, ConstraintLoads},
         mooring::LineState,
     },
-    system::{MomentumTransfer, System, bounds_beside, face_reached, own_water, return_impulse, spread_impulses},
+    system::{MomentumTransfer, System, bounds_beside, face_reached, known_water, return_impulse, spread_impulses},
 };
 
 /// The rigid bodies of a run with their engine. A scene without free bodies has no engine.
@@ -221,7 +221,7 @@ impl<const D: usize> Bodies<D> {
         hook: &mut Hook<D>,
     ) -> Result<Vec<MomentumTransfer<D>>> {
         let end = over.t + over.dt;
-        own_water::know_within(system, &self.water_ranges(system, over));
+        known_water::know_within(system, &self.water_ranges(system, over));
         // The engine itself adds the weight once.
         let gravity = system.gravity() * (weight - 1.0);
         let weighed = |solid: &Solid<D>| {

@@ -14,7 +14,7 @@ use crate::{
         ConstraintChange, Kinematics, Load, Mobility, MooringReading, Role,
         mooring::{BedPlane, Junctions, LineState, LineStep, Mooring, MooringLine, NodeSurroundings, junctions},
     },
-    system::{System, own_water},
+    system::{System, known_water},
 };
 
 /// Largest force that may remain on a node at the start over its weight, –: on a line that sinks, and on one that may float, whose
@@ -70,7 +70,7 @@ impl<const D: usize> Moorings<D> {
         made.fixed = system.solids().iter().enumerate().filter_map(near).collect();
         let mut all: Vec<_> = lines.iter_mut().map(|mooring| &mut mooring.line).collect();
         made.junctions.attach(&mut all, &bodies);
-        own_water::know_within(system, &all.iter().map(|line| range_around(line)).collect::<Vec<_>>());
+        known_water::know_within(system, &all.iter().map(|line| range_around(line)).collect::<Vec<_>>());
         let rests = made.find_rest(system, &mut all);
         for ((spec, left), line) in system.constraints().moorings.iter().zip(rests).zip(&all) {
             if left.is_nan() || left > LARGEST_REST[usize::from(line.may_float())] {

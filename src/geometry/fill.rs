@@ -14,7 +14,7 @@ use super::{
 use crate::{
     error::{Error, Result},
     math::{Bounds, Matrix, Pose, Vector},
-    ranks::Ranks,
+    ranks::{self, Ranks},
 };
 
 /// A region of water.
@@ -61,10 +61,13 @@ pub(crate) struct Filling<'a, const D: usize> {
     pub(crate) spaces: &'a [EnclosedSpace<'a, D>],
     /// Those that make the same filling and share its work.
     pub(crate) ranks: &'a Ranks,
+    /// Those of which each gets a part of the water; a single one gets all.
+    pub(crate) owners: &'a Ranks,
 }
 
 /// Water with its origin.
 pub(crate) struct Filled<const D: usize> {
+    /// The water of this rank. Each owner has a part, in the order of the ranks.
     pub(crate) water: FilledWater<D>,
     /// Number of the region of each particle.
     pub(crate) home: Vec<u32>,
@@ -121,7 +124,8 @@ pub(crate) fn fill_around<const D: usize>(
     solids: &[(&Shape<D>, &Pose<D>, bool)],
     dp: f64,
 ) -> Result<FilledWater<D>> {
-    Ok(Filling { regions, inside: Vec::new(), solids, spaces: &[], ranks: &Ranks::default() }.fill(dp)?.water)
+    let alone = &Ranks::default();
+    Ok(Filling { regions, inside: Vec::new(), solids, spaces: &[], ranks: alone, owners: alone }.fill(dp)?.water)
 }
 
 impl<const D: usize> Filling<'_, D> {
@@ -147,8 +151,12 @@ impl<const D: usize> Filling<'_, D> {
         let excludes = |k: usize, x: &Vector<D>| {
             self.spaces.iter().zip(&entries[k]).any(|(space, entry)| space.excludes(x, *entry))
         };
+        let own = ranks::equal_part(lattices.iter().map(Lattice::point_count).sum(), self.owners);
+        let mut point = 0;
         for (k, lattice) in lattices.iter().enumerate() {
             lattice.for_each_point(0, |x| {
+                let is_own = own.contains(&point);
+                point += 1;
                 if !lattice.contains(x) || excludes(k, x) {
                     return;
                 }
@@ -158,12 +166,14 @@ impl<const D: usize> Filling<'_, D> {
                     filled.removed_in_solids += 1;
                 } else {
                     obstacles.iter_mut().for_each(|o| o.check_fit(x, |cell| lattice.contains(cell)));
-                    filled.r.push(*x);
-                    home.push(k as u32);
+                    if is_own {
+                        filled.r.push(*x);
+                        home.push(k as u32);
+                    }
                 }
             });
         }
-        pack_around_obstacles(self.ranks, &mut filled.r, &home, &lattices, &mut obstacles, dp);
+        pack_around_obstacles((self.ranks, self.owners), (&mut filled.r, &home), &lattices, &mut obstacles, dp);
         if obstacles.iter().any(Obstacle::needs_packing) {
             let before = filled.r.len();
             let keep = |(x, k): (&Vector<D>, &u32)| {
@@ -174,7 +184,7 @@ impl<const D: usize> Filling<'_, D> {
             filled.r.retain(|_| flags.next() == Some(&true));
             let mut flags = keep.iter();
             home.retain(|_| flags.next() == Some(&true));
-            filled.removed_in_solids += before - filled.r.len();
+            filled.removed_in_solids += self.owners.counts(before - filled.r.len()).iter().sum::<usize>();
         }
         let has_own_water = (0..self.spaces.len()).map(|s| self.has_own_water(s, &lattices, &entries)).collect();
         Ok(Filled { water: filled, home, has_own_water })
@@ -252,6 +262,11 @@ impl<'a, const D: usize> Lattice<'a, D> {
         made.low = std::array::from_fn(|i| steps(made.origin)[i].round() as i64);
         made.high = std::array::from_fn(|i| made.low[i] + n[i] - 1);
         Ok(made)
+    }
+
+    /// Number of points in the region's box.
+    fn point_count(&self) -> usize {
+        (0..D).map(|i| (self.high[i] + 1 - self.low[i]).max(0) as usize).product()
     }
 
     /// Visits the lattice points of the region's box and of a margin of `margin` cells around it.

@@ -199,11 +199,11 @@ fn below_bed<const D: usize>(x: &Vector<D>, line: &[Vector<D>]) -> bool {
     bed
 }
 
-/// Packs the water around the solids that do not fit the lattice; `home` contains the lattice index of each point.
+/// Packs the water around the solids that do not fit the lattice; `home` contains the lattice index of each point. The `ranks` share
+/// the work; each of the `owners` has a part of the water.
 pub(super) fn pack_around_obstacles<const D: usize>(
-    ranks: &Ranks,
-    water: &mut [Vector<D>],
-    home: &[u32],
+    (ranks, owners): (&Ranks, &Ranks),
+    (water, home): (&mut [Vector<D>], &[u32]),
     lattices: &[Lattice<D>],
     obstacles: &mut [Obstacle<D>],
     dp: f64,
@@ -233,19 +233,22 @@ pub(super) fn pack_around_obstacles<const D: usize>(
         }
     }
     // Temporary points continue the water beyond its regions, so that the water does not spread out of them.
-    let all_movable = movable.len() + moving.len();
-    let mut points: Vec<_> = movable.iter().map(|&i| water[i]).chain(moving).chain(held).chain(still).collect();
+    let first = owners.part(movable.len()).first;
+    let homes: Vec<u32> = owners.concat(movable.iter().map(|&i| home[i]).collect());
+    let all_movable = homes.len() + moving.len();
+    let mut points = owners.concat(movable.iter().map(|&i| water[i]).collect());
+    points.extend(moving.into_iter().chain(owners.concat(held)).chain(still));
     let near = Bounds::around(&points).grown(packing::SUPPORT_RADIUS_DP * dp);
     for o in &*obstacles {
         let skin = o.shape.boundary_points(dp, LAYERS);
         points.extend(skin.iter().map(|p| o.pose.point(&p.r)).filter(|x| near.contains(x)));
     }
     packing::spread_points_on(ranks, &mut points, all_movable, dp, |i, _, x| {
-        let room = movable.get(i).map_or(f64::INFINITY, |&w| lattices[home[w] as usize].clamp_to_sides(x));
+        let room = homes.get(i).map_or(f64::INFINITY, |&home| lattices[home as usize].clamp_to_sides(x));
         // Two passes: a point that moves out of one face of a corner may move into the other face.
         (0..2).flat_map(|_| &*obstacles).fold(room, |room, o| room.min(o.push_out(x)))
     });
-    movable.iter().zip(&points).for_each(|(&i, x)| water[i] = *x);
+    movable.iter().zip(&points[first..]).for_each(|(&i, x)| water[i] = *x);
 }
 
 /// Returns the lattice points in a margin around the regions, near the solids that do not fit. The first list contains

@@ -84,6 +84,11 @@ pub struct Division {
 }
 
 impl Division {
+    /// Of `ranks`, which have no slabs yet.
+    pub(crate) fn of(ranks: &Ranks) -> Self {
+        Self { ranks: ranks.clone(), ..Self::default() }
+    }
+
     /// The slabs that this rank computes.
     pub(crate) fn own_slabs(&self) -> Range<usize> {
         self.slabs.get(self.ranks.rank()).cloned().unwrap_or_default()
@@ -151,7 +156,7 @@ impl Division {
     }
 
     /// The smallest box around those of all ranks.
-    pub(super) fn union<const D: usize>(&self, own: &Bounds<D>) -> Bounds<D> {
+    pub(crate) fn union<const D: usize>(&self, own: &Bounds<D>) -> Bounds<D> {
         let mut ends: Vec<f64> = own.min.iter().chain(own.max.iter()).copied().collect();
         ends.resize(2 * D * self.ranks.count(), 0.0);
         ends.rotate_right(2 * D * self.ranks.rank());
@@ -253,7 +258,7 @@ impl Division {
         give: impl Fn(&C, usize, &mut Vec<f64>),
         mut take: impl FnMut(&mut C, usize, &[f64]),
     ) {
-        let counts: Vec<usize> = self.counts(these.len());
+        let counts: Vec<usize> = self.ranks.counts(these.len());
         let [mut given, mut taken] = [Vec::with_capacity(width), Vec::with_capacity(width)];
         let mut rest = these.iter();
         let pack = |data: &C, _: usize, words: &mut Vec<u32>| {
@@ -306,11 +311,6 @@ impl Division {
             }
             use_piece(&whole);
         }
-    }
-
-    /// The number that each rank gives.
-    pub(crate) fn counts(&self, own: usize) -> Vec<usize> {
-        self.ranks.gather_words([own as u32]).into_iter().map(|[n]| n as usize).collect()
     }
 }
 

@@ -144,9 +144,18 @@ impl<const D: usize> NeighbourLists<D> {
 
     /// The columns of the water of all ranks, of which this one has its own at the places `r` (m); shares the slabs out anew.
     pub(crate) fn share_out(&mut self, r: &[Vector<D>]) -> Columns<D> {
-        let own = self.own_indices().map(|i| &r[i as usize]);
+        let own: Vec<u32> = self.own_indices().collect();
+        self.share_out_own(own.iter().map(|&i| &r[i as usize]), r.len())
+    }
+
+    /// As [`NeighbourLists::share_out`], where `own` are the places (m) of this rank's water, of `count` particles.
+    pub(crate) fn share_out_own<'a>(
+        &mut self,
+        own: impl Iterator<Item = &'a Vector<D>> + Clone,
+        count: usize,
+    ) -> Columns<D> {
         let bounds = Bounds::around(own.clone());
-        let columns = self.columns(self.division().map_or(bounds, |division| division.union(&bounds)), r.len());
+        let columns = self.columns(self.division().map_or(bounds, |division| division.union(&bounds)), count);
         let mut particles = vec![0; columns.slab_count()];
         own.for_each(|r| particles[columns.slab_at(r)] += 1);
         if let Some(division) = self.division_mut() {

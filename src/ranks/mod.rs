@@ -14,6 +14,7 @@ use std::{
     time::{Duration, Instant},
 };
 
+use bytemuck::Pod;
 #[cfg(feature = "mpi")]
 pub use mpi::World;
 
@@ -80,6 +81,20 @@ struct Group {
     traffic: Mutex<Traffic>,
 }
 
+/// The part of a rank of items that the ranks share: `first` and those after it, of `count` in all.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct RankPart {
+    pub(crate) first: usize,
+    pub(crate) count: usize,
+}
+
+/// The ranks of a simulation, and the part of its water that this one has at the set-up; without a part it has all.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct WaterShare<'a> {
+    pub(crate) ranks: &'a Ranks,
+    pub(crate) part: Option<RankPart>,
+}
+
 /// Another rank, if there is one, and the range of the items that pass to it or from it.
 type RankItems = (Option<usize>, Range<usize>);
 
@@ -104,6 +119,11 @@ impl Ranks {
     /// Number of ranks.
     pub fn count(&self) -> usize {
         self.0.as_ref().map_or(1, |group| group.exchange.count())
+    }
+
+    /// These ranks, each of which has all water at the set-up.
+    pub(crate) fn with_all_water(&self) -> WaterShare<'_> {
+        WaterShare { ranks: self, part: None }
     }
 
     /// What this rank has exchanged so far.
@@ -157,6 +177,26 @@ impl Ranks {
         let mut all = vec![0; own.len() * self.count()];
         self.gather(own, &vec![own.len(); self.count()], &mut all);
         all
+    }
+
+    /// The number that each rank gives.
+    pub(crate) fn counts(&self, own: usize) -> Vec<usize> {
+        self.gather_words([own as u32]).into_iter().map(|[n]| n as usize).collect()
+    }
+
+    /// Which items a rank has if it has so many, and the ranks before it the ones before.
+    pub(crate) fn part(&self, own: usize) -> RankPart {
+        let counts = self.counts(own);
+        RankPart { first: counts[..self.rank()].iter().sum(), count: counts.iter().sum() }
+    }
+
+    /// The items of all ranks, in the order of the ranks.
+    pub(crate) fn concat<T: Pod>(&self, own: Vec<T>) -> Vec<T> {
+        if self.0.is_none() {
+            return own;
+        }
+        let all = self.gather_bytes(bytemuck::cast_slice(&own));
+        all.iter().flat_map(|bytes| bytemuck::pod_collect_to_vec::<u8, T>(bytes)).collect()
     }
 
     /// The largest of the numbers that the ranks give, none of which is NaN.
@@ -321,6 +361,12 @@ impl Group {
 /// Up to four bytes as a word.
 fn word(bytes: &[u8]) -> u32 {
     u32::from_le_bytes(std::array::from_fn(|k| bytes.get(k).copied().unwrap_or(0)))
+}
+
+/// The part of a rank of `count` items, in equal parts.
+pub(crate) fn equal_part(count: usize, ranks: &Ranks) -> Range<usize> {
+    let end = |rank: usize| (count as u128 * rank as u128 / ranks.count() as u128) as usize;
+    end(ranks.rank())..end(ranks.rank() + 1)
 }
 
 /// Consecutive parts of `weights`, one for each of `count` ranks, of about equal weight. They cover everything.

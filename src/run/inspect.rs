@@ -217,7 +217,7 @@ where
         return Ok(Inspection::Estimate(CostEstimate::new(scene, &size)));
     }
     let values: Vec<ValueInForce> = scene.resolve()?.into_iter().map(ValueInForce::from).collect();
-    let BuiltScene { setup, plan, initial_water, file_notes } = parts.fill(&Ranks::default())?;
+    let BuiltScene { setup, plan, initial_water, file_notes, .. } = parts.fill(&Ranks::default())?;
     // The timing reports the first alarm; a run would return to an earlier state instead.
     let mut sim = Simulation::new(setup).map_err(|e| scene.with_location(e))?.without_rollback();
     let probes = probe_factory::probes_from_plan(&plan, &mut sim)?;

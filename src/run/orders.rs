@@ -8,7 +8,7 @@ use crate::{
     error::{Error, ErrorKind, Result},
     output::{Checkpoint, checkpoint, frame},
     plan::{ControlChange, FramesPlan, Plan},
-    ranks::{Ranks, from_words, words_of},
+    ranks::{Ranks, WaterShare, from_words, words_of},
     scene::{BuiltScene, Scene},
     simulation::{Dimension, Setup, Simulation},
     solid::Dim,
@@ -143,11 +143,18 @@ pub(super) fn scene_digest(scene: &Scene, folder: &Path) -> String {
     format!("{version} {commit} {:x} {files:x}", checkpoint::fnv1a(words.as_bytes()))
 }
 
-/// A text that differs if the water of two setups differs.
-pub(super) fn water_digest<const D: usize>(setup: &Setup<D>) -> String {
-    let numbers = setup.water.iter().chain(&setup.velocity).flat_map(|x| x.iter());
-    let hash = numbers.fold(0, |hash, x| checkpoint::fnv1a_continue(hash, &x.to_bits().to_le_bytes()));
-    format!("{} solids, {hash:x}", setup.solids.len())
+/// A text that differs if two ranks have set up different things.
+pub(super) fn setup_digest<const D: usize>(BuiltScene { setup, part, .. }: &BuiltScene<D>) -> String {
+    let hash = |numbers: &mut dyn Iterator<Item = &f64>| {
+        numbers.fold(0, |hash, x| checkpoint::fnv1a_continue(hash, &x.to_bits().to_le_bytes()))
+    };
+    let water = match part {
+        // Each rank has other water.
+        Some(part) => part.count as u64,
+        None => hash(&mut setup.water.iter().chain(&setup.velocity).flat_map(|x| x.iter())),
+    };
+    let solids = hash(&mut setup.solids.iter().flat_map(|solid| solid.pose.position.iter()));
+    format!("{} solids, {solids:x}, {water:x}", setup.solids.len())
 }
 
 /// Follows the first of the `ranks` through a run, from the start of `scene` or from `checkpoint`, until that rank ends the run.
@@ -158,11 +165,11 @@ pub(super) fn follow<const D: usize>(scene: &Scene, checkpoint: Option<Checkpoin
 where
     Dim<D>: Dimension<D>,
 {
-    let built = ranks.agree(scene.build_on::<D>(ranks), |built| water_digest(&built.setup));
+    let built = ranks.agree(scene.build_on::<D>(ranks), setup_digest);
     // The first rank reports an error that all ranks have.
-    let Ok(BuiltScene { setup, plan, .. }) = built else { return Ok(()) };
+    let Ok(BuiltScene { setup, part, plan, .. }) = built else { return Ok(()) };
     let mut failure = None;
-    let prepared = Follower::new(setup, ranks, plan, checkpoint);
+    let prepared = Follower::new(setup, WaterShare { ranks, part }, plan, checkpoint);
     let mut follower = prepared.map_err(|error| failure = Some(error)).ok();
     loop {
         let time = follower.as_ref().map_or(0.0, |follower| follower.sim.time());
@@ -193,8 +200,8 @@ impl<const D: usize> Follower<D>
 where
     Dim<D>: Dimension<D>,
 {
-    fn new(setup: Setup<D>, ranks: &Ranks, plan: Plan, checkpoint: Option<Checkpoint>) -> Result<Self> {
-        let mut sim = Simulation::set_up(setup, ranks)?;
+    fn new(setup: Setup<D>, share: WaterShare<'_>, plan: Plan, checkpoint: Option<Checkpoint>) -> Result<Self> {
+        let mut sim = Simulation::set_up(setup, share)?;
         // This rank does not read the probes, but it has to record the data that they read.
         probe_factory::probes_from_plan(&plan, &mut sim)?;
         sim.gather_for_checks();

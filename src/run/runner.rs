@@ -23,7 +23,7 @@ use crate::{
         removed_particles, write_atomically,
     },
     preflight,
-    ranks::Ranks,
+    ranks::{Ranks, WaterShare},
     scene::{BuiltScene, Plan, RenamedName, ResolvedValue, Scene},
     simulation::{Dimension, Simulation},
     solid::{Dim, HasEngine as _, Role},
@@ -66,10 +66,10 @@ where
     pub(crate) fn new(scene: &Scene, origin: RunOrigin, ranks: &Ranks) -> Result<Self> {
         let (begun, begun_cpu) = (Instant::now(), ProcessorTime::now());
         let built = scene.build_on::<D>(ranks).and_then(|built| device::check_ranks(scene, ranks).map(|()| built));
-        let digest = |built: &BuiltScene<D>| orders::water_digest(&built.setup);
-        let BuiltScene { setup, plan, initial_water, file_notes } = ranks.agree(built, digest)?;
+        let digest = |built: &BuiltScene<D>| orders::setup_digest(&built);
+        let BuiltScene { setup, part, plan, initial_water, file_notes } = ranks.agree(built, digest)?;
         let leader = Leader::new(ranks.clone());
-        let mut sim = Simulation::set_up(setup, ranks).map_err(|e| scene.with_location(e))?;
+        let mut sim = Simulation::set_up(setup, WaterShare { ranks, part }).map_err(|e| scene.with_location(e))?;
         let probes = probe_factory::probes_from_plan(&plan, &mut sim)?;
         sim.gather_for_checks();
         let checks = probe_factory::checks_from_plan(&plan, &probes).map_err(|e| scene.with_location(e))?;

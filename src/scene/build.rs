@@ -26,10 +26,10 @@ use crate::{
     math::{Bounds, Pose, Vector, in_dimension},
     model::{Model, TimeScheme},
     plan::{ControlPlan, FramesPlan, Plan},
-    ranks::Ranks,
+    ranks::{RankPart, Ranks},
     simulation::{Driving, OpenBoundary, Setup, TowedFrame},
     solid::{Constraints, Role, SolidSpec, TimeFunction},
-    system::{Periodic, buffer_length, check_open_boundary, periodic},
+    system::{Periodic, buffer_length, check_open_boundary, own_water::allow_division, periodic},
 };
 
 /// Largest number of particles in a scene: they need about 100 GB of memory.
@@ -39,6 +39,8 @@ const MOST_PARTICLES: f64 = 2e8;
 pub struct BuiltScene<const D: usize> {
     /// The initial state of a simulation.
     pub setup: Setup<D>,
+    /// Which part of the water `setup` has, where each rank has one.
+    pub(crate) part: Option<RankPart>,
     /// The probes, files, checks and statistics of a run.
     pub plan: Plan,
     /// The water at the start, for the pre-flight.
@@ -124,7 +126,7 @@ impl Scene {
         self.build_on(&Ranks::default())
     }
 
-    /// As [`Scene::build`], but the `ranks` share the work of the filling; each rank gets the whole result.
+    /// As [`Scene::build`], but the `ranks` share the filling: see [`SceneParts::fill`].
     ///
     /// # Errors
     /// Those of [`Scene::build`]; `Usage` if another rank cannot open its files.
@@ -357,7 +359,7 @@ impl<const D: usize> SceneParts<D> {
         self.scene.size_estimate(&self.scene.context(), &self.water, &self.model, &self.placed.specs)
     }
 
-    /// Creates the water particles. The `ranks` share the work, and each rank gets all particles.
+    /// Creates the water particles. The `ranks` share the work. Each gets a part of the particles, if the run may be divided, else all.
     ///
     /// # Errors
     /// `Scene` if no water is left, or the plan of the run is wrong; `File` if a table cannot be read.
@@ -391,7 +393,14 @@ impl<const D: usize> SceneParts<D> {
             solids.iter().zip(&starts).map(|(s, start)| (&s.shape, start, rests(s))).collect();
         let spaces = placed.spaces(&starts);
         let inside = water.iter().map(|body| body.inside).collect();
-        let filling = Filling { regions: &regions, inside, solids: &solid_shapes, spaces: &spaces, ranks };
+        let symmetry = scene.symmetry.clone().unwrap_or_default().build();
+        let is_shared = allow_division(&model, &driving)
+            && open_boundaries.is_empty()
+            && periodic.iter().chain(&symmetry.map(|at: Option<f64>| at.map(|at| [at; 2]))).all(Option::is_none)
+            && scene.jitter.is_none();
+        let alone = Ranks::default();
+        let owners = if is_shared { ranks } else { &alone };
+        let filling = Filling { regions: &regions, inside, solids: &solid_shapes, spaces: &spaces, ranks, owners };
         let Filled { water: mut filled, mut home, has_own_water } =
             filling.fill(scene.dp).map_err(|e| ctx.with_location(e, "water"))?;
         if scene.water.iter().any(|w| w.level.is_some() && w.fill.shape.is_some()) {
@@ -399,7 +408,8 @@ impl<const D: usize> SceneParts<D> {
             let (r, own) = filled.r.iter().zip(&home).filter(|(x, _)| below(x)).unzip();
             (filled.r, home) = (r, own);
         }
-        if filled.r.is_empty() {
+        let part = owners.part(filled.r.len());
+        if part.count == 0 {
             return Err(no_water_error(ctx, &water, solids));
         }
         let own_water: Vec<usize> =
@@ -452,7 +462,7 @@ impl<const D: usize> SceneParts<D> {
             constraints,
             domain,
             periodic,
-            symmetry: scene.symmetry.clone().unwrap_or_default().build(),
+            symmetry,
             limits,
             sponge_layers,
             open_boundaries,
@@ -464,6 +474,7 @@ impl<const D: usize> SceneParts<D> {
         setup.apply_symmetry().map_err(|e| ctx.with_location(e, "symmetry"))?;
         Ok(BuiltScene {
             setup,
+            part: (owners.count() > 1).then_some(part),
             plan,
             initial_water: InitialWater {
                 still,

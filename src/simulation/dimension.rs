@@ -11,7 +11,7 @@ use crate::{
     interaction::PairLoop,
     math::{Bivector, Vector},
     model::HasPairLoop,
-    ranks::Ranks,
+    ranks::WaterShare,
     solid::{Dim, SolidSpec},
 };
 
@@ -48,7 +48,7 @@ pub(super) type OwnPairLoop<const D: usize> = Option<Box<dyn PairLoop<D>>>;
 #[doc(hidden)]
 #[derive(Debug)]
 pub struct Compiled<const D: usize> {
-    pub(super) set_up: fn(Setup<D>, OwnPairLoop<D>, bool, &Ranks) -> Result<Simulation<D>>,
+    pub(super) set_up: fn(Setup<D>, OwnPairLoop<D>, bool, WaterShare<'_>) -> Result<Simulation<D>>,
     pub(super) step_to: fn(&mut Simulation<D>, f64) -> Result<()>,
     pub(super) step_with: fn(&mut Simulation<D>, f64, &mut Hook<D>) -> Result<()>,
     pub(super) gather_water: fn(&mut Simulation<D>, bool),

@@ -29,7 +29,7 @@ impl<const D: usize> Simulation<D> {
             .help("put them into the world that moves the bodies, and leave them out here"));
         }
         setup.solids.iter().try_for_each(refuse_ballast)?;
-        Ok((Dim::<D>::compiled().set_up)(setup, None, true, &Ranks::default())?.without_rollback())
+        Ok((Dim::<D>::compiled().set_up)(setup, None, true, Ranks::default().with_all_water())?.without_rollback())
     }
 
     /// Advances by one step, but not past time `end` (s). Calls `hook` once, after the water has moved and before the bodies

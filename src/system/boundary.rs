@@ -10,7 +10,7 @@ use super::{
     System,
     boundary_extension::ExtensionParticle,
     film::{self, Films},
-    own_water,
+    known_water, own_water,
     periodic::Images,
     symmetry::{AxisSet, Division, MirroredParticle, reflected},
     thin_layers::{self, ThinLayers, WaterAround},
@@ -302,7 +302,7 @@ impl<const D: usize> System<D> {
     /// Gives each boundary particle of `range` near water the density of still water at its depth, but not below ρ₀. It reads nothing
     /// of the last force pass, which a restored state does not hold.
     pub(super) fn init_hydrostatic(&mut self, range: Range<usize>) {
-        own_water::know_adjacent_slabs(self);
+        known_water::know_adjacent_slabs(self);
         let (water, boundary, rho0) = (&self.fluid.particles, &self.boundary.particles, self.properties.rho0);
         let near = self.neighbours.boundary_near_fluid();
         let within = |i: &u32| range.contains(&(*i as usize));

@@ -3,7 +3,7 @@
 
 use rayon::prelude::*;
 
-use super::{System, own_water};
+use super::{System, known_water};
 use crate::{
     math::{Bounds, Vector},
     particles::PARTICLES_PER_TASK,
@@ -36,7 +36,7 @@ impl<const D: usize> System<D> {
 
     /// Updates the absorbing paddles for the surface in front of them at time `t` (s), the start of a step; the lists must hold.
     pub(crate) fn update_absorption(&mut self, t: f64) {
-        own_water::know_within(self, &self.absorption_ranges(t));
+        known_water::know_within(self, &self.absorption_ranges(t));
         for i in 0..self.solids.len() {
             let solid = &self.solids[i];
             let Role::Driven(motion) = &solid.spec.role else { continue };

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{System, own_water, periodic::Images, reflected};
+use super::{System, known_water, periodic::Images, reflected};
 use crate::math::{Bounds, Vector};
 
 /// A momentum that some water particles and their images have received.
@@ -38,7 +38,7 @@ pub(crate) fn return_impulse<const D: usize>(
             return None;
         }
         let range = bounds_beside(system, solid, distance);
-        own_water::know_within(system, &[range]);
+        known_water::know_within(system, &[range]);
     }
 }
 

@@ -15,6 +15,7 @@ mod free_surface;
 mod gap_pressure;
 mod impulses;
 mod open_boundary;
+pub(crate) mod known_water;
 pub(crate) mod own_water;
 pub(crate) mod periodic;
 mod setup;
@@ -71,7 +72,7 @@ use crate::{
     model::{Model, PressureGradient},
     neighbours::{CHUNK, Columns, NeighbourLists},
     particles::{PARTICLES_PER_TASK, Particles, zeros},
-    ranks::Ranks,
+    ranks::{RankPart, WaterShare},
     solid::{Constraints, Load, Solid, TimeFunction},
     sph::{AuxiliarySums, FluidProperties, equation_of_state::EquationOfState, gradient_correction},
 };
@@ -213,8 +214,9 @@ pub(crate) struct Reordering<const D: usize> {
 
 impl<const D: usize> System<D> {
     /// Places the water of `setup` in hydrostatic balance below its levels, and the solids with their boundary particles.
-    /// Afterwards each of `ranks` has its own water, if the setup allows this.
-    pub(crate) fn new(setup: Setup<D>, pair_loop: Box<dyn PairLoop<D>>, ranks: &Ranks) -> Result<Self> {
+    /// The water of `setup` is this rank's `share`. Afterwards each rank has its own, if the setup allows this.
+    pub(crate) fn new(setup: Setup<D>, pair_loop: Box<dyn PairLoop<D>>, share: WaterShare<'_>) -> Result<Self> {
+        let WaterShare { ranks, part } = share;
         let planes = setup.symmetry_planes();
         let Setup {
             mut model,
@@ -250,15 +252,17 @@ impl<const D: usize> System<D> {
             let head = depth(r, *rho) + p / properties.rho0;
             *rho = properties.rho0 * (1.0 + equation_of_state.hydrostatic_compression(head));
         }
-        let fluid = Fluid::new(&model, water, velocity, rho, Images::new(periodic, planes, support));
-        let particles = &fluid.particles;
+        let bounds = own_water::bounds_of_all(ranks, &water, part);
+        let RankPart { first, count } = part.unwrap_or(RankPart { first: 0, count: water.len() });
+        let mut fluid = Fluid::new(&model, water, velocity, rho, Images::new(periodic, planes, support));
+        fluid.particles.id.iter_mut().for_each(|id| *id += first as u32);
         let region = FluidDomain {
             domain: domain.unwrap_or_else(Bounds::empty),
             limits,
             sponge_layers,
             open_boundaries,
-            initial_water_height: particles.r.iter().map(|r| r[D - 1]).fold(f64::NEG_INFINITY, f64::max),
-            initial_count: particles.len(),
+            initial_water_height: bounds.max[D - 1],
+            initial_count: count,
         };
         let mut system = Self {
             pair_loop,
@@ -298,8 +302,7 @@ impl<const D: usize> System<D> {
         }
         system.update_shifting_suppression();
         if domain.is_none() {
-            let fluid = Bounds::around(&system.fluid.particles.r);
-            let everything = fluid.union(&Bounds::around(&system.boundary.particles.r));
+            let everything = bounds.union(&Bounds::around(&system.boundary.particles.r));
             system.fluid_domain.domain = everything.grown(everything.size().max() + support);
         }
         // Images may be as far beyond a plane as the water is before it.
@@ -317,7 +320,7 @@ impl<const D: usize> System<D> {
         open_boundary::extend_domain_by_buffers(&mut system);
         open_boundary::start_buffers(&mut system);
         driving::start_current(&mut system);
-        own_water::divide_at_start(&mut system);
+        own_water::divide_at_start(&mut system, part);
         system.rebuild_neighbours();
         open_boundary::update_buffer(&mut system, 0.0, 0.0);
         system.check_water();

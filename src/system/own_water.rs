@@ -5,27 +5,32 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::{ExitPath, Fluid, RemovedParticle, StepCheck, System};
+use super::{Driving, ExitPath, Fluid, RemovedParticle, StepCheck, System};
 use crate::{
     math::{Bounds, Matrix, Vector},
-    model::{Slip, TimeScheme},
+    model::{Model, Slip, TimeScheme},
     neighbours::{Columns, Division, IndexRanges, NeighbourLists},
     particles::{PARTICLES_PER_TASK, Particles, zeros},
-    ranks::{self, Ranks},
+    ranks::{self, RankPart, Ranks},
 };
 
 /// Whether a step of `system` reads water of other ranks only through pairs and within ranges that all ranks know.
 pub(crate) fn may_be_divided<const D: usize>(system: &System<D>) -> bool {
-    let (model, fluid) = (&system.model, &system.fluid);
     system.neighbours.division().is_some_and(|division| division.ranks.count() > 1)
-        && model.scheme == TimeScheme::Symplectic
+        && allow_division(&system.model, &system.driving.driving)
+        && !system.fluid.images.any()
+        && system.fluid_domain.open_boundaries.is_empty()
+}
+
+/// Whether ranks may have parts of the water with these laws and drives.
+pub(crate) fn allow_division(model: &Model, driving: &Driving) -> bool {
+    model.scheme == TimeScheme::Symplectic
+        && model.pair_loop.instruction_set().is_some()
         && model.viscosity.stress().is_none()
         && model.shift().is_none()
         && model.slip != Slip::None
-        && !fluid.images.any()
-        && system.fluid_domain.open_boundaries.is_empty()
-        && system.driving.driving.current.is_none()
-        && system.driving.driving.towed.is_none()
+        && driving.current.is_none()
+        && driving.towed.is_none()
 }
 
 /// The ranks that share the pairs of `system`; a single one if each has all pairs.
@@ -54,27 +59,52 @@ pub(crate) fn divide<const D: usize>(system: &mut System<D>, by_owner: bool) {
     }
 }
 
-/// Leaves each rank its own water before the first lists are made, where it may advance that alone. All ranks have all water until then.
-pub(super) fn divide_at_start<const D: usize>(system: &mut System<D>) {
+/// Leaves each rank the water of its own slabs before the first lists are made, where it may advance that alone. Until then, a rank has
+/// the `part` that was filled for it, or all water.
+pub(super) fn divide_at_start<const D: usize>(system: &mut System<D>, part: Option<RankPart>) {
     if !may_be_divided(system) {
         return;
     }
     divide(system, true);
     let System { neighbours, fluid, .. } = system;
-    let r = &fluid.particles.r;
-    let count = |part: usize, division: &Division| (r.len() * part / division.ranks.count()) as u32;
-    if let Some(division) = neighbours.division_mut() {
-        let rank = division.ranks.rank();
-        division.set_own_water((count(rank, division)..count(rank + 1, division)).collect(), r.len());
-    }
-    let columns = neighbours.share_out(r);
-    if let Some(division) = neighbours.division_mut() {
-        let rank = division.ranks.rank();
-        let is_own = |&i: &u32| division.owner_of(columns.slab_at(&r[i as usize])) == rank;
-        let own = (0..r.len() as u32).filter(is_own).collect();
-        division.set_own_water(own, r.len());
-    }
+    let filled = std::mem::take(&mut fluid.particles);
+    let count = part.map_or(filled.len(), |part| part.count);
+    let ranks = neighbours.division().map(|division| division.ranks.clone()).unwrap_or_default();
+    let filled = match part {
+        Some(_) => filled,
+        None => filled.slice(ranks::equal_part(count, &ranks)),
+    };
+    let columns = neighbours.share_out_own(filled.r.iter(), count);
+    let Some(division) = neighbours.division_mut() else { return };
+    let owner = |r: &Vector<D>| division.owner_of(columns.slab_at(r));
+    let (kept, leaving): (Vec<u32>, Vec<u32>) =
+        (0..filled.len() as u32).partition(|&i| owner(&filled.r[i as usize]) == ranks.rank());
+    let mut own = Particles::unwritten(kept.len());
+    set_range(&mut own, 0..kept.len(), &filled, &kept);
+    let give = |(filled, _): &(&Particles<D>, &mut Particles<D>), i: usize, given: &mut Vec<f64>| filled.give(i, given);
+    let take = |(_, own): &mut (&Particles<D>, &mut Particles<D>), _: usize, given: &[f64]| {
+        if owner(&Vector::from_column_slice(&given[..D])) == ranks.rank() {
+            own.push_given(given);
+        }
+    };
+    let leaving = IndexRanges::new(leaving);
+    division.share_water(&leaving, &mut (&filled, &mut own), Particles::<D>::NUMBERS, give, take);
+    drop(filled);
+    let mut order: Vec<u32> = (0..own.len() as u32).collect();
+    order.sort_unstable_by_key(|&i| own.id[i as usize]);
+    let first = ranks.part(own.len()).first;
+    let range = first..first + own.len();
+    fluid.particles = Particles::unwritten(count);
+    set_range(&mut fluid.particles, range.clone(), &own, &order);
+    division.set_own_water(range.map(|i| i as u32).collect(), count);
+    clear_corrections(system);
     set_apart(system, true);
+}
+
+/// The box (m) around the water of all ranks, of which this one may have a `part` at the places `own` (m).
+pub(super) fn bounds_of_all<const D: usize>(ranks: &Ranks, own: &[Vector<D>], part: Option<RankPart>) -> Bounds<D> {
+    let own = Bounds::around(own);
+    if part.is_some() { Division::of(ranks).union(&own) } else { own }
 }
 
 /// Completes the water on the first rank, or on all if `everyone`: there with the sums of the last force pass and the gradient
@@ -90,46 +120,6 @@ pub(crate) fn gather<const D: usize>(system: &mut System<D>, everyone: bool) {
     system.neighbours.forget_known();
     set_apart(system, !everyone);
     system.status.has_all_water = everyone || is_first;
-}
-
-/// Gives the first rank the places and velocities of all water, for which the lists have just been made, until
-/// [`forget_places`]. It has no sums of the water then: each step begins with a pass.
-pub(crate) fn gather_places<const D: usize>(system: &mut System<D>) {
-    let Some(division) = divided(&system.neighbours) else { return };
-    if division.ranks.rank() == 0 {
-        system.pair_loop.free_buffers();
-        system.rates.current = false;
-    }
-    let (is_first, own) = (division.ranks.rank() == 0, IndexRanges::new(division.own_indices()));
-    let give = |water: &&mut Particles<D>, i: usize, numbers: &mut Vec<f64>| {
-        numbers.extend(water.r[i].iter().chain(water.v[i].iter()));
-    };
-    let take = |water: &mut &mut Particles<D>, i: usize, numbers: &[f64]| {
-        if is_first {
-            water.take_motion(i, numbers);
-        }
-    };
-    division.share_water(&own, &mut (&mut system.fluid.particles), 2 * D, give, take);
-    if is_first {
-        system.neighbours.find_at(&system.fluid.particles.r);
-    }
-}
-
-/// Frees the memory of what [`gather_places`] gave.
-pub(crate) fn forget_places<const D: usize>(system: &mut System<D>) {
-    let count = system.fluid.particles.len();
-    let Some(division) = divided(&system.neighbours).filter(|division| division.ranks.rank() == 0) else { return };
-    if system.status.has_all_water {
-        return;
-    }
-    let own = division.own_range(count);
-    let Particles { r, v, .. } = &mut system.fluid.particles;
-    for vectors in [r, v] {
-        let mut kept = zeros(count);
-        kept[own.clone()].copy_from_slice(&vectors[own.clone()]);
-        *vectors = kept;
-    }
-    system.neighbours.forget_known();
 }
 
 /// Whether ranks lack the present water of others: the same for all ranks.
@@ -221,9 +211,10 @@ pub(super) fn share_boundary_velocity<const D: usize>(neighbours: &NeighbourList
 
 /// The numbers that the ranks give, in the order of the ranks, where each advances its own water; else `own`.
 pub(super) fn gather_numbers<const D: usize>(neighbours: &NeighbourLists<D>, own: Vec<f64>) -> Vec<f64> {
-    let Some(division) = division(neighbours) else { return own };
-    let all = division.ranks.gather_bytes(bytemuck::cast_slice(&own));
-    all.iter().flat_map(|bytes| bytemuck::pod_collect_to_vec::<u8, f64>(bytes)).collect()
+    match division(neighbours) {
+        Some(division) => division.ranks.concat(own),
+        None => own,
+    }
 }
 
 /// The numbers of a rank's water particles in ascending order, and how many all ranks have.
@@ -336,14 +327,10 @@ pub(super) fn sort<const D: usize>(system: &mut System<D>) -> (Option<Columns<D>
     let removed = system.remove_outside(&mut order);
     let Some(division) = division(&system.neighbours) else { return (None, removed) };
     let removed = gather_removed(division, &removed);
-    let counts = division.counts(order.len());
-    let (count, first) = (counts.iter().sum(), counts[..division.ranks.rank()].iter().sum::<usize>());
-    let (own, old) = (first..first + order.len(), &system.fluid.particles);
+    let RankPart { first, count } = division.ranks.part(order.len());
+    let own = first..first + order.len();
     let mut new = Particles::unwritten(count);
-    fill(&mut new.r[own.clone()], &old.r, &order);
-    fill(&mut new.v[own.clone()], &old.v, &order);
-    fill(&mut new.rho[own.clone()], &old.rho, &order);
-    fill(&mut new.id[own.clone()], &old.id, &order);
+    set_range(&mut new, own.clone(), &system.fluid.particles, &order);
     system.fluid.particles = new;
     clear_corrections(system);
     if let Some(division) = system.neighbours.division_mut() {
@@ -374,6 +361,14 @@ pub(super) fn take_next_corrections<const D: usize>(neighbours: &NeighbourLists<
     for (i, words) in next.into_iter().zip(into.chunks_exact(2 * D * D)) {
         corrections[i] = Matrix::from_iterator(ranks::doubles(words));
     }
+}
+
+/// Sets the particles `range` of `new` to those of `old` in `order`.
+fn set_range<const D: usize>(new: &mut Particles<D>, range: Range<usize>, old: &Particles<D>, order: &[u32]) {
+    fill(&mut new.r[range.clone()], &old.r, order);
+    fill(&mut new.v[range.clone()], &old.v, order);
+    fill(&mut new.rho[range.clone()], &old.rho, order);
+    fill(&mut new.id[range], &old.id, order);
 }
 
 /// Sets `new` to the items of `old` in `order`.
@@ -414,7 +409,7 @@ pub(super) fn take_next_slab<const D: usize>(system: &mut System<D>, columns: &C
     let words =
         |i: u32| std::iter::once(i).chain(r[i as usize].iter().flat_map(|&x| ranks::words_of(x)).collect::<Vec<_>>());
     let (out, width) = (first.flat_map(words).collect::<Vec<u32>>(), 1 + 2 * D);
-    let counts = division.counts(out.len());
+    let counts = division.ranks.counts(out.len());
     let mut into = vec![0; after.map_or(0, |rank| counts[rank])];
     division.ranks.pass((before, &out), (after, &mut into));
     let mut next = Vec::with_capacity(into.len() / width);
@@ -423,69 +418,6 @@ pub(super) fn take_next_slab<const D: usize>(system: &mut System<D>, columns: &C
         r[words[0] as usize] = Vector::from_iterator(ranks::doubles(&words[1..]));
     }
     next
-}
-
-/// Takes places and densities of the water in the slabs beside those of this rank, and lets queries at a point find these and its own.
-pub(super) fn know_adjacent_slabs<const D: usize>(system: &mut System<D>) {
-    let System { neighbours, fluid: Fluid { particles: Particles { r, rho, .. }, .. }, .. } = system;
-    let Some(division) = division(neighbours).filter(|division| division.is_apart) else { return };
-    let ([before, after], slabs) = (division.adjacent(), division.own_slabs());
-    let mut known: Vec<u32> = division.own_indices().collect();
-    let width = 1 + 2 * (D + 1);
-    for (to, from, slab) in [(before, after, slabs.start), (after, before, slabs.end.saturating_sub(1))] {
-        let mut out = Vec::new();
-        for i in to.iter().flat_map(|_| neighbours.water_of_slab(slab)) {
-            out.push(i as u32);
-            out.extend(r[i].iter().chain([&rho[i]]).flat_map(|&x| ranks::words_of(x)));
-        }
-        let counts = division.counts(out.len());
-        let mut into = vec![0; from.map_or(0, |rank| counts[rank])];
-        division.ranks.pass((to, &out), (from, &mut into));
-        for words in into.chunks_exact(width) {
-            let (i, numbers): (_, Vec<f64>) = (words[0] as usize, ranks::doubles(&words[1..]).collect());
-            (r[i], rho[i]) = (Vector::from_column_slice(&numbers[..D]), numbers[D]);
-            known.push(words[0]);
-        }
-    }
-    known.sort_unstable();
-    let places: Vec<_> = known.iter().map(|&i| r[i as usize]).collect();
-    neighbours.know(known, &places);
-}
-
-/// The boxes (m) of the first rank.
-pub(crate) fn share_ranges<const D: usize>(system: &System<D>, own: &[Bounds<D>]) -> Vec<Bounds<D>> {
-    let numbers: Vec<f64> = own.iter().flat_map(|range| range.min.iter().chain(range.max.iter())).copied().collect();
-    let all = ranks(system).gather_bytes(bytemuck::cast_slice(&numbers));
-    let numbers: Vec<f64> = bytemuck::pod_collect_to_vec(&all[0]);
-    let range = |ends: &[f64]| Bounds {
-        min: Vector::from_column_slice(&ends[..D]),
-        max: Vector::from_column_slice(&ends[D..]),
-    };
-    numbers.chunks_exact(2 * D).map(range).collect()
-}
-
-/// Gives all ranks the present water of all within `ranges` (m), the same on all of them, where ranks lack the water of others. Until
-/// the next lists are made, queries at a point find this water alone.
-pub(crate) fn know_within<const D: usize>(system: &mut System<D>, ranges: &[Bounds<D>]) {
-    let System { neighbours, fluid: Fluid { particles, .. }, .. } = system;
-    let Some(division) = divided(neighbours).filter(|_| !ranges.is_empty()) else { return };
-    let is_within = |i: &u32| ranges.iter().any(|range| range.contains(&particles.r[*i as usize]));
-    let own: Vec<u32> = neighbours.own_within(ranges).into_iter().filter(is_within).collect();
-    let then = neighbours.positions_at_build();
-    let mut known: Vec<(u32, Vector<D>)> = own.iter().map(|&i| (i, then[i as usize])).collect();
-    let numbers = Particles::<D>::NUMBERS;
-    let give = |(water, _): &(&mut Particles<D>, &mut Vec<(u32, Vector<D>)>), i: usize, given: &mut Vec<f64>| {
-        water.give(i, given);
-        given.extend(then[i].iter());
-    };
-    let take = |(water, known): &mut (&mut Particles<D>, &mut Vec<(u32, Vector<D>)>), i: usize, given: &[f64]| {
-        water.take(i, given);
-        known.push((i as u32, Vector::from_column_slice(&given[numbers..])));
-    };
-    division.share_water(&IndexRanges::new(own), &mut (particles, &mut known), numbers + D, give, take);
-    known.sort_unstable_by_key(|(i, _)| *i);
-    let (these, places): (Vec<_>, Vec<_>) = known.into_iter().unzip();
-    neighbours.know(these, &places);
 }
 
 /// Arrays as long as those of `all`, of which only the places `these` are written, and no names.

@@ -31,7 +31,7 @@ fn a_line_and_the_water_around_it_exchange_momentum() {
     let line = MooringSpec::new("loop", ends, 2.0, kind).acting_on_water();
     let setup = Setup::new(model.clone()).water(water, size).solids(bodies).mooring(line).periodic(0, 0.0, size);
     let start: Vec<_> = setup.solids.iter().map(SolidSpec::initial_kinematics).collect();
-    let mut system = System::new(setup, Dim::<2>::pair_loop(&model), &Ranks::default()).unwrap();
+    let mut system = System::new(setup, Dim::<2>::pair_loop(&model), Ranks::default().with_all_water()).unwrap();
     system.rebuild_neighbours();
     let mut moorings = Moorings::new(&mut system, &start).unwrap();
     // The loop moves through the water and across its side.

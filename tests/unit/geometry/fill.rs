@@ -139,3 +139,31 @@ fn filling_has_the_same_bits_on_any_number_of_threads() {
     let one = filled(1);
     assert!([2, 3, 8].into_iter().all(|threads| filled(threads) == one));
 }
+
+/// Ranks that each fill a part have the water of one in the order of the ranks, also where it is packed around a ball and two regions
+/// overlap.
+#[test]
+fn the_parts_of_ranks_are_the_water_of_one() {
+    let mut column = pool([0.5, 0.5, 1.0]);
+    column.pose.position += Vector::from([0.3, 0.1, 0.0]);
+    let (regions, dp) = ([column, pool([1.2, 0.7, 0.5])], 0.05);
+    let (ball, at) = (Shape::Ball { radius: 0.17 }, Pose::at(Vector::from([0.53, 0.36, 0.5])));
+    let solids = [(&ball, &at, true)];
+    let filled = |ranks: &Ranks| {
+        let filling =
+            Filling { regions: &regions, inside: Vec::new(), solids: &solids, spaces: &[], ranks, owners: ranks };
+        filling.fill(dp).unwrap()
+    };
+    let whole = filled(&Ranks::default());
+    assert!(whole.water.removed_in_solids > 50 && whole.water.removed_in_regions > 50);
+    let parts: Vec<_> = std::thread::scope(|scope| {
+        let filled = &filled;
+        let threads: Vec<_> =
+            Ranks::in_threads(3).into_iter().map(|ranks| scope.spawn(move || filled(&ranks))).collect();
+        threads.into_iter().map(|thread| thread.join().expect("a rank does not panic")).collect()
+    });
+    assert!(parts.iter().all(|part| part.water.r.len() > 100), "each rank has a part");
+    assert!(parts.iter().all(|part| part.water.removed_in_solids == whole.water.removed_in_solids));
+    assert_eq!(parts.iter().flat_map(|part| part.water.r.clone()).collect::<Vec<_>>(), whole.water.r);
+    assert_eq!(parts.into_iter().flat_map(|part| part.home).collect::<Vec<_>>(), whole.home);
+}

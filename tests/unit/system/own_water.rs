@@ -5,7 +5,7 @@ use crate::{
     geometry::Shape,
     model::{HasPairLoop as _, Model},
     solid::{Dim, SolidSpec},
-    system::Setup,
+    system::{Setup, known_water},
 };
 
 /// A system of water at rest in a tank, 30 dp long, on each of `count` ranks, and what `work` makes of it.
@@ -16,7 +16,7 @@ fn still_tanks<T: Send>(count: usize, work: impl Fn(&mut System<2>) -> T + Sync)
         let setup = Setup::<2>::new(Model::water(2, dp, 0.2)).solid(tank).fill_box([0.0, 0.0], [0.6, 0.2]);
         let setup = setup.expect("a tank holds water");
         let pair_loop = Dim::<2>::pair_loop(&setup.model);
-        work(&mut System::new(setup, pair_loop, &ranks).expect("a sound setup"))
+        work(&mut System::new(setup, pair_loop, ranks.with_all_water()).expect("a sound setup"))
     };
     std::thread::scope(|scope| {
         let still_tank = &still_tank;
@@ -33,7 +33,7 @@ fn a_rank_that_knows_the_adjacent_slabs_finds_all_water_near_its_boundary_partic
     let near_walls = |count: usize| {
         still_tanks(count, |system| {
             assert_eq!(is_apart(&system.neighbours), count > 1);
-            know_adjacent_slabs(system);
+            known_water::know_adjacent_slabs(system);
             let reach = system.model.support_radius();
             let water = |i: usize| {
                 let (x, Particles { r, rho, .. }) = (system.boundary.particles.r[i], &system.fluid.particles);
@@ -62,9 +62,9 @@ fn a_rank_that_knows_the_adjacent_slabs_finds_all_water_near_its_boundary_partic
 fn the_first_rank_has_the_places_of_all_water_until_it_forgets_them() {
     let alone = still_tanks(1, |system| system.fluid.particles.r.clone()).swap_remove(0);
     let places = still_tanks(3, |system| {
-        gather_places(system);
+        known_water::gather_places(system);
         let all = system.fluid.particles.r.clone();
-        forget_places(system);
+        known_water::forget_places(system);
         let these = own(&system.neighbours, all.len()).0;
         let kept = system.fluid.particles.r[these.clone()] == all[these.clone()];
         let others = (0..all.len()).filter(|i| !these.contains(i));
