@@ -5,6 +5,7 @@ mod add_remove;
 mod change_by_hand;
 mod dimension;
 mod external_bodies;
+mod water_of_ranks;
 #[cfg(feature = "gpu")]
 mod on_device;
 mod rollback;
@@ -39,12 +40,12 @@ use crate::{
     coupling::{Accounting, AccountingState, AcousticAddedMass, Bodies, BodiesState, Hook, Interval, Moorings},
     error::{Error, ErrorCode, ErrorKind, Fault, Result},
     interaction::{PairLoop, RequestedSums},
-    math::{Bivector, Bounds, Vector},
+    math::{Bivector, Vector},
     model::HasPairLoop as _,
     ranks::{Ranks, WaterShare},
     solid::{ContactForce, Dim, HasEngine as _, Role, SolidSpec, constraint::assembly::Assembly},
     system::{
-        LimitViolation, SavedWater, System, SystemState, known_water,
+        LimitViolation, SavedWater, System, SystemState,
         own_water::{self, OwnNames},
         set_buffer_time, set_gravity_at, update_buffer, update_current,
     },
@@ -240,37 +241,6 @@ impl<const D: usize> Simulation<D> {
     /// [`Simulation::gather_water`].
     pub(crate) fn step_with_own_water(&mut self, end: f64) -> Result<()> {
         self.make_step_with(end, &mut |_| Ok(()))
-    }
-
-    /// Completes the water on the first rank, or on all if `everyone`, and its sums there. All ranks must call this.
-    pub(crate) fn gather_water(&mut self, everyone: bool) {
-        (self.compiled.gather_water)(self, everyone);
-    }
-
-    /// Gives all ranks the water within the boxes (m) that the first rank names, where they lack it. All ranks must call this.
-    pub(crate) fn know_water_within(&mut self, ranges: &[Bounds<D>]) {
-        let ranges = known_water::share_ranges(&self.system, ranges);
-        known_water::know_within(&mut self.system, &ranges);
-    }
-
-    /// Gives the first rank the water that the checks before the first step read: places and velocities, with mooring lines all. All ranks
-    /// must call this at the set-up.
-    pub(crate) fn gather_for_checks(&mut self) {
-        if self.system.status.has_all_water {
-        } else if self.bodies.moorings.is_empty() {
-            known_water::gather_places(&mut self.system);
-        } else {
-            self.gather_water(false);
-        }
-    }
-
-    /// Leaves the first rank the places of its own water, if it got those of all for the checks.
-    pub(crate) fn forget_places(&mut self) {
-        known_water::forget_places(&mut self.system);
-    }
-
-    fn complete_water(&mut self, everyone: bool) {
-        own_water::gather(&mut self.system, everyone);
     }
 
     /// Advances by one step, calling `hook` when the water has moved and the bodies have not.

@@ -264,7 +264,7 @@ impl<const D: usize> NeighbourLists<D> {
     /// Makes queries at a point use the positions `water` (m), for which the lists were built. This rank may lack some of the
     /// particles.
     pub(crate) fn find_at(&mut self, water: &[Vector<D>]) {
-        self.grids[0] = OnceLock::from(CellGrid::new(water, self.list_radius()));
+        (self.grids[0], self.known) = (OnceLock::from(CellGrid::new(water, self.list_radius())), None);
     }
 
     /// Lets queries at a point find all positions at the last build again.
