@@ -5,7 +5,7 @@ mod add_remove;
 mod change_by_hand;
 mod dimension;
 mod external_bodies;
-mod water_of_ranks;
+pub(crate) mod water_of_ranks;
 #[cfg(feature = "gpu")]
 mod on_device;
 mod rollback;
@@ -244,6 +244,15 @@ impl<const D: usize> Simulation<D> {
     }
 
     /// Advances by one step, calling `hook` when the water has moved and the bodies have not.
+    /// Completes the water on the first rank, or on all if `everyone`, and its sums there. All ranks must call this.
+    pub(crate) fn gather_water(&mut self, everyone: bool) {
+        (self.compiled.gather_water)(self, everyone);
+    }
+
+    fn complete_water(&mut self, everyone: bool) {
+        own_water::gather(&mut self.system, everyone);
+    }
+
     fn make_step_with(&mut self, end: f64, hook: &mut Hook<D>) -> Result<()> {
         #[cfg(feature = "gpu")]
         if self.device.is_some() {

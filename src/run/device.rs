@@ -15,7 +15,7 @@ use crate::{
     math::Bounds,
     ranks::Ranks,
     scene::Scene,
-    simulation::Simulation,
+    simulation::{Simulation, water_of_ranks},
     solid::Solid,
     system::has_thin_faces,
 };
@@ -115,7 +115,7 @@ pub(super) fn fetch<const D: usize>(
         Some(ranges) if ranges.is_empty() => {}
         Some(ranges) => {
             leader.order(Order::GatherNear, sim.time())?;
-            sim.know_water_within(&ranges);
+            water_of_ranks::know_within(sim, &ranges);
         }
         None => {
             leader.order(Order::Gather, sim.time())?;

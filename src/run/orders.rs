@@ -10,7 +10,7 @@ use crate::{
     plan::{ControlChange, FramesPlan, Plan},
     ranks::{Ranks, WaterShare, from_words, words_of},
     scene::{BuiltScene, Scene},
-    simulation::{Dimension, Setup, Simulation},
+    simulation::{Dimension, Setup, Simulation, water_of_ranks},
     solid::Dim,
 };
 
@@ -204,7 +204,7 @@ where
         let mut sim = Simulation::set_up(setup, share)?;
         // This rank does not read the probes, but it has to record the data that they read.
         probe_factory::probes_from_plan(&plan, &mut sim)?;
-        sim.gather_for_checks();
+        water_of_ranks::gather_for_checks(&mut sim);
         let mut changes = Vec::new();
         if let Some(checkpoint) = checkpoint {
             sim.restore(&checkpoint.state)?;
@@ -228,7 +228,7 @@ where
                 self.changes.extend(self.controls.set(&mut self.sim, control, value));
             }
             Order::Gather => self.sim.gather_water(false),
-            Order::GatherNear => self.sim.know_water_within(&[]),
+            Order::GatherNear => water_of_ranks::know_within(&mut self.sim, &[]),
             Order::Frame => {
                 if let Some(FramesPlan { fields, crop, .. }) = &self.plan.frames {
                     let written = frame::write_water(&mut io::empty(), self.sim.system(), fields, crop.as_ref());

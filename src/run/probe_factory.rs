@@ -6,7 +6,7 @@ use crate::{
     math::Bounds,
     plan::{CheckPlan, Plan, Reference},
     probe::{Probe, ProbePlan, ProbeReads},
-    simulation::{Dimension, Simulation},
+    simulation::{Dimension, Simulation, water_of_ranks},
     solid::Dim,
     system::System,
 };
@@ -23,7 +23,7 @@ where
     plan.probes.iter().for_each(|probe| probe.kind.enable_records(sim));
     let mut probes: Vec<_> = plan.probes.iter().map(|probe| build_probe(probe, sim.system())).collect::<Result<_>>()?;
     match water_ranges(probes.iter().map(|probe| &**probe), sim.system()) {
-        Some(ranges) => sim.know_water_within(&ranges),
+        Some(ranges) => water_of_ranks::know_within(sim, &ranges),
         None => sim.gather_water(false),
     }
     probes.iter_mut().for_each(|probe| probe.read_start(sim.system()));

@@ -25,7 +25,7 @@ use crate::{
     preflight,
     ranks::{Ranks, WaterShare},
     scene::{BuiltScene, Plan, RenamedName, ResolvedValue, Scene},
-    simulation::{Dimension, Simulation},
+    simulation::{Dimension, Simulation, water_of_ranks},
     solid::{Dim, HasEngine as _, Role},
 };
 
@@ -71,11 +71,11 @@ where
         let leader = Leader::new(ranks.clone());
         let mut sim = Simulation::set_up(setup, WaterShare { ranks, part }).map_err(|e| scene.with_location(e))?;
         let probes = probe_factory::probes_from_plan(&plan, &mut sim)?;
-        sim.gather_for_checks();
+        water_of_ranks::gather_for_checks(&mut sim);
         let checks = probe_factory::checks_from_plan(&plan, &probes).map_err(|e| scene.with_location(e))?;
         let columns: Vec<usize> = probes.iter().map(|p| p.columns().len()).collect();
         let preflight = preflight::preflight(&sim, &plan, initial_water, &columns);
-        sim.forget_places();
+        water_of_ranks::forget_places(&mut sim);
         let mut warnings = preflight.with_file_notes(&file_notes).warnings();
         let notes = file_notes.iter().filter(|note| !note.is_warning);
         let mut notes: Vec<String> = notes.map(|note| format!("{}: {}", note.what, note.remedy)).collect();
