@@ -48,6 +48,9 @@ const ONE_SIDED: f64 = 0.25;
 /// Distance along a face, dp, up to which a particle of a film covers what is below it: half a diagonal between particles.
 const COVERS: f64 = 0.75;
 
+/// Share of a face that the other solid sees, –, above which the faces count as parallel.
+const PARALLEL: f64 = 1.0 - 1e-6;
+
 /// Distance from a rim, away from the film, at which water or air must have room, dp.
 const OUTSIDE: f64 = 1.25;
 
@@ -81,6 +84,8 @@ struct FilmParticle<const D: usize> {
     /// Its place among the boundary particles near water, if it is one of them.
     near_water: Option<u32>,
     rim: Rim<D>,
+    /// Share (–) of its face that the other solid sees: less than 1 on a curved or inclined face.
+    facing: f64,
     /// The boundary particles of the other solid below it that see water through the solid, by their places among those near water.
     covered: Vec<u32>,
 }
@@ -220,15 +225,25 @@ fn films_between<const D: usize>(system: &System<D>, i: usize, j: usize, r: &[Ve
         let lower = if depths[found[k]] < THICK * dp { (0.5 * dp - distance(&points[k])).max(0.0) } else { 0.0 };
         points[k] + normal(&points[k]) * lower
     };
+    // In a gap that widens outwards, as below a ball, the water stands between the faces.
+    let outside = |k: usize, outwards: &Vector<D>| {
+        let x = beside(k) + outwards * (OUTSIDE * dp);
+        let depth = -solid.spec.shape.signed_distance(&pose.local(&x));
+        if depth > 0.0 { x - normal(&x) * (0.5 * (depth + distance(&x))) } else { x }
+    };
+    let facing = |k: usize| {
+        let n = normal(&points[k]);
+        let arms = around[k].iter().map(|&m| points[k] - points[m]);
+        let least = arms.map(|arm| (arm - n * n.dot(&arm)).norm() / arm.norm()).fold(1.0, f64::min);
+        if least > PARALLEL { 1.0 } else { least }
+    };
     let rim = |k: usize| {
         let arms = around[k].iter().map(|&m| points[k] - points[m]);
         let (sum, length) = arms.fold((Vector::zeros(), 0.0), |(sum, length), arm| (sum + arm, length + arm.norm()));
         let outwards: Option<Vector<D>> = sum.try_normalize(ONE_SIDED * length);
         match outwards {
             None if around[k].is_empty() => Rim::Around(normal(&points[k])),
-            Some(outwards) if has_room(system, &(beside(k) + outwards * (OUTSIDE * dp)), poses) => {
-                Rim::Towards(outwards)
-            }
+            Some(outwards) if has_room(system, &outside(k, &outwards), poses) => Rim::Towards(outwards),
             _ => Rim::Elsewhere,
         }
     };
@@ -270,6 +285,7 @@ fn films_between<const D: usize>(system: &System<D>, i: usize, j: usize, r: &[Ve
         boundary: found[k] as u32,
         near_water: wet.binary_search(&(found[k] as u32)).ok().map(|place| place as u32),
         rim: rim(k),
+        facing: facing(k),
         covered: std::mem::take(&mut covered[k]),
     };
     let mut film =
@@ -352,7 +368,7 @@ fn forces<const D: usize>(system: &System<D>, film: &Film<D>, water: &[WaterNear
         let normal = pose.rotation * other.spec.shape.outward_normal(&local, 0.05 * dp);
         let flowing = (2.0 * water.cover).min(1.0) * (3.0 * water.away.dot(&normal)).clamp(0.0, 1.0);
         let thin = ((FADING[1] - gap / dp) / (FADING[1] - FADING[0])).clamp(0.0, 1.0);
-        let share = thin * (1.0 - flowing) * system.computed_share(solid, &x);
+        let share = thin * (1.0 - flowing) * particle.facing * system.computed_share(solid, &x);
         let on_solid = system.place_on_solid(film.solid, i);
         let inflow = (velocity_at(solid, &on_solid) - velocity_at(other, &on_other)).dot(&normal).max(0.0) * spread
             / gap.max(FADING[0] * dp);
