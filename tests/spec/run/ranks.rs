@@ -211,10 +211,10 @@ fn basin(dimension: usize) -> String {
         average = true
         every = 0.01
         [[probe]]
-        pressure = {{ at = {} }}
+        pressure = {}
         every = 0.005
         [[probe]]
-        velocity = {{ at = {} }}
+        velocity = {}
         on = "float"
         every = 0.01
         [[probe]]
