@@ -10,6 +10,7 @@ mod lifetimes;
 mod misplaced_bodies;
 mod moorings;
 mod open_boundaries;
+mod overlapping_bodies;
 mod periodic_sides;
 mod floating_bodies;
 mod hollows;
@@ -223,6 +224,7 @@ pub fn preflight<const D: usize>(
     hollows::check_own_water(&look, &inside, &mut findings);
     let bodies = look.bodies(&gaps.touching, moorings::moored_ends(&look, sim), &mut findings);
     carried_bodies::check(&look, (&gaps.touching, &inside), &bodies, &mut findings);
+    overlapping_bodies::check(&look, &mut findings);
     look.misplaced_bodies(&gaps.touching, &mut findings);
     look.check_thickness(&mut findings);
     thin_parts::check_parts(&look, &mut findings);

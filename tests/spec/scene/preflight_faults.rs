@@ -271,3 +271,26 @@ fn a_thin_dry_wall_is_told_with_the_error_of_its_load() {
     }
     assert!(!finding(&wall(0.04), "thin_wall").what.contains('%'));
 }
+
+#[test]
+fn bodies_that_displace_the_same_water_are_told_with_its_volume() {
+    let hull = body("hull", [0.6, 0.2], 300.0, "x = 1.0, draft = 0.1");
+    let keel = |bottom: f64| body("keel", [0.1, 0.3], 800.0, &format!("x = 1.0, bottom = {bottom}"));
+    let joint = "[[joint]]\nname = \"j\"\nkind = \"fixed\"\nbetween = [\"hull\", \"keel\"]\nat = [1.0, 0.5]\n";
+    // The keel reaches from 0.26 to 0.56 m, the hull from 0.5 m: they have 0.1 m by 0.06 m in common below 0.6 m.
+    let note = finding(&format!("{WATER}{TANK}{hull}{}{joint}", keel(0.26)), "overlapping_bodies");
+    assert!(
+        note.what.contains("\"hull\" and \"keel\" have 0.006 m² below") && note.what.contains("6 kg"),
+        "{}",
+        note.what
+    );
+    has_no(&format!("{WATER}{TANK}{hull}{}{joint}", keel(0.2)), "overlapping_bodies");
+    // A mast through the dry floor of a hull: below the level lie 0.1 m by 0.1 m of it in the hollow.
+    let tub = "[[solid]]\nname = \"tub\"\nshape = { tank = { size = [0.6, 0.4], thickness = 0.1 } }\nat = { x = 0.7, y = 0.5 }\n\
+               dry = true\nfree = { density = 400.0 }\n";
+    let note = finding(
+        &format!("{WATER}{TANK}{tub}{}", body("mast", [0.1, 0.4], 100.0, "x = 1.0, bottom = 0.5")),
+        "overlapping_bodies",
+    );
+    assert!(note.what.contains("0.01 m²"), "{}", note.what);
+}
