@@ -87,6 +87,21 @@ pub(crate) fn wall_contours<const D: usize>(points: &[Vector<D>], thickness: f64
     vec![points[1..].iter().rev().copied().collect(), far_corners(points, thickness)[1..].concat()]
 }
 
+/// Returns the convex parts of a wall, counter-clockwise: one quadrilateral for each edge, mitred at the corners, then a fan for
+/// each rounded corner.
+pub(crate) fn wall_parts<const D: usize>(points: &[Vector<D>], thickness: f64) -> Vec<Vec<Vector<D>>> {
+    let far = far_corners(points, thickness);
+    let side = |(near, far): (&[Vector<D>], &[Vec<Vector<D>>])| {
+        let mut corners = vec![near[0]];
+        corners.extend(far[0].last().into_iter().chain(far[1].first()));
+        corners.push(near[1]);
+        corners
+    };
+    let sides = points.windows(2).zip(far.windows(2)).map(side);
+    let fans = points.iter().zip(&far).filter(|(_, far)| far.len() > 1);
+    sides.chain(fans.map(|(p, far)| std::iter::once(*p).chain(far.iter().copied()).collect())).collect()
+}
+
 /// Returns the length (m) of the outline of a wall.
 pub(super) fn wall_perimeter<const D: usize>(points: &[Vector<D>], thickness: f64) -> f64 {
     let length = |line: &[Vector<D>]| line.windows(2).map(|ab| (ab[1] - ab[0]).norm()).sum::<f64>();

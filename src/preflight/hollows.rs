@@ -17,7 +17,7 @@ const DRY: f64 = 0.05;
 pub(super) struct SolidHollows<const D: usize> {
     enclosure: Enclosure<D>,
     /// Number of water particles in each hollow.
-    particles: Vec<usize>,
+    pub(super) particles: Vec<usize>,
 }
 
 impl<const D: usize> SolidHollows<D> {

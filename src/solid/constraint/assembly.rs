@@ -208,7 +208,8 @@ impl<const D: usize> Assembly<D> {
         let winds = self.winds.iter().flat_map(|wind| wind.loads_at(solids, t + 0.5 * dt));
         let forces: Vec<(usize, Load<D>)> = forces.chain(winds).collect();
         let (mut known, mut reactions) = (Vec::new(), Vec::new());
-        if !self.springs.is_empty() {
+        let has_motor = |(joint, (set, _)): (&Joint<D>, &(Option<MotorCommand>, _))| joint.has_motor(set.as_ref());
+        if !self.springs.is_empty() || self.joints.iter().zip(&self.state.joints).any(has_motor) {
             known.clone_from(&around.loads);
             forces.iter().for_each(|(solid, load)| known[*solid] += *load);
             reactions = self.last_reactions(engine, solids);
@@ -264,12 +265,12 @@ impl<const D: usize> Assembly<D> {
             // A joint that is given back to no motor has no force of one.
             reading.motor_force = 0.0;
             if let (Some(drive), Some(free), Some(own)) = (drive, free, rows.last()) {
-                let loads = joint
-                    .spec
-                    .between
-                    .map(|end| end.map_or_else(Load::zero, |i| around.loads[i] + engine.applied_push(i)));
-                let going =
-                    [free.rate(&ends), own.acceleration(&loads, &mobility), own.inverse_effective_mass(own, &mobility)];
+                let acceleration = |load: &dyn Fn(usize) -> Load<D>| {
+                    own.acceleration(&joint.spec.between.map(|end| end.map_or_else(Load::zero, load)), &mobility)
+                };
+                let known = acceleration(&|i| around.loads[i] + engine.applied_push(i));
+                let reaction = acceleration(&|i| reactions[i]);
+                let going = [free.rate(&ends), known, reaction, own.inverse_effective_mass(own, &mobility)];
                 reading.motor_force = joint.motor_force(&drive, &ends, going, dt);
                 give(engine, joint.spec.between, &free.loads(reading.motor_force));
                 note(&mut self.tied, joint.spec.between, &free.loads(reading.motor_force), |tied| &mut tied.motors);

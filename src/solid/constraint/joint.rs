@@ -272,25 +272,31 @@ impl<const D: usize> Joint<D> {
         (rows, locks)
     }
 
+    /// Whether it has a motor: a program's `set`, or its own.
+    pub(in crate::solid) fn has_motor(&self, set: Option<&MotorCommand>) -> bool {
+        set.is_some() || self.spec.motor.is_some()
+    }
+
     /// The motor command at time `t` (s): a program's `set`, or its own motor.
     pub(in crate::solid) fn motor_command(&self, set: Option<MotorCommand>, t: f64) -> Option<MotorCommand> {
         set.or_else(|| self.spec.motor.as_ref().map(|motor| motor.command_at(t)))
     }
 
-    /// The force (N or N m) of the motor over a step of `dt` (s). `gain` (m/s² or rad/s²) is the acceleration of the coordinate
-    /// by the known loads.
+    /// The force (N or N m) of the motor over a step of `dt` (s). `known` and `reaction` (m/s² or rad/s²) are the accelerations of
+    /// the coordinate by the known loads and by the reactions of the last step.
     pub(in crate::solid) fn motor_force(
         &self,
         drive: &MotorCommand,
         ends: &[Kinematics<D>; 2],
-        [rate, gain, ease]: [f64; 3],
+        [rate, known, reaction, ease]: [f64; 4],
         dt: f64,
     ) -> f64 {
         drive.force(&MotorInput {
             angle: self.spec.kind == JointKind::Hinge,
             position: self.position(ends),
             rate,
-            free_acceleration: gain,
+            known_acceleration: known,
+            reaction,
             inverse_effective_mass: ease,
             dt,
         })

@@ -13,6 +13,7 @@ use serde::{Deserialize, Serialize};
 use super::{
     jacobian::{ConstraintJacobian, Mobility, kinematics_of_end},
     lifetime::Lifetime,
+    reactions::borne,
 };
 use crate::{
     math::Vector,
@@ -218,8 +219,8 @@ pub(in crate::solid) struct SpringInput {
     pub(in crate::solid) rate: f64,
     /// Acceleration of its length by the known loads without its own, m/s².
     pub(in crate::solid) known_acceleration: f64,
-    /// Acceleration of its length by the joints, ropes and contacts of the last step, m/s². It counts as far as it opposes the known
-    /// acceleration, because the load of an impact does not last. `None` before the first step: it opposes all of it.
+    /// Acceleration of its length by the joints, ropes and contacts of the last step, m/s². `None` before the first step: it
+    /// opposes all of the known acceleration.
     pub(in crate::solid) reaction: Option<f64>,
     /// Inverse effective mass of its ends, 1/kg.
     pub(in crate::solid) g: f64,
@@ -244,7 +245,7 @@ impl SpringParameters {
             return 0.0;
         }
         let known = known_acceleration - g * self.stiffness * stretch;
-        let borne = reaction.map_or(-known, |reaction| reaction.clamp((-known).min(0.0), (-known).max(0.0)));
+        let borne = reaction.map_or(-known, |reaction| borne(known, reaction));
         let damped = self.damping * (rate + dt * (known + borne)) / (1.0 + dt * self.damping * g);
         let tension = self.stiffness * stretch + damped;
         if tension_only { tension.max(0.0) } else { tension }

@@ -3,24 +3,21 @@
 //!   F = F₀ + k (x* − x) + c (v* − ẋ)
 //!
 //! The stiffness limits the time step, as that of a spring does. The damping does not, because it acts at the rate at the end of
-//! the step. g = J M⁻¹ Jᵀ is the inverse effective mass of the pair along the coordinate, with the joint's locks. With
-//! s = Δt c g, the damping force is
+//! the step. g = J M⁻¹ Jᵀ is the inverse effective mass of the pair along the coordinate, with the joint's locks. The damping
+//! force is
 //!
-//!   c (v* − ẋ − w Δt ẍ)/(1 + s),   w = 1/(1 + (0.1/s)²),
+//!   c (v* − ẋ − Δt ẍ)/(1 + Δt c g),
 //!
-//! where ẍ is the acceleration of the coordinate by water, weight, pushes and F₀. Without the term w Δt ẍ the rate would miss v*
-//! by Δt ẍ, however strong the brake is: by 0.2 m/s for a light body. With it, the speed at which a load moves a brake is correct
-//! within 5 %. ẍ does not include the locks of other joints, end stops and contacts. Therefore w is small where the step resolves
-//! the damping. A motor with a stiffness omits the term, because a stiffness finds its equilibrium under any load.
+//! where ẍ is the acceleration of the coordinate by water, weight, pushes and F₀, and by what joints, ropes and contacts bore of
+//! these in the last step. Without the term Δt ẍ the rate would miss v* by Δt ẍ, however strong the brake is: by 0.2 m/s for a
+//! light body. A motor with a stiffness omits the term, because a stiffness finds its equilibrium under any load.
 
 use std::f64::consts::TAU;
 
 use serde::{Deserialize, Serialize};
 
+use super::reactions::borne;
 use crate::solid::TimeFunction;
-
-/// Value of s = Δt c g at which w is ½, –.
-const RESOLVED: f64 = 0.1;
 
 /// A motor, brake or power take-off. Forces are in N (N m for a hinge; per metre of width in 2-D). A positive force drives the
 /// second solid in the direction in which the coordinate grows.
@@ -145,7 +142,9 @@ pub(in crate::solid) struct MotorInput {
     /// Its rate, m/s or rad/s.
     pub(in crate::solid) rate: f64,
     /// Its acceleration by the known loads, m/s² or rad/s².
-    pub(in crate::solid) free_acceleration: f64,
+    pub(in crate::solid) known_acceleration: f64,
+    /// Its acceleration by the joints, ropes and contacts of the last step, m/s² or rad/s².
+    pub(in crate::solid) reaction: f64,
     /// g, the inverse effective mass of the pair, 1/kg or 1/(kg m²).
     pub(in crate::solid) inverse_effective_mass: f64,
     /// The step, s.
@@ -160,8 +159,8 @@ impl MotorCommand {
             off -= TAU * (off / TAU).round();
         }
         let stiff = going.dt * self.damping * going.inverse_effective_mass;
-        let foreseen = if self.stiffness > 0.0 { 0.0 } else { 1.0 / (1.0 + (RESOLVED / stiff).powi(2)) };
-        let gained = foreseen * going.dt * (going.free_acceleration + going.inverse_effective_mass * self.force);
+        let known = going.known_acceleration + going.inverse_effective_mass * self.force;
+        let gained = if self.stiffness > 0.0 { 0.0 } else { going.dt * (known + borne(known, going.reaction)) };
         let damped = self.damping * (self.velocity - going.rate - gained) / (1.0 + stiff);
         (self.force + self.stiffness * off + damped).clamp(-self.max_force, self.max_force)
     }

@@ -57,6 +57,12 @@ impl<const D: usize> Reaction<D> {
     }
 }
 
+/// Returns the part of the acceleration `reaction` by joints, ropes and contacts in the last step that opposes the `known`
+/// acceleration, and no more than it, m/s² or rad/s². The load of an impact does not last.
+pub(super) fn borne(known: f64, reaction: f64) -> f64 {
+    reaction.clamp((-known).min(0.0), (-known).max(0.0))
+}
+
 /// Corrects the `pulls` so that they add up to the load `told` on each solid.
 pub(in crate::solid) fn project<const D: usize>(pulls: &mut [Reaction<D>], told: &[Load<D>]) {
     let mut left = told.to_vec();

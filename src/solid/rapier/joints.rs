@@ -1,23 +1,25 @@
 //! Joints and ropes of the engine; the module is compiled for each dimension with its world.
 //!
 //! A rope limits the distance between two points. The engine enforces the limit at the end of each step, along the line
-//! between the points at the start of the step. For a relative speed u, on bodies with spin ω about centres at distance
-//! r, the length may exceed the limit by (u² + L Σ ω² r) Δt²/2L. The limit of a step is shorter by this length.
+//! between the points at the start of the step. For a relative speed u across the rope, on bodies with spin ω about centres at
+//! distance r, the length may exceed the limit by (u² + L Σ ω² r) Δt²/2L. The limit of a step is shorter by this length, with the
+//! velocities that the other loads give. With those at its start the rope would be slack by u Δu Δt²/L after it, for longer than a
+//! short step.
 
 use super::super::rapier::{
     dynamics::{
-        GenericJoint, ImpulseJoint, ImpulseJointHandle, JointAxesMask, JointLimits, RigidBodyBuilder, RigidBodyHandle,
-        SpringCoefficients,
+        GenericJoint, ImpulseJoint, ImpulseJointHandle, JointAxesMask, JointLimits, RigidBody, RigidBodyBuilder,
+        RigidBodyHandle, SpringCoefficients,
     },
     geometry::{ColliderHandle, ColliderSet, SolverFlags},
-    math::Pose as Frame,
+    math::{Pose as Frame, Vector as Point},
     pipeline::{ContactModificationContext, PairFilterContext, PhysicsHooks, PhysicsWorld},
 };
 use super::{
     super::align, D, from_angular, from_frame, from_point, kinematics_of, mobility_of, to_angular, to_frame, to_point,
 };
 use crate::{
-    math::Pose,
+    math::{Pose, Vector},
     solid::{
         Kinematics, Load, Mobility,
         constraint::{
@@ -45,10 +47,10 @@ pub(super) struct RapierJoints {
     joints: Vec<ImpulseJointHandle>,
     /// Handle and largest length (m) of each rope.
     ropes: Vec<(ImpulseJointHandle, f64)>,
-    /// The joints and ropes, for the loads of those in series.
+    /// The joints and ropes, for their rows.
     specs: (Vec<Joint<D>>, Vec<AttachedLine<D>>),
-    /// Impulses (N s, N m s) of the last step along the rows of joints and then of ropes in series, applied as forces.
-    in_series: Vec<Vec<f64>>,
+    /// Impulses (N s, N m s) of the last step along the rows of joints and then of ropes, besides those of the engine.
+    besides: Vec<Vec<f64>>,
     pub(super) contact_pairs: ContactPairHooks,
 }
 
@@ -102,7 +104,7 @@ impl RapierJoints {
             links.ropes.iter().map(|rope| AttachedLine::new(&rope.ends, start)).collect(),
         );
         let contact_pairs = ContactPairHooks(links.contacts.clone());
-        Self { joints, ropes, specs, in_series: Vec::new(), contact_pairs }
+        Self { joints, ropes, specs, besides: Vec::new(), contact_pairs }
     }
 
     /// Connects joint number `i` with these frames, or disconnects it.
@@ -128,15 +130,20 @@ impl RapierJoints {
         for (handle, longest) in &self.ropes {
             let rope = world.impulse_joints.get_mut(*handle, false).filter(|rope| rope.data.is_enabled());
             let Some(rope) = rope else { continue };
+            // Motion of the end after the other loads of the step; the rope itself takes what is along it.
             let end = |body: RigidBodyHandle, frame: &Frame| {
                 let body = &world.bodies[body];
-                let x = *body.position() * frame.translation;
-                let turned = from_angular(body.angvel()).0.norm_squared() * 0.5 * (x - body.center_of_mass()).length();
-                (body.velocity_at_point(x), turned)
+                let (now, ease, load) = (kinematics_of(body), mobility_of(body), load_on(world.gravity, body));
+                let spin = now.spin + ease.spin_change(&load.torque) * dt;
+                let arm = from_point(*body.position() * frame.translation) - now.centre;
+                let velocity = now.velocity + ease.linear.component_mul(&load.force) * dt + spin.velocity_at(&arm);
+                (now.centre + arm, velocity, 0.5 * spin.0.norm_squared() * arm.norm())
             };
-            let (va, turned_a) = end(rope.body1(), &rope.data.local_frame1);
-            let (vb, turned_b) = end(rope.body2(), &rope.data.local_frame2);
-            let further = ((vb - va).length_squared() + longest * (turned_a + turned_b)) * dt * dt;
+            let (a, va, turned_a) = end(rope.body1(), &rope.data.local_frame1);
+            let (b, vb, turned_b) = end(rope.body2(), &rope.data.local_frame2);
+            let along = (b - a).try_normalize(0.0).unwrap_or_else(Vector::zeros);
+            let across = (vb - va) - along * along.dot(&(vb - va));
+            let further = (across.norm_squared() + *longest * (turned_a + turned_b)) * dt * dt;
             rope.data.limits[0].max = (longest * longest - further).max(0.0).sqrt();
         }
     }
@@ -150,26 +157,15 @@ impl RapierJoints {
         driven: &[Option<Kinematics<D>>],
         dt: f64,
     ) {
-        self.in_series.clear();
+        self.besides = vec![Vec::new(); self.joints.len() + self.ropes.len()];
         world.integration_parameters.num_internal_pgs_iterations = SWEEPS;
-        if self.joints.len() + self.ropes.len() < 2 {
+        if self.besides.len() < 2 {
             return;
         }
-        for (joint, handle) in self.specs.0.iter_mut().zip(&self.joints) {
-            let now = world.impulse_joints.get(*handle).map(|joint| &joint.data);
-            joint.frames = now.map_or(joint.frames, |now| [&now.local_frame1, &now.local_frame2].map(from_frame));
-        }
-        let handles: Vec<_> = self.joints.iter().copied().chain(self.ropes.iter().map(|rope| rope.0)).collect();
-        let joint_count = self.joints.len();
-        let enabled = |handle| world.impulse_joints.get(handle).filter(|joint: &&ImpulseJoint| joint.data.is_enabled());
-        let ends = |i: usize| match i.checked_sub(joint_count) {
-            None => self.specs.0[i].spec.between,
-            Some(rope) => self.specs.1[rope].solids(),
-        };
         let free = |end: Option<usize>| end.filter(|&solid| world.bodies[bodies[solid]].is_dynamic());
         let mut count = vec![0; bodies.len()];
-        for i in (0..handles.len()).filter(|&i| enabled(handles[i]).is_some()) {
-            ends(i).into_iter().filter_map(free).for_each(|solid| count[solid] += 1);
+        for i in (0..self.besides.len()).filter(|&i| self.enabled(world, i).is_some()) {
+            self.ends(i).into_iter().filter_map(free).for_each(|solid| count[solid] += 1);
         }
         if count.iter().all(|&count| count < 2) {
             return;
@@ -179,34 +175,10 @@ impl RapierJoints {
             target.map_or(now, |to| Kinematics { velocity: (to.centre - now.centre) / dt, spin: to.spin, ..now })
         };
         let solids: Vec<_> = bodies.iter().zip(driven).map(motion).collect();
-        let other = |body: &RigidBodyHandle| {
-            let body = &world.bodies[*body];
-            let force = from_point(body.user_force() + world.gravity * body.mass());
-            Load { force, torque: from_angular(body.user_torque()) }
-        };
-        let loads: Vec<Load<D>> = bodies.iter().map(other).collect();
-        let (mut rows, mut sizes) = (Vec::new(), Vec::new());
-        for (i, &handle) in handles.iter().enumerate() {
-            let (between, before) = (ends(i), rows.len());
-            if let Some(joint) = enabled(handle)
-                && between.into_iter().filter_map(free).any(|solid| count[solid] > 1)
-            {
-                let mobility =
-                    between.map(|end| end.map_or_else(Mobility::none, |i| mobility_of(&world.bodies[bodies[i]])));
-                let row = |jacobian, limit| SeriesRow { between, jacobian, mobility, limit };
-                if i < joint_count {
-                    let own = &self.specs.0[i];
-                    let (all, locks) = own.jacobians(&own.end_kinematics(&solids), &mobility);
-                    rows.extend(all.into_iter().take(locks).map(|jacobian| row(jacobian, None)));
-                } else {
-                    let line = &self.specs.1[i - joint_count];
-                    let (length, jacobian) = line.length_and_jacobian(&line.end_kinematics(&solids));
-                    let limit = (joint.data.limits[0].max - length).max(0.0) / dt;
-                    rows.extend(jacobian.map(|jacobian| row(jacobian, Some(limit))));
-                }
-            }
-            sizes.push(rows.len() - before);
-        }
+        let loads: Vec<Load<D>> = bodies.iter().map(|body| load_on(world.gravity, &world.bodies[*body])).collect();
+        let in_series = |i: usize| self.ends(i).into_iter().filter_map(free).any(|solid| count[solid] > 1);
+        let chosen: Vec<bool> = (0..self.besides.len()).map(in_series).collect();
+        let (rows, sizes) = self.rows(world, bodies, &solids, &chosen, dt);
         world.integration_parameters.num_internal_pgs_iterations = SWEEPS_IN_SERIES;
         let forces = series_forces(&rows, &solids, &loads, dt);
         for (load, &body) in sum_loads(&rows, &forces, bodies.len()).iter().zip(bodies) {
@@ -216,13 +188,102 @@ impl RapierJoints {
                 body.add_torque(to_angular(&load.torque), false);
             }
         }
-        let mut impulses = forces.into_iter().map(|force| force * dt);
-        self.in_series = sizes.into_iter().map(|size| impulses.by_ref().take(size).collect()).collect();
+        self.record(&sizes, &forces, dt);
     }
 
-    /// Returns the impulse (N s, N m s) that row number `row` of tie number `i`, joints before ropes, has as a force.
-    fn series_impulse(&self, i: usize, row: usize) -> f64 {
-        self.in_series.get(i).and_then(|rows| rows.get(row)).copied().unwrap_or(0.0)
+    /// Changes the velocities of `bodies` after a step of `dt` (s), at whose end driven solids move as `driven`, so that they
+    /// keep the locks, and the ropes that pulled, where these are now. The engine keeps them where they were before the step.
+    /// Without this change the next step would make it, and its loads would be wrong by the ratio of the two steps.
+    pub(super) fn turn_velocities(
+        &mut self,
+        world: &mut PhysicsWorld,
+        bodies: &[RigidBodyHandle],
+        driven: &[Option<Kinematics<D>>],
+        dt: f64,
+    ) {
+        if self.besides.is_empty() {
+            return;
+        }
+        let motion = |(body, target): (&RigidBodyHandle, &Option<Kinematics<D>>)| {
+            target.unwrap_or_else(|| kinematics_of(&world.bodies[*body]))
+        };
+        let solids: Vec<_> = bodies.iter().zip(driven).map(motion).collect();
+        let pulled = |i: usize| i.checked_sub(self.joints.len()).is_none_or(|i| self.rope_impulse(world, i, 1) > 0.0);
+        let chosen: Vec<bool> = (0..self.besides.len()).map(pulled).collect();
+        let (rows, sizes) = self.rows(world, bodies, &solids, &chosen, dt);
+        let forces = series_forces(&rows, &solids, &vec![Load::zero(); solids.len()], dt);
+        for (load, &body) in sum_loads(&rows, &forces, bodies.len()).iter().zip(bodies) {
+            let body = &mut world.bodies[body];
+            if body.is_dynamic() {
+                body.apply_impulse(to_point(&(load.force * dt)), false);
+                body.apply_torque_impulse(to_angular(&(load.torque * dt)), false);
+            }
+        }
+        self.record(&sizes, &forces, dt);
+    }
+
+    /// Returns tie number `i`, joints before ropes, if it acts.
+    fn enabled<'a>(&self, world: &'a PhysicsWorld, i: usize) -> Option<&'a ImpulseJoint> {
+        let handle = match i.checked_sub(self.joints.len()) {
+            None => self.joints[i],
+            Some(rope) => self.ropes[rope].0,
+        };
+        world.impulse_joints.get(handle).filter(|joint| joint.data.is_enabled())
+    }
+
+    /// Returns the solids of tie number `i`.
+    fn ends(&self, i: usize) -> [Option<usize>; 2] {
+        match i.checked_sub(self.joints.len()) {
+            None => self.specs.0[i].spec.between,
+            Some(rope) => self.specs.1[rope].solids(),
+        }
+    }
+
+    /// Returns the rows of the locks and ropes of the `chosen` ties that act, with `bodies` at `solids` in a step of `dt` (s),
+    /// and the number of rows of each tie.
+    fn rows(
+        &mut self,
+        world: &PhysicsWorld,
+        bodies: &[RigidBodyHandle],
+        solids: &[Kinematics<D>],
+        chosen: &[bool],
+        dt: f64,
+    ) -> (Vec<SeriesRow<D>>, Vec<usize>) {
+        let (mut rows, mut sizes) = (Vec::new(), Vec::new());
+        for (i, chosen) in chosen.iter().enumerate() {
+            let (between, before) = (self.ends(i), rows.len());
+            if *chosen && let Some(tie) = self.enabled(world, i) {
+                let mobility =
+                    between.map(|end| end.map_or_else(Mobility::none, |i| mobility_of(&world.bodies[bodies[i]])));
+                let row = |jacobian, limit| SeriesRow { between, jacobian, mobility, limit };
+                if let Some(own) = self.specs.0.get_mut(i) {
+                    own.frames = [&tie.data.local_frame1, &tie.data.local_frame2].map(from_frame);
+                    let (all, locks) = own.jacobians(&own.end_kinematics(solids), &mobility);
+                    rows.extend(all.into_iter().take(locks).map(|jacobian| row(jacobian, None)));
+                } else {
+                    let line = &self.specs.1[i - self.joints.len()];
+                    let (length, jacobian) = line.length_and_jacobian(&line.end_kinematics(solids));
+                    let limit = (tie.data.limits[0].max - length).max(0.0) / dt;
+                    rows.extend(jacobian.map(|jacobian| row(jacobian, Some(limit))));
+                }
+            }
+            sizes.push(rows.len() - before);
+        }
+        (rows, sizes)
+    }
+
+    /// Adds the impulses of `forces` along the rows, of which tie number i has `sizes[i]`, in a step of `dt` (s).
+    fn record(&mut self, sizes: &[usize], forces: &[f64], dt: f64) {
+        let mut forces = forces.iter();
+        for (impulses, &size) in self.besides.iter_mut().zip(sizes) {
+            impulses.resize(impulses.len().max(size), 0.0);
+            impulses.iter_mut().zip(forces.by_ref().take(size)).for_each(|(impulse, force)| *impulse += force * dt);
+        }
+    }
+
+    /// Returns the impulse (N s, N m s) that row number `row` of tie number `i` has besides that of the engine.
+    fn impulse_besides(&self, i: usize, row: usize) -> f64 {
+        self.besides.get(i).and_then(|rows| rows.get(row)).copied().unwrap_or(0.0)
     }
 
     /// Returns the impulses (N s, N m s) of joint number `i` on its second solid in the last step: of its locks in
@@ -235,15 +296,21 @@ impl RapierJoints {
             modes_rotations_first::<D>().filter(|i| limited >> i & 1 == 1).map(|i| joint.data.limits[i].impulse);
         // The engine stores the impulses of its last iteration only.
         let all = locks.chain(stops).map(|impulse| -impulse * iterations as f64).enumerate();
-        all.map(|(row, impulse)| impulse + self.series_impulse(i, row)).collect()
+        all.map(|(row, impulse)| impulse + self.impulse_besides(i, row)).collect()
     }
 
     /// Returns the impulse (N s) of rope number `i` in the last step.
     pub(super) fn rope_impulse(&self, world: &PhysicsWorld, i: usize, iterations: usize) -> f64 {
         let rest = |rope: &ImpulseJoint| rope.data.limits[0].impulse * iterations as f64;
         let rest = world.impulse_joints.get(self.ropes[i].0).map_or(0.0, rest);
-        rest - self.series_impulse(self.joints.len() + i, 0)
+        rest - self.impulse_besides(self.joints.len() + i, 0)
     }
+}
+
+/// Returns the load of the step on a body, with its weight, without joints, ropes and contacts.
+fn load_on(gravity: Point, body: &RigidBody) -> Load<D> {
+    let force = from_point(body.user_force() + gravity * body.mass());
+    Load { force, torque: from_angular(body.user_torque()) }
 }
 
 /// Contact properties of the pairs of solids that have their own.

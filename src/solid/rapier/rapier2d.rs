@@ -41,7 +41,7 @@ use rapier::{
 
 use crate::{
     error::{Error, Result},
-    geometry::{Shape, wall::far_corners},
+    geometry::{Shape, wall::wall_parts},
     math::{Bivector, Matrix, Vector},
     solid::FreeBody,
 };
@@ -163,18 +163,11 @@ fn convex_parts(points: &[Vector<D>]) -> Option<Vec<SharedShape>> {
     hertel_mehlhorn(mesh.vertices(), mesh.indices()).iter().map(|part| SharedShape::convex_hull(part)).collect()
 }
 
-/// Returns one convex quadrilateral for each side of a wall, to the right of the line and mitred at the corners, and a fan for
-/// each rounded corner.
+/// Returns the convex parts of a wall.
 fn strip(points: &[Vector<D>], thickness: f64) -> Option<Vec<SharedShape>> {
-    let far = far_corners(points, thickness);
-    let side = |(near, far): (&[Vector<D>], &[Vec<Vector<D>>])| {
-        let corners = [near[0], *far[0].last()?, *far[1].first()?, near[1]];
-        SharedShape::convex_hull(&corners.each_ref().map(world::to_point))
-    };
-    let fan = |(p, far): (&Vector<D>, &Vec<Vector<D>>)| {
-        let corners: Vec<Point> = std::iter::once(p).chain(far).map(world::to_point).collect();
+    let part = |corners: Vec<Vector<D>>| {
+        let corners: Vec<Point> = corners.iter().map(world::to_point).collect();
         SharedShape::convex_hull(&corners)
     };
-    let sides = points.windows(2).zip(far.windows(2)).map(side);
-    sides.chain(points.iter().zip(&far).filter(|(_, far)| far.len() > 1).map(fan)).collect()
+    wall_parts(points, thickness).into_iter().map(part).collect()
 }

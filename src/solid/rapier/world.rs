@@ -295,6 +295,7 @@ impl Engine<D> for RapierWorld {
         self.ties.apply_series_loads(&mut self.world, &self.bodies, driven, dt);
         let turnings = wind(&mut self.world, &self.bodies, dt);
         self.world.step_with_events(&self.ties.contact_pairs, &());
+        self.ties.turn_velocities(&mut self.world, &self.bodies, driven, dt);
         self.turned = unwind(&mut self.world, &self.bodies, turnings, &spins, dt);
         self.iterations = self.world.integration_parameters.num_solver_iterations;
         self.fall(dt, &before);

@@ -37,3 +37,25 @@ fn touching_parts_are_accepted() {
     let tank = (Pose::identity(), Shape::<3>::Tank { size: [0.5, 0.4, 0.3].into(), thickness: 0.1 });
     assert_eq!(refusal(vec![tank, block([0.25, 0.2, 0.15], 0.0)]), "", "inside the tank");
 }
+
+#[test]
+fn a_wall_that_meets_itself_is_refused_with_the_area_that_counts_twice() {
+    let refusal = |points: &[[f64; 2]]| {
+        let points: Vec<Vector<2>> = points.iter().map(|x| Vector::from(*x)).collect();
+        let wall = Shape::Polyline { points, thickness: 0.1 };
+        (wall.volume_properties().volume, wall.check_no_overlap().err().map(|e| e.to_string()).unwrap_or_default())
+    };
+    // A box of 1 m by 1 m, open by 0.02 m at its first corner: there its walls overlap by 0.08 m times 0.1 m.
+    let (volume, message) = refusal(&[[0.0, 0.0], [0.0, 1.0], [1.0, 1.0], [1.0, 0.0], [0.02, 0.0]]);
+    assert!((volume - (1.0 - 0.8 * 0.8) - 0.008).abs() < 1e-12, "{volume}");
+    assert!(message.contains("8.00e-3 m² of its 3.68e-1 m² count twice"), "{message}");
+    // A T: the foot ends at the far side of the bar, or reaches into it by half its thickness.
+    for (foot, twice) in [(-0.1, false), (-0.05, true), (-0.1 + 1e-5, false)] {
+        let tee = [[0.0, 0.0], [1.0, 0.0], [1.0, -0.5], [0.5, -0.5], [0.5, foot]];
+        let (_, message) = refusal(&tee);
+        assert_eq!(message.contains("count twice"), twice, "{foot}: {message}");
+    }
+    // Corners are no overlap, nor is a closed ring.
+    assert_eq!(refusal(&[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.0, 0.0]]).1, "");
+    assert_eq!(refusal(&[[0.0, 0.5], [0.0, 0.0], [1.0, 0.0], [1.0, 0.5]]).1, "");
+}
