@@ -10,8 +10,9 @@
 //! exactly.
 //! Rims in air have p = 0, even if their particles see water on the other side of a film of few rows; a film of one row has the
 //! mean of its two sides. The film presses on the face of each boundary particle, dpᴰ⁻¹ in size, along the normal of the other
-//! solid, and on the other solid with the opposite force at the same place. The force of the film falls to zero as the gap grows
-//! from half a dp to one dp, and is zero where there are water particles.
+//! solid, and on the other solid with the opposite force at the same place. It is what the particles of the water lack of the pressure
+//! on the first row of the solid, and falls to zero as the gap grows from half a dp to one dp. Below a curved or inclined face the gap
+//! widens outwards, and the film ends where the gap has room for water.
 //!
 //! Through a body thinner than the kernel's support, water above it acts on the solid below, too. With a film between them it cannot:
 //! the forces of the water on the boundary particles that the film covers act on the body instead.
@@ -113,29 +114,19 @@ struct FilmForce<const D: usize> {
     share: f64,
 }
 
-/// The water near a boundary particle.
-#[derive(Clone, Copy)]
-struct WaterNearby<const D: usize> {
-    /// Unit vector from the water to the particle; zero without water.
-    away: Vector<D>,
-    /// Weight of the water over that before a flat face under water, –.
-    cover: f64,
-    /// Pressure of the water, extrapolated to the particle, times [`Rim::share`], P/ρ₀ in m²/s²; 0 without water.
-    pressure: f64,
-}
-
 /// The films between all solids.
 pub(super) struct Films<const D: usize> {
     films: Vec<Film<D>>,
-    /// The water near each particle of each film at the last force pass.
-    water: Vec<Vec<WaterNearby<D>>>,
+    /// Pressure of the water at each particle of each film at the last force pass, extrapolated, times [`Rim::share`], P/ρ₀ in m²/s²; 0
+    /// without water.
+    pressures: Vec<Vec<f64>>,
     /// Whether walls have the pressure of the water before them.
     possible: bool,
 }
 
 impl<const D: usize> Films<D> {
     pub(super) fn new(model: &Model) -> Self {
-        Self { films: Vec::new(), water: Vec::new(), possible: model.walls == Walls::RelaxedAdami }
+        Self { films: Vec::new(), pressures: Vec::new(), possible: model.walls == Walls::RelaxedAdami }
     }
 
     /// Whether there is none.
@@ -155,26 +146,19 @@ pub(super) fn find<const D: usize>(system: &mut System<D>, r: &[Vector<D>]) {
         }
     }
     system.boundary.films.films = films;
-    system.boundary.films.water.clear();
+    system.boundary.films.pressures.clear();
 }
 
 /// Reads the water near the films from `fits`, one for each boundary particle near water.
 pub(super) fn update_water<const D: usize>(system: &mut System<D>, fits: &[WallExtrapolation<f64, D>]) {
-    let depths = system.boundary.depths.as_deref().unwrap_or_default();
     let of = |solid: usize, particle: &FilmParticle<D>| {
-        let Some(place) = particle.near_water else {
-            return WaterNearby { away: Vector::zeros(), cover: 0.0, pressure: 0.0 };
-        };
-        let (fit, i) = (&fits[place as usize], particle.boundary as usize);
-        let away = fit.direction().into();
-        WaterNearby {
-            away,
-            cover: system.boundary.coverage.cover(fit.weight_sum, depths[i]).share,
-            pressure: system.extrapolated_pressure(fit, solid, i).max(0.0) * particle.rim.share(&away),
-        }
+        let fit = &fits[particle.near_water? as usize];
+        let pressure = system.extrapolated_pressure(fit, solid, particle.boundary as usize).max(0.0);
+        Some(pressure * particle.rim.share(&fit.direction().into()))
     };
-    let of_film = |film: &Film<D>| film.particles.iter().map(|particle| of(film.solid, particle)).collect();
-    system.boundary.films.water = system.boundary.films.films.iter().map(of_film).collect();
+    let of_film =
+        |film: &Film<D>| film.particles.iter().map(|particle| of(film.solid, particle).unwrap_or(0.0)).collect();
+    system.boundary.films.pressures = system.boundary.films.films.iter().map(of_film).collect();
 }
 
 /// The films between free solid `i` and solid `j`.
@@ -311,7 +295,7 @@ pub(crate) fn loads<const D: usize>(system: &System<D>, sums: &[PairSums<D>]) ->
         return Vec::new();
     }
     let mut loads = vec![Load::zero(); system.solids.len()];
-    for (film, water) in system.boundary.films.films.iter().zip(&system.boundary.films.water) {
+    for (film, pressures) in system.boundary.films.films.iter().zip(&system.boundary.films.pressures) {
         let (solid, other) = (&system.solids[film.solid], &system.solids[film.other]);
         let mut act = |at: [Vector<D>; 2], force: Vector<D>| {
             loads[film.solid] += Load::from_force_at(&(at[0] - solid.kinematics.centre), force);
@@ -319,7 +303,9 @@ pub(crate) fn loads<const D: usize>(system: &System<D>, sums: &[PairSums<D>]) ->
         };
         let (r, mass, near) =
             (&system.boundary.particles.r, system.particle_mass(), system.neighbours.boundary_near_fluid());
-        for (particle, FilmForce { at, force, share }) in film.particles.iter().zip(forces(system, film, water)) {
+        for (particle, FilmForce { at, force, share }) in
+            film.particles.iter().zip(forces(system, film, pressures, sums))
+        {
             act(at, force);
             // What lies below the rim sees as much water beside the film as through the solid.
             let share = if particle.at_rim() { 0.5 * share } else { share };
@@ -332,15 +318,21 @@ pub(crate) fn loads<const D: usize>(system: &System<D>, sums: &[PairSums<D>]) ->
     loads
 }
 
-/// What `film` does at each of its particles; an empty list if its rim is dry.
-fn forces<const D: usize>(system: &System<D>, film: &Film<D>, water: &[WaterNearby<D>]) -> Vec<FilmForce<D>> {
+/// What `film` does at each of its particles; an empty list if its rim is dry. `sums` are those of the boundary particles near water.
+fn forces<const D: usize>(
+    system: &System<D>,
+    film: &Film<D>,
+    pressures: &[f64],
+    sums: &[PairSums<D>],
+) -> Vec<FilmForce<D>> {
     let (dp, rho0, gravity) = (system.model.dp, system.properties.rho0, system.properties.gravity);
+    let mass = system.particle_mass();
     let (solid, other) = (&system.solids[film.solid], &system.solids[film.other]);
     let Boundary { particles, depths, .. } = &system.boundary;
     let depths = depths.as_deref().unwrap_or_default();
-    let rim = film.particles.iter().zip(water).filter(|(particle, _)| particle.at_rim());
+    let rim = film.particles.iter().zip(pressures).filter(|(particle, _)| particle.at_rim());
     let rim: Vec<(Vector<D>, f64)> =
-        rim.map(|(particle, water)| (particles.r[particle.boundary as usize], water.pressure)).collect();
+        rim.map(|(particle, pressure)| (particles.r[particle.boundary as usize], *pressure)).collect();
     // The head at which air stays out of the film, from the part of the rim that is in water.
     let wet = || rim.iter().filter(|(_, p)| *p > 0.0);
     let head = wet().map(|(x, p)| p - gravity.dot(x)).sum::<f64>() / wet().count() as f64;
@@ -358,7 +350,7 @@ fn forces<const D: usize>(system: &System<D>, film: &Film<D>, water: &[WaterNear
     };
     let spread = dp * film.particles.len() as f64 / rim.len() as f64;
     let pose = system.home_pose(film.other);
-    let force = |(particle, water): (&FilmParticle<D>, &WaterNearby<D>)| {
+    let force = |(particle, own): (&FilmParticle<D>, &f64)| {
         let i = particle.boundary as usize;
         let x = particles.r[i];
         let at_home = system.fluid.images.wrapped(&x);
@@ -366,18 +358,21 @@ fn forces<const D: usize>(system: &System<D>, film: &Film<D>, water: &[WaterNear
         let on_other = at_home + other.kinematics.pose.position - pose.position;
         let gap = other.spec.shape.signed_distance(&local) - depths[i];
         let normal = pose.rotation * other.spec.shape.outward_normal(&local, 0.05 * dp);
-        let flowing = (2.0 * water.cover).min(1.0) * (3.0 * water.away.dot(&normal)).clamp(0.0, 1.0);
         let thin = ((FADING[1] - gap / dp) / (FADING[1] - FADING[0])).clamp(0.0, 1.0);
+        let still = if particle.at_rim() { *own } else { inside(&x) };
+        // The water's particles do a part of it already.
+        let size = dp.powi(D as i32 - 1);
+        let pushed = particle.near_water.map_or(0.0, |place| sums[place as usize].acceleration.dot(&normal)) * mass;
+        let full = rho0 * still * size * particle.facing * system.boundary.coverage.row_share(depths[i], dp);
+        let flowing = (pushed / full.max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
         let share = thin * (1.0 - flowing) * particle.facing * system.computed_share(solid, &x);
         let on_solid = system.place_on_solid(film.solid, i);
         let inflow = (velocity_at(solid, &on_solid) - velocity_at(other, &on_other)).dot(&normal).max(0.0) * spread
             / gap.max(FADING[0] * dp);
-        let still = if particle.at_rim() { water.pressure } else { inside(&x) };
         let pressure = (still - 0.5 * inflow * inflow).max(0.0);
-        let size = dp.powi(D as i32 - 1);
         FilmForce { at: [on_solid, on_other], force: normal * (rho0 * pressure * share * size), share }
     };
-    film.particles.par_iter().zip(water).with_min_len(PARTICLES_PER_TASK).map(force).collect()
+    film.particles.par_iter().zip(pressures).with_min_len(PARTICLES_PER_TASK).map(force).collect()
 }
 
 /// Velocity (m/s) of the point `x` (m) of `solid`.

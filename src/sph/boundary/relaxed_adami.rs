@@ -221,6 +221,12 @@ impl SupportCoverage {
         (self.full[k] + (self.full[k + 1] - self.full[k]) * rest).max(1e-6)
     }
 
+    /// The share (–) of the pressure on a flat face under water that acts on the row of boundary particles `depth` (m) below the face, with
+    /// rows `dp` (m) apart: the shares of all rows sum up to 1.
+    pub(crate) fn row_share(&self, depth: f64, dp: f64) -> f64 {
+        2.0 * (self.full_weight((depth - 0.5 * dp).max(0.0)) - self.full_weight(depth + 0.5 * dp))
+    }
+
     /// The cover of a boundary particle `depth` (m) below the face whose extrapolation has `weight`.
     pub fn cover(&self, weight: f64, depth: f64) -> Cover<f64> {
         Cover { share: weight / self.full_weight(depth) }

@@ -78,8 +78,9 @@ free = { density = 1800, locked = ["x", "y", "z", "turn_x", "turn_y", "turn_z"] 
     Ok(())
 }
 
-/// The gap below a round or chamfered bottom widens outwards: the film ends where water has room. Bound: a fifth of the weight of the water
-/// in the place of the body, as half a row of water at each rim is missing or counted twice. Without the film the bed holds all of them.
+/// The gap below a round or chamfered bottom widens outwards: the film ends where water has room. Bound: 15 % of the weight of
+/// the water in the place of the body, as half a row of water at each rim may lack. Before, the rim was sought within the body, and the
+/// forces were 14, −306 and −98 N/m.
 #[test]
 fn a_round_body_that_touches_is_lifted_as_archimedes_says() -> Result<()> {
     let body = |shape: &str, at: &str| {
@@ -94,12 +95,12 @@ fn a_round_body_that_touches_is_lifted_as_archimedes_says() -> Result<()> {
         for x in [0.4, 0.407] {
             let lift = mean_force::<2>(&body(shape, &format!("x = {x}, bottom = 0.0")), 1.0)?[1];
             println!("{name} at {x} m: {lift:.0} N/m of {:.0} N/m", 1000.0 * G * area);
-            assert!((lift / (1000.0 * G * area) - 1.0).abs() < 0.2, "{name} at {x} m: {lift} N/m");
+            assert!((lift / (1000.0 * G * area) - 1.0).abs() < 0.15, "{name} at {x} m: {lift} N/m");
         }
     }
     let push = mean_force::<2>(&body(disc, "x = 0.1, bottom = 0.1"), 1.0)?;
     println!("disc beside a wall: {:.0} and {:.0} N/m", push[0], push[1]);
-    assert!(push[0].abs() < 0.2 * 1000.0 * G * area[0], "{} N/m towards the water", push[0]);
+    assert!(push[0].abs() < 0.15 * 1000.0 * G * area[0], "{} N/m towards the water", push[0]);
     Ok(())
 }
 
