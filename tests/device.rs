@@ -27,6 +27,8 @@ mod beside_reference;
 use beside_reference::{run, sizes, under};
 #[path = "device/coupled.rs"]
 mod coupled;
+#[path = "device/forces.rs"]
+mod forces;
 
 fn device() -> String {
     std::env::var("PONTOON_DEVICE").unwrap_or_else(|_| "llvmpipe".into())
@@ -320,14 +322,17 @@ fn an_alarm_goes_back_and_halves_the_step() {
 
 #[test]
 fn what_no_device_computes_is_refused_with_the_remedy() {
-    let refused = |model: Model| {
-        let error = Simulation::new(dam(model, [0.8, 0.3])).unwrap().on_device(&device()).map(|_| ()).unwrap_err();
+    let refused_setup = |setup: Setup<2>| {
+        let error = Simulation::new(setup).unwrap().on_device(&device()).map(|_| ()).unwrap_err();
         assert!(error.to_string().contains("leave --device (model.device) out"), "{error}");
         error.message
     };
+    let refused = |model: Model| refused_setup(dam(model, [0.8, 0.3]));
     let water = || Model::water(2, 0.05, 0.3);
     assert!(refused(water().slip(Slip::None)).contains("slip"));
-    assert!(refused(water().gamma(5.0)).contains("gamma"));
+    assert!(refused(water().gamma(1.4)).contains("gamma"));
+    let shaken = dam(water().for_waves(), [0.8, 0.3]).gravity_law([0.0, -9.81]);
+    assert!(refused_setup(shaken).contains("near the surface"));
     let error = Simulation::new(dam(water(), [0.8, 0.3])).unwrap().on_device("no such card").map(|_| ()).unwrap_err();
     assert!(error.message.contains("no such card"), "{error}");
 }
@@ -428,7 +433,7 @@ where
             "{:?} {:?} {:?} {:?} {:?}",
             model.kernel, model.viscosity, model.diffusion, model.shifting, model.gradient
         );
-        let (traces, units) = model.pair_traces::<D>().expect("traces");
+        let (traces, units) = model.pair_traces::<D>(false).expect("traces");
         // Sums of the first pass: there is no stress yet, and gradients are corrected where few neighbours are.
         let plain = model.gradient == PressureGradient::Plain;
         let sim = Simulation::new(dam(model.clone(), size).with_reference()).expect("a sound setup");
@@ -456,6 +461,10 @@ where
                     "b_pressure" => pressure(rho),
                     "a_volume" => 1.0 / (1.0 + x_a),
                     "b_volume" => 1.0 / (1.0 + x_b),
+                    _ if input.starts_with("slope") => {
+                        let k: usize = input[5..].parse().unwrap();
+                        system.gravity()[k] / model.c0.powi(2) * length
+                    }
                     _ if input.starts_with("sum") => sums[input[3..].parse::<usize>().unwrap()],
                     // The mark that suppresses shifting comes first, then the repulsion; the others are zero.
                     _ if input.contains("_row") => {
@@ -515,8 +524,11 @@ fn traces_evaluate_to_the_sums_of_the_reference() {
 fn a_pair_takes_no_more_operations_than_before() {
     // Arithmetic of a pair in gather form after the differences, by the trace; these may only fall.
     let count = |model: Model, dimension: usize| {
-        let traces =
-            if dimension == 2 { model.pair_traces::<2>().unwrap().0 } else { model.pair_traces::<3>().unwrap().0 };
+        let traces = if dimension == 2 {
+            model.pair_traces::<2>(false).unwrap().0
+        } else {
+            model.pair_traces::<3>(false).unwrap().0
+        };
         [traces.fluid.count(), traces.wall.count(), traces.extrapolation.count()]
     };
     let of = |dimension| {

@@ -12,7 +12,7 @@ use crate::{
 };
 
 /// Control words.
-pub(super) const WORDS: usize = 32;
+pub(super) const WORDS: usize = 36;
 
 /// The control words: `Control` of `shaders/common.wgsl`.
 pub(super) struct Control(pub(super) [u32; WORDS]);
@@ -37,6 +37,7 @@ impl Control {
     pub(super) const LONGEST: usize = 23;
     pub(super) const FACTOR: usize = 26;
     pub(super) const FOUND: usize = 27;
+    pub(super) const GRAVITY: usize = 32;
 
     /// A displacement that asks for new lists.
     pub(super) const FAR: u32 = 0x7f00_0000;

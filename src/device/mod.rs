@@ -208,7 +208,8 @@ fn shader_texts<const D: usize>(
         return Err(refused(what));
     }
     let model = system.model();
-    let (traces, units) = model.pair_traces::<D>().ok_or_else(|| refused("this pair loop"))?;
+    let gravity_changes = device_state::gravity_changes(system);
+    let (traces, units) = model.pair_traces::<D>(gravity_changes).ok_or_else(|| refused("this pair loop"))?;
     let domain = system.domain();
     let input = ShaderInput::<D> {
         model,
@@ -223,6 +224,7 @@ fn shader_texts<const D: usize>(
         chunks: [chunks.moving, chunks.owners.len()],
         near: reads.near || !reads.watched.is_empty(),
         weighs: !reads.watched.is_empty(),
+        gravity_changes,
         sponge: sponge_statements(system, layout, &units)?,
         gaps: device_state::has_free_solids(system) && model.walls == Walls::RelaxedAdami,
     };
@@ -325,6 +327,7 @@ impl<const D: usize> Device<D> {
             }
         }
         gpu.write(&buffers.control, 0, &control.0);
+        self.write_gravity(system);
         (self.start, self.ticks) = (time, 0);
         self.write_solids(system);
         let constants: Vec<[f32; 2]> = device_state::wall_constants(system)
@@ -334,6 +337,13 @@ impl<const D: usize> Device<D> {
         self.gpu.write(&self.buffers.depths, 0, &constants);
         self.gpu.run(&[], [self.passes.derive.as_ref()]);
         self.gpu.check()
+    }
+
+    /// Gives the device the gravity of the next force pass.
+    pub(crate) fn write_gravity(&self, system: &System<D>) {
+        let gravity = system.gravity() * (self.units.time * self.units.time / self.units.length);
+        let words: Vec<f32> = gravity.iter().map(|x| *x as f32).collect();
+        self.gpu.write(&self.buffers.control, Control::GRAVITY * 4, &words);
     }
 
     /// Gives the device the kinematics of the solids.

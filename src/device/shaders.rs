@@ -48,6 +48,8 @@ pub(super) struct ShaderInput<'a, const D: usize> {
     pub(super) near: bool,
     /// Whether the host reads the weights of the water around boundary particles.
     pub(super) weighs: bool,
+    /// Whether gravity changes with time.
+    pub(super) gravity_changes: bool,
     /// Statements that add the rates of the sponge layers at `place` to `rate`.
     pub(super) sponge: String,
 }
@@ -93,7 +95,8 @@ fn vector<const D: usize>(x: impl Fn(usize) -> String, none: &str) -> String {
 }
 
 impl<const D: usize> ShaderInput<'_, D> {
-    /// The texts; `None` if a constant of the model overflows single precision, or γ is not 7.
+    /// The texts; `None` if a constant of the model overflows single precision, or γ is no whole
+    /// number from 1 to 7.
     pub(super) fn texts(&self) -> Option<ShaderTexts> {
         let properties = self.model.fluid_properties::<D>().in_units(&self.units);
         let head = format!("{COMMON}{}", self.constants(&properties));
@@ -101,10 +104,9 @@ impl<const D: usize> ShaderInput<'_, D> {
         let sum = |k: usize| format!("sums[{k}u * params.n + k]");
         let force = vector::<D>(sum, "0.0f");
         let eos = EquationOfState::new(properties.c0, properties.gamma);
-        eos.binomial_pressure(0.0)?;
+        let coefficients = eos.coefficients()?;
         let pressure = Trace::record(&mut |recorder| {
-            let p = eos.binomial_pressure(recorder.input("x")).unwrap_or_else(|| recorder.constant(0.0));
-            recorder.result("pressure", p);
+            recorder.result("pressure", eos.binomial_pressure(&coefficients, recorder.input("x")));
         });
         let step = include_str!("shaders/step.wgsl")
             .replace("{{PRESSURE}}", &indented(&statements(&pressure, "t", str::to_string)?, 4))
@@ -125,7 +127,7 @@ impl<const D: usize> ShaderInput<'_, D> {
             gaps: self.gaps.then(|| with_head(&gaps)),
             search: with_head(include_str!("shaders/search.wgsl")),
             lists: with_head(include_str!("shaders/lists.wgsl")),
-            sweep: with_head(&self.sweep(&properties, &eos)?),
+            sweep: with_head(&self.sweep(&properties, &eos, &coefficients)?),
             step: with_head(&step),
             inputs: (self.traces.rows[0] > 0)
                 .then(|| self.input_rows(&properties))
@@ -167,7 +169,7 @@ impl<const D: usize> ShaderInput<'_, D> {
             format!("const CORRECT_EVERY: u32 = {}u;", gradient_correction::PASSES),
             format!("const MOVING: u32 = {}u;", chunks[0] * GROUP),
             format!("const CHUNKS: u32 = {}u;", chunks[1]),
-            format!("const GRAVITY: vec3<f32> = vec3<f32>({});", vector::<D>(|k| float(properties.gravity[k]), "0.0f")),
+            self.gravity(properties),
             format!("const SMOOTHING: f32 = {};", float(properties.h)),
             format!("const SOUND: f32 = {};", float(properties.c0)),
             format!("const COURANT: f32 = {};", float(model.cfl)),
@@ -185,8 +187,21 @@ impl<const D: usize> ShaderInput<'_, D> {
         lines.join("\n") + "\n"
     }
 
+    /// The functions for gravity, and for the slope g/c₀² of the excess density in water at rest.
+    fn gravity(&self, properties: &FluidProperties<D>) -> String {
+        let c2 = properties.c0.powi(2);
+        let constant = |of: f64| format!("vec3<f32>({})", vector::<D>(|k| float(properties.gravity[k] / of), "0.0f"));
+        let [gravity, slope] = match self.gravity_changes {
+            true => ["control.gravity.xyz".into(), format!("control.gravity.xyz * {}", float(1.0 / c2))],
+            false => [1.0, c2].map(constant),
+        };
+        format!(
+            "fn gravity() -> vec3<f32> {{ return {gravity}; }}\nfn density_slope() -> vec3<f32> {{ return {slope}; }}"
+        )
+    }
+
     /// The sums over pairs: one kernel for the water, one for the boundary particles.
-    fn sweep(&self, properties: &FluidProperties<D>, eos: &EquationOfState) -> Option<String> {
+    fn sweep(&self, properties: &FluidProperties<D>, eos: &EquationOfState, coefficients: &[f64]) -> Option<String> {
         let [_, sums] = self.traces.rows;
         let relaxed = self.model.walls == Walls::RelaxedAdami;
         let fluid = pair_body(&self.traces.fluid, "t")?;
@@ -206,7 +221,7 @@ impl<const D: usize> ShaderInput<'_, D> {
             // The results of the extrapolation have the names of those of the pair.
             beside = format!("{{\n{wall}}}\n{{\n{fit}}}\n");
             target = if relaxed {
-                let equations = statements(&wall_target(properties, eos), "w", read(wall_input))?;
+                let equations = statements(&wall_target(properties, eos, coefficients), "w", read(wall_input))?;
                 include_str!("shaders/wall_target.wgsl").replace("{{TARGET}}", &equations)
             } else {
                 "aways[k - params.water] = vec4<f32>(0.0f, 0.0f, 0.0f, fit0);\n".into()
@@ -366,9 +381,10 @@ fn pair_input(name: &str) -> String {
     match name.split_at(1) {
         ("r", k) if k.len() == 1 => format!("r.{}", axis(k)),
         ("v", k) if k.len() == 1 => format!("v.{}", axis(k)),
-        _ => match (name.strip_prefix("a_row"), name.strip_prefix("b_row")) {
-            (Some(row), _) => format!("rows[{row}u * params.n + k]"),
-            (_, Some(row)) => format!("rows[{row}u * params.n + j]"),
+        _ => match (name.strip_prefix("a_row"), name.strip_prefix("b_row"), name.strip_prefix("slope")) {
+            (Some(row), ..) => format!("rows[{row}u * params.n + k]"),
+            (_, Some(row), _) => format!("rows[{row}u * params.n + j]"),
+            (.., Some(k)) => format!("slope.{}", axis(k)),
             _ => name.into(),
         },
     }
@@ -392,7 +408,7 @@ fn wall_input(name: &str) -> String {
         "prompt_increase" => "wall.w".into(),
         _ => match (name.strip_prefix("pull"), name.strip_prefix("g"), name.strip_prefix("v")) {
             (Some(k), ..) => component("pull", k),
-            (_, Some(k), _) => component("GRAVITY", k),
+            (_, Some(k), _) => component("gravity()", k),
             (.., Some(k)) => component("velocity", k),
             _ => name.into(),
         },
@@ -401,7 +417,7 @@ fn wall_input(name: &str) -> String {
 
 /// The target of a boundary particle, its density as excess density: inputs `sum0`… of the extrapolation, `pull0`…, `g0`…, `v0`…,
 /// `depth`, `own`, `full_weight` and `promptness`.
-fn wall_target<const D: usize>(properties: &FluidProperties<D>, eos: &EquationOfState) -> Trace {
+fn wall_target<const D: usize>(properties: &FluidProperties<D>, eos: &EquationOfState, coefficients: &[f64]) -> Trace {
     Trace::record(&mut |recorder| {
         let each = |name: &str| -> [Traced; D] { std::array::from_fn(|k| recorder.input(&format!("{name}{k}"))) };
         let sum = |row: usize| recorder.input(&format!("sum{row}"));
@@ -413,7 +429,7 @@ fn wall_target<const D: usize>(properties: &FluidProperties<D>, eos: &EquationOf
         };
         let pressure = fit.pressure(&each("pull"), &each("g"), recorder.input("depth"));
         let cover = Cover { share: fit.weight_sum / recorder.input("full_weight") };
-        let density = eos.binomial_compression(pressure);
+        let density = eos.binomial_compression(coefficients, pressure);
         let (own, promptness) = (recorder.input("own"), recorder.input("promptness"));
         let target = WallTarget::new(density, own, fit.approach(&each("v")), cover, promptness, [1.0, properties.c0]);
         recorder.result("density", target.density);

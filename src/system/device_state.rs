@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{
     math::{Bounds, Matrix, Vector},
-    model::Slip,
+    model::{PressureGradient, Slip},
     solid::{Load, Role, Solid},
 };
 
@@ -26,20 +26,30 @@ pub(crate) struct WaterLoads<const D: usize> {
 
 /// What this system has that no device computes yet, if anything.
 pub(crate) fn unsupported_on_device<const D: usize>(system: &System<D>) -> Option<&'static str> {
-    let (model, region, driving) = (&system.model, &system.fluid_domain, &system.driving.driving);
+    let (model, region) = (&system.model, &system.fluid_domain);
     let [least, most] = region.limits.density;
     let cases = [
         (system.fluid.images.periodic.iter().any(Option::is_some), "periodic sides"),
         (system.symmetry_planes().any(), "symmetry planes"),
         (!region.open_boundaries.is_empty(), "open boundaries ([[inflow]], [[outflow]])"),
-        (driving.current.is_some() || driving.towed.is_some(), "currents and towed frames"),
-        (!system.gravity_law.is_empty(), "gravity that changes with time"),
+        (system.driving.driving.current.is_some(), "currents"),
+        (
+            gravity_changes(system) && model.gradient == PressureGradient::NearSurface,
+            "gravity that changes with time beside gradients that are corrected near the surface",
+        ),
         (!(0.5..1.0).contains(&least) || !(1.0..=1.5).contains(&most), "density limits beyond 0.5 to 1.5"),
         (model.slip == Slip::None, "slip = \"none\""),
-        (model.gamma != 7.0, "an exponent model.gamma other than 7"),
-        (system.solids.iter().any(|solid| !solid.spec.ballast.is_empty()), "ballast"),
+        (
+            system.equation_of_state.coefficients().is_none(),
+            "an exponent model.gamma that is not a whole number from 1 to 7",
+        ),
     ];
     cases.into_iter().find(|(has, _)| *has).map(|(_, what)| what)
+}
+
+/// Whether gravity or the frame of the scene changes with time.
+pub(crate) fn gravity_changes<const D: usize>(system: &System<D>) -> bool {
+    !system.gravity_law.is_empty() || system.driving.driving.towed.is_some()
 }
 
 /// Whether a solid is free.

@@ -38,6 +38,7 @@ struct Control {
     outside: atomic<u32>, // whether water has left the domain in this step
     renewed: u32,         // whether there were new lists in this step
     pad: array<u32, 2>,
+    gravity: vec4<f32>,   // where it changes
 };
 struct Solid {
     origin: Place,           // of its frame; hi.w: 1 if water beside it is not shifted
