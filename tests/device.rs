@@ -29,6 +29,8 @@ use beside_reference::{run, sizes, under};
 mod coupled;
 #[path = "device/forces.rs"]
 mod forces;
+#[path = "device/periodic.rs"]
+mod periodic;
 
 fn device() -> String {
     std::env::var("PONTOON_DEVICE").unwrap_or_else(|_| "llvmpipe".into())
@@ -148,10 +150,19 @@ fn distances<const D: usize>(a: &Simulation<D>, b: &Simulation<D>) -> [f64; 2] {
         place
     };
     let (in_a, in_b) = (place(a), place(b));
-    let (fluid_a, fluid_b) = (a.system().fluid(), b.system().fluid());
+    let (fluid_a, fluid_b, reference) = (a.system().fluid(), b.system().fluid(), b.system());
     let mut sums = [0.0; 2];
+    // Across a periodic side a particle may be a period away: not both it and the same place ten rows on lie at a side.
+    let way = |a: &Vector<D>, b: &Vector<D>, on: f64| {
+        let [a, b] = [a, b].map(|x| reference.wrapped(&(x + Vector::repeat(on))));
+        a - b
+    };
+    let apart = |a: &Vector<D>, b: &Vector<D>| {
+        let ways = [0.0, 10.0 * model.dp].map(|on| way(a, b, on));
+        Vector::<D>::from_fn(|k, _| if ways[0][k].abs() < ways[1][k].abs() { ways[0][k] } else { ways[1][k] })
+    };
     for (i, j) in in_a.into_iter().zip(in_b) {
-        sums[0] += ((fluid_a.r[i] - fluid_b.r[j]) / model.dp).norm_squared();
+        sums[0] += (apart(&fluid_a.r[i], &fluid_b.r[j]) / model.dp).norm_squared();
         sums[1] += ((fluid_a.v[i] - fluid_b.v[j]) / model.c0).norm_squared();
     }
     sums.map(|sum| (sum / n as f64).sqrt())
@@ -576,12 +587,23 @@ fn every_shader_is_valid_and_translates_to_metal_and_hlsl() {
     {
         let mut checked = 0;
         for model in every_choice::<D>(dp) {
-            let sim = Simulation::new(dam(model, size)).unwrap();
-            // Half of them with what the host reads of the water.
+            // Half of them with periodic sides, beyond which the walls end, and with what the host reads of the water.
+            let mut setup = dam(model, size);
+            if checked % 2 == 1 {
+                let width = 4.0 * size[0];
+                setup = setup.periodic(0, -width, width);
+            }
+            let sim = Simulation::new(setup).unwrap();
             let Ok(texts) = pontoon::device::shaders_of(sim.system(), checked % 2 == 1) else { continue };
             checked += 1;
             let all = [&texts.search, &texts.lists, &texts.sweep, &texts.step, &texts.solids];
-            for text in all.into_iter().chain(&texts.gaps).chain(&texts.inputs).chain(&texts.moments).chain(&texts.near)
+            let optional = [&texts.images, &texts.gaps];
+            for text in all
+                .into_iter()
+                .chain(optional.into_iter().flatten())
+                .chain(&texts.inputs)
+                .chain(&texts.moments)
+                .chain(&texts.near)
             {
                 let module = front::wgsl::parse_str(text).expect("WGSL");
                 let mut validator =

@@ -1,6 +1,9 @@
 //! The text of the shaders: hand-written files for search, lists and steps, and the traces of the equations in between.
 
-use super::text::{indented, statements};
+use super::{
+    periodic::Sides,
+    text::{indented, statements},
+};
 use crate::{
     interaction::PairTraces,
     model::{Model, PressureGradient, TimeScheme, Walls},
@@ -29,6 +32,7 @@ pub(super) const TICKS: f64 = (1 << 24) as f64;
 pub(super) const EXCESS: f64 = 1.0 / (1u64 << 31) as f64;
 
 const COMMON: &str = include_str!("shaders/common.wgsl");
+const PERIODIC: &str = include_str!("shaders/periodic.wgsl");
 
 /// The data from which the texts of the shaders are written.
 pub(super) struct ShaderInput<'a, const D: usize> {
@@ -38,6 +42,7 @@ pub(super) struct ShaderInput<'a, const D: usize> {
     pub(super) limits: ParticleLimits,
     /// The domain in 2⁻⁸ of the support.
     pub(super) domain: [[i32; D]; 2],
+    pub(super) sides: Sides<D>,
     /// How far the lists reach beyond the support, over the support.
     pub(super) margin: f64,
     /// Boundary particles of moving solids, in whole chunks; all chunks.
@@ -67,6 +72,8 @@ pub struct ShaderTexts {
     pub step: String,
     /// Solids.
     pub solids: String,
+    /// Images across periodic sides, if there are such sides.
+    pub images: Option<String>,
     /// Pressure across gaps, if there may be any.
     pub gaps: Option<String>,
     /// Additional inputs of the pair loop, if terms read any.
@@ -99,7 +106,7 @@ impl<const D: usize> ShaderInput<'_, D> {
     /// number from 1 to 7.
     pub(super) fn texts(&self) -> Option<ShaderTexts> {
         let properties = self.model.fluid_properties::<D>().in_units(&self.units);
-        let head = format!("{COMMON}{}", self.constants(&properties));
+        let head = format!("{COMMON}{PERIODIC}{}", self.constants(&properties));
         let with_head = |text: &str| format!("{head}{text}");
         let sum = |k: usize| format!("sums[{k}u * params.n + k]");
         let force = vector::<D>(sum, "0.0f");
@@ -135,6 +142,7 @@ impl<const D: usize> ShaderInput<'_, D> {
                 .map(|text| with_head(&text)),
             near: self.near.then(|| with_head(include_str!("shaders/near.wgsl"))),
             moments: self.moments(&properties).map(|text| with_head(&text)),
+            images: (self.sides.kinds() > 2).then(|| with_head(include_str!("shaders/images.wgsl"))),
             rows: [self.traces.rows[1], self.traces.rows[0], self.kept_rows()],
             stress: self.traces.layout.stress,
             solids: with_head(&include_str!("shaders/solids.wgsl").replace("{{FORCE}}", &force)),
@@ -166,10 +174,12 @@ impl<const D: usize> ShaderInput<'_, D> {
             // Two particles that approach by half the margin each.
             format!("const MARGIN2: u32 = {}u;", ((0.5 * margin * support * 0.999).powi(2) as f32).to_bits()),
             format!("const KEPT_ROWS: u32 = {}u;", self.kept_rows()),
+            format!("const ROWS: u32 = {}u;", self.traces.rows[0]),
             format!("const CORRECT_EVERY: u32 = {}u;", gradient_correction::PASSES),
             format!("const MOVING: u32 = {}u;", chunks[0] * GROUP),
             format!("const CHUNKS: u32 = {}u;", chunks[1]),
             self.gravity(properties),
+            self.sides.constants(),
             format!("const SMOOTHING: f32 = {};", float(properties.h)),
             format!("const SOUND: f32 = {};", float(properties.c0)),
             format!("const COURANT: f32 = {};", float(model.cfl)),
@@ -271,14 +281,14 @@ impl<const D: usize> ShaderInput<'_, D> {
         let mut fill = String::new();
         if let Some(row) = layout.mark {
             fill += "if (k >= params.water) {\n";
-            fill += &format!("    rows[{row}u * params.n + k] = f32(solids[places[k].lo.w].origin.hi.w);\n}}\n");
+            fill += &format!("    rows[{row}u * params.slots + k] = f32(solids[places[k].lo.w].origin.hi.w);\n}}\n");
         }
         if let Some(row) = layout.repulsion {
             let trace = Trace::record(&mut |recorder| {
                 recorder.result("repulsion", repulsion(recorder.input("p"), recorder.input("volume")));
             });
             fill += &statements(&trace, "t", str::to_string)?;
-            fill += &format!("rows[{row}u * params.n + k] = out_repulsion;\n");
+            fill += &format!("rows[{row}u * params.slots + k] = out_repulsion;\n");
         }
         let mut stress = String::new();
         if let (Some(row), Some(strain), Some(law)) = (layout.stress, layout.strain, self.model.viscosity.stress()) {
@@ -291,7 +301,7 @@ impl<const D: usize> ShaderInput<'_, D> {
                 None => name.into(),
             })?;
             for n in 0..entries(D).count() {
-                stress += &format!("rows[{}u * params.n + k] = out_stress{n};\n", row + n);
+                stress += &format!("rows[{}u * params.slots + k] = out_stress{n};\n", row + n);
             }
         }
         let text = include_str!("shaders/rows.wgsl");
@@ -320,7 +330,7 @@ impl<const D: usize> ShaderInput<'_, D> {
             None => name.into(),
         })?;
         for n in 0..count {
-            text += &format!("rows[{}u * params.n + k] = out_correction{n};\n", row + n);
+            text += &format!("rows[{}u * params.slots + k] = out_correction{n};\n", row + n);
         }
         let zeros: String = (first..first + count).map(|row| format!("var sum{row} = 0.0f;\n")).collect();
         let shader = include_str!("shaders/moments.wgsl");
@@ -382,8 +392,8 @@ fn pair_input(name: &str) -> String {
         ("r", k) if k.len() == 1 => format!("r.{}", axis(k)),
         ("v", k) if k.len() == 1 => format!("v.{}", axis(k)),
         _ => match (name.strip_prefix("a_row"), name.strip_prefix("b_row"), name.strip_prefix("slope")) {
-            (Some(row), ..) => format!("rows[{row}u * params.n + k]"),
-            (_, Some(row), _) => format!("rows[{row}u * params.n + j]"),
+            (Some(row), ..) => format!("rows[{row}u * params.slots + k]"),
+            (_, Some(row), _) => format!("rows[{row}u * params.slots + j]"),
             (.., Some(k)) => format!("slope.{}", axis(k)),
             _ => name.into(),
         },

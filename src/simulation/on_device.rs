@@ -201,7 +201,7 @@ fn body_step<const D: usize>(
     let Simulation { device: Some(own), system, bodies, clock, stepper, .. } = sim else { return Ok(None) };
     (own.host_is_current, own.loads_are_current) = (false, true);
     let start: Vec<_> = system.solids.iter().map(|solid| solid.kinematics).collect();
-    let gauges = device_state::gauge_ranges(system, clock.time);
+    let gauges = device_state::with_originals(system, device_state::gauge_ranges(system, clock.time));
     let (over, SecondHalf { done, loads, near }) = loop {
         let first = match own.device.first_half(request, &gauges)? {
             Ok(first) => first,
@@ -239,7 +239,7 @@ fn body_step<const D: usize>(
     change_gravity(system, bodies, done.time);
     bodies.update_masses(system, done.time, over.dt)?;
     own.device.write_gravity(system);
-    own.device.change_velocities(&device_state::velocity_changes(&transfers))?;
+    own.device.change_velocities(&device_state::velocity_changes(system, &transfers))?;
     own.device.move_solids(system);
     Ok(Some(done))
 }
@@ -251,7 +251,8 @@ fn ranges_at_end<const D: usize>(system: &System<D>, bodies: &Bodies<D>, over: I
         device_state::range_beside(system, solid, system.solids[solid].kinematics.velocity.norm() * over.dt)
     };
     let lines = bodies.moorings.water_ranges(over.t, system.model().support_radius());
-    bodies.added_masses().iter().map(of_body).chain(lines.into_iter().flatten()).collect()
+    let ranges = bodies.added_masses().iter().map(of_body).chain(lines.into_iter().flatten()).collect();
+    device_state::with_originals(system, ranges)
 }
 
 /// Whether bodies or lines read water outside the boxes of [`ranges_at_end`]: a light body that has left the water and returns

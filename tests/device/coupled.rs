@@ -13,7 +13,7 @@ use pontoon::{
 
 use super::{Shape, assert_rates_agree, beside, beside_with, dam, dam_with, device, distances, run, under};
 
-fn setup_of(text: &str) -> Setup<2> {
+pub fn setup_of(text: &str) -> Setup<2> {
     Scene::parse(text, Path::new(""), &[]).unwrap().build::<2>().unwrap().setup
 }
 

@@ -7,6 +7,7 @@ struct Params {
     most: u32,       // room of a list
     size: vec4<i32>,   // cells along each axis
     origin: vec4<i32>, // where they begin, in 2^-8 of the support
+    slots: u32,      // particles and room for the images across periodic sides
 };
 struct Place { hi: vec4<i32>, lo: vec4<u32> };
 struct Control {
