@@ -212,6 +212,11 @@ impl Counts {
         self.n + self.images()
     }
 
+    /// Chunks in which the velocities of the water are added up, if there are periodic sides.
+    pub(super) fn flow_chunks(&self) -> usize {
+        if self.images_of_each > 0 { self.water.div_ceil(GROUP) } else { 0 }
+    }
+
     /// Cells of all kinds of particles.
     pub(super) fn all_cells(&self) -> usize {
         self.kinds * self.cells
@@ -263,6 +268,7 @@ pub(super) struct PairBuffers {
     pub(super) local: wgpu::Buffer,
     pub(super) chunks: wgpu::Buffer,
     pub(super) copied: wgpu::Buffer,
+    pub(super) flow: wgpu::Buffer,
 }
 
 /// The arrays of the search.
@@ -305,6 +311,7 @@ impl Buffers {
             local: gpu.buffer(16 * boundary)?,
             chunks: gpu.buffer(4 * chunks.members.len())?,
             copied: gpu.buffer(16 * chunks.copied.len())?,
+            flow: gpu.buffer(16 * counts.flow_chunks())?,
         };
         let search = SearchBuffers {
             order: gpu.buffer(4 * slots)?,
@@ -366,10 +373,23 @@ impl Buffers {
 
     /// Memory, B.
     pub(super) fn bytes(&self) -> u64 {
-        let PairBuffers { positions, velocities, built, sums, rows, spans, walls, aways, gaps, local, chunks, copied } =
-            &self.pairs;
+        let PairBuffers {
+            positions,
+            velocities,
+            built,
+            sums,
+            rows,
+            spans,
+            walls,
+            aways,
+            gaps,
+            local,
+            chunks,
+            copied,
+            flow,
+        } = &self.pairs;
         let SearchBuffers { order, count, start, blocks, spare_places, spare, spare_rows } = &self.search;
-        let pairs = [positions, velocities, built, sums, rows, spans, walls, aways, gaps, local, chunks, copied];
+        let pairs = [positions, velocities, built, sums, rows, spans, walls, aways, gaps, local, chunks, copied, flow];
         let search = [order, count, start, blocks, spare_places, spare, spare_rows];
         let solids = [&self.slot, &self.solids, &self.depths, &self.loads];
         let all =

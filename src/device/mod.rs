@@ -518,6 +518,15 @@ impl<const D: usize> Device<D> {
         self.gpu.run(&[], [self.passes.place.as_ref()]);
     }
 
+    /// The sum of the velocities (m/s) of the water, if there are periodic sides; else zero.
+    pub(crate) fn velocity_sum(&self) -> Result<Vector<D>> {
+        self.gpu.run(&[], self.passes.velocities.as_deref());
+        let [sums] = self.gpu.read::<f32, 1>([(&self.buffers.pairs.flow, 4 * self.counts.flow_chunks())])?;
+        let unit = self.units.length / self.units.time;
+        let sum = |k: usize| sums.chunks_exact(4).map(|chunk| f64::from(chunk[k])).sum::<f64>() * unit;
+        Ok(Vector::from_fn(|k, _| sum(k)))
+    }
+
     /// Makes a force pass at the present state. Returns the acceleration (m/s²) and the rate of ρ/ρ₀ (1/s) of each water
     /// particle, in the order of `system`, and the largest values that limit a step.
     pub(crate) fn rates(&mut self, system: &System<D>) -> Result<(Vec<PairSums<D>>, StepLimits)> {

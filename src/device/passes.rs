@@ -26,6 +26,8 @@ pub(super) struct Passes {
     pub(super) place: Arc<Pass>,
     /// Adds up the loads.
     pub(super) loads: Arc<Pass>,
+    /// Adds up the velocities of the water, if there are periodic sides.
+    pub(super) velocities: Option<Arc<Pass>>,
 }
 
 /// The shaders of a scene.
@@ -67,7 +69,7 @@ impl Shaders {
             gaps: optional(&texts.gaps, &["find_gaps", "add_gaps"])?,
             inputs: optional(&texts.inputs, &["fill_rows", "close_stress"])?,
             moments: optional(&texts.moments, &["sweep_moments"])?,
-            images: optional(&texts.images, &["place_images", "copy_rows", "update_copies"])?,
+            images: optional(&texts.images, &["place_images", "copy_rows", "update_copies", "add_velocities"])?,
             stress: texts.stress.is_some(),
             verlet,
         })
@@ -102,7 +104,9 @@ impl Passes {
         buffers: &Buffers,
     ) -> Result<Self> {
         let params = gpu.uniform(&counts.words());
-        let [rates, close_stress] = rates(gpu, shaders, (counts, chunks), buffers, &params)?;
+        let images = images(gpu, shaders, (counts, chunks), buffers, &params)?;
+        let velocities = images.add_velocities.clone();
+        let [rates, close_stress] = rates(gpu, shaders, counts, buffers, &params, images)?;
         let n = counts.n;
         let b = &buffers.pairs;
         let solids = Maker::new(
@@ -161,7 +165,7 @@ impl Passes {
             whole = [&first[..], &rates, &close_stress, &[rest.clone(), finish.clone()]].concat();
             second = [std::slice::from_ref(&place), &rates, &close_stress, &[loads.clone(), rest, finish]].concat();
         }
-        Ok(Self { derive, rates, step: whole, first, second, place, loads })
+        Ok(Self { derive, rates, step: whole, first, second, place, loads, velocities })
     }
 }
 
@@ -170,9 +174,10 @@ impl Passes {
 fn rates(
     gpu: &Gpu,
     shaders: &Shaders,
-    (counts, chunks): (&Counts, &SolidChunks),
+    counts: &Counts,
     buffers: &Buffers,
     params: &wgpu::Buffer,
+    images: ImagePasses,
 ) -> Result<[Vec<Arc<Pass>>; 2]> {
     let (b, searched, n, cells) = (&buffers.pairs, &buffers.search, counts.n, counts.all_cells());
     let total = counts.all_cells() + 1;
@@ -211,7 +216,6 @@ fn rates(
         search.pass("gather", counts.slots())?,
         search.pass("put_back", n)?,
     ];
-    let images = images(gpu, shaders, (counts, chunks), buffers, params)?;
     passes.extend(images.place);
     let (mut sweeps, mut corrections) = (Vec::new(), Vec::new());
     for (number, list) in buffers.lists.iter().take(counts.parts()).enumerate() {
@@ -320,11 +324,12 @@ fn rates(
     Ok([passes, close])
 }
 
-/// The passes for images across periodic sides: after the search, and before the sums over pairs.
+/// The passes for images across periodic sides: after the search, before the sums over pairs, and after a step.
 #[derive(Default)]
 struct ImagePasses {
     place: Option<Arc<Pass>>,
     before_sums: Vec<Arc<Pass>>,
+    add_velocities: Option<Arc<Pass>>,
 }
 
 /// Those of the scene.
@@ -352,6 +357,7 @@ fn images(
             &buffers.slot,
             &b.rows,
             &b.copied,
+            &b.flow,
         ],
     );
     let mut before_sums = Vec::new();
@@ -361,5 +367,6 @@ fn images(
     if !chunks.copied.is_empty() {
         before_sums.push(maker.pass("update_copies", chunks.copied.len())?);
     }
-    Ok(ImagePasses { place: Some(maker.pass("place_images", counts.images())?), before_sums })
+    let place = Some(maker.pass("place_images", counts.images())?);
+    Ok(ImagePasses { place, before_sums, add_velocities: Some(maker.pass("add_velocities", counts.water)?) })
 }

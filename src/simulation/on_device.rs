@@ -236,10 +236,14 @@ fn body_step<const D: usize>(
         }
     }
     let transfers = bodies.advance(system, over, done.weight, hook)?;
+    own.device.change_velocities(&device_state::velocity_changes(system, &transfers))?;
+    if device_state::holds_current(system) {
+        let sum = own.device.velocity_sum()?;
+        device_state::adapt_current(system, &sum, over.dt);
+    }
     change_gravity(system, bodies, done.time);
     bodies.update_masses(system, done.time, over.dt)?;
     own.device.write_gravity(system);
-    own.device.change_velocities(&device_state::velocity_changes(system, &transfers))?;
     own.device.move_solids(system);
     Ok(Some(done))
 }

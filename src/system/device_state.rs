@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::{
-    Fluid, Images, ParticleLimits, System,
+    Fluid, Images, ParticleLimits, System, driving,
     impulses::{MomentumTransfer, bounds_beside, water_beside},
     thin_layers::{self, WaterAround},
 };
@@ -31,7 +31,6 @@ pub(crate) fn unsupported_on_device<const D: usize>(system: &System<D>) -> Optio
     let cases = [
         (system.symmetry_planes().any(), "symmetry planes"),
         (!region.open_boundaries.is_empty(), "open boundaries ([[inflow]], [[outflow]])"),
-        (system.driving.driving.current.is_some(), "currents"),
         (
             gravity_changes(system) && model.gradient == PressureGradient::NearSurface,
             "gravity that changes with time beside gradients that are corrected near the surface",
@@ -46,9 +45,20 @@ pub(crate) fn unsupported_on_device<const D: usize>(system: &System<D>) -> Optio
     cases.into_iter().find(|(has, _)| *has).map(|(_, what)| what)
 }
 
-/// Whether gravity or the frame of the scene changes with time.
+/// Whether gravity or what else drives the water changes with time.
 pub(crate) fn gravity_changes<const D: usize>(system: &System<D>) -> bool {
-    !system.gravity_law.is_empty() || system.driving.driving.towed.is_some()
+    !system.gravity_law.is_empty() || !system.driving.is_none()
+}
+
+/// Whether a force holds a current.
+pub(crate) fn holds_current<const D: usize>(system: &System<D>) -> bool {
+    system.driving.driving.current.is_some()
+}
+
+/// Adapts the force that holds the current after a step `dt` (s), in which the velocities of the water add up to `sum` (m/s).
+pub(crate) fn adapt_current<const D: usize>(system: &mut System<D>, sum: &Vector<D>, dt: f64) {
+    let found = system.driving.driving.current.and_then(|current| system.discharge_by(current.axis, sum[current.axis]));
+    driving::adapt_current(system, found.unwrap_or(0.0), dt);
 }
 
 /// Distance (m) to which images of the water reach beyond a periodic side.

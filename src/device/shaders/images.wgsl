@@ -11,6 +11,7 @@
 @group(0) @binding(9) var<storage, read_write> rows: array<f32>;
 // First copy of a boundary particle, particles of a copy, copies.
 @group(0) @binding(10) var<storage, read> copied: array<vec4<u32>>;
+@group(0) @binding(11) var<storage, read_write> flow: array<vec4<f32>>;
 
 // The image with the thread `id`, if there is one; else NONE.
 fn image(id: vec3<u32>) -> u32 {
@@ -54,4 +55,22 @@ fn update_copies(@builtin(global_invocation_id) id: vec3<u32>) {
         }
         return;
     }
+}
+
+var<workgroup> part: array<vec3<f32>, 128>;
+
+// The sums of the velocities of 128 water particles each, in a fixed tree.
+@compute @workgroup_size(128)
+fn add_velocities(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) l: u32) {
+    let chunk = group_index(group);
+    let k = chunk * GROUP + l;
+    var mine = vec3<f32>(0.0f);
+    if (k < params.water) { mine = velocities[k].xyz; }
+    part[l] = mine;
+    for (var step = 64u; step > 0u; step /= 2u) {
+        workgroupBarrier();
+        if (l < step) { part[l] += part[l + step]; }
+    }
+    workgroupBarrier();
+    if (l == 0u && k < params.water) { flow[chunk] = vec4<f32>(part[0], 0.0f); }
 }
