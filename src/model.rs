@@ -447,11 +447,16 @@ impl Model {
         interaction::compile(kernel::Wendland::new(properties.h, D), fluid, wall, &properties, units, level)
     }
 
-    /// The traces of the terms that this model names, and the units in which they compute.
+    /// The traces of the terms that this model names, and the units in which they compute; under gravity in any
+    /// direction if it `changes`.
     #[cfg(feature = "gpu")]
-    pub fn pair_traces<const D: usize>(&self) -> Option<(interaction::PairTraces, Units)> {
+    pub fn pair_traces<const D: usize>(&self, changes: bool) -> Option<(interaction::PairTraces, Units)> {
         let units = self.single_precision_units::<D>();
-        Some((self.build_pair_loop_in::<D>(units, None).traces()?, units))
+        let mut terms = self.build_pair_loop_in::<D>(units, None);
+        if changes {
+            terms.set_gravity(&FluidProperties { gravity: Vector::repeat(1.0), ..self.fluid_properties::<D>() });
+        }
+        Some((terms.traces()?, units))
     }
 
     /// The pair loop with the terms that this model names, and no others.

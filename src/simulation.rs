@@ -411,7 +411,7 @@ impl<const D: usize> Simulation<D> {
         }
         let over = Interval { t: self.clock.time, dt };
         self.system.update_absorption(over.t);
-        self.change_gravity(over.t + 0.5 * dt);
+        change_gravity(&mut self.system, &mut self.bodies, over.t + 0.5 * dt);
         let weight = self.stepper.step(&mut self.system, over, self.bodies.accounting.as_mut());
         let transfers = self.bodies.advance(&mut self.system, over, weight, hook)?;
         self.stepper.add_transfers(&transfers);
@@ -419,7 +419,7 @@ impl<const D: usize> Simulation<D> {
         self.clock.steps += 1;
         self.clock.time = if left <= allowed { end } else { self.clock.time + dt };
         update_current(&mut self.system, dt);
-        self.change_gravity(self.clock.time);
+        change_gravity(&mut self.system, &mut self.bodies, self.clock.time);
         self.bodies.update_masses(&mut self.system, self.clock.time, dt)?;
         self.guard()?;
         self.remove_due()
@@ -434,17 +434,6 @@ impl<const D: usize> Simulation<D> {
                 accounting.add_displaced(-reordering.exchanged_energy);
             }
             self.removed.extend(reordering.removed.into_iter().map(|lost| (self.clock.time, lost)));
-        }
-    }
-
-    /// Sets gravity to that of time `t` (s), if it changes.
-    fn change_gravity(&mut self, t: f64) {
-        let Some(change) = set_gravity_at(&mut self.system, t) else { return };
-        if let Some(engine) = self.bodies.engine_mut() {
-            engine.set_gravity(&self.system.gravity());
-        }
-        if let Some(accounting) = &mut self.bodies.accounting {
-            accounting.add_gravity_change(&self.system, &change);
         }
     }
 
@@ -661,6 +650,17 @@ impl<const D: usize> Simulation<D> {
         }
         self.system.check_state(&kept.system, &planned)?;
         Ok(planned)
+    }
+}
+
+/// Sets gravity to that of time `t` (s), if it changes.
+fn change_gravity<const D: usize>(system: &mut System<D>, bodies: &mut Bodies<D>, t: f64) {
+    let Some(change) = set_gravity_at(system, t) else { return };
+    if let Some(engine) = bodies.engine_mut() {
+        engine.set_gravity(&system.gravity());
+    }
+    if let Some(accounting) = &mut bodies.accounting {
+        accounting.add_gravity_change(system, &change);
     }
 }
 

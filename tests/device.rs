@@ -27,6 +27,10 @@ mod beside_reference;
 use beside_reference::{run, sizes, under};
 #[path = "device/coupled.rs"]
 mod coupled;
+#[path = "device/forces.rs"]
+mod forces;
+#[path = "device/periodic.rs"]
+mod periodic;
 
 fn device() -> String {
     std::env::var("PONTOON_DEVICE").unwrap_or_else(|_| "llvmpipe".into())
@@ -146,10 +150,19 @@ fn distances<const D: usize>(a: &Simulation<D>, b: &Simulation<D>) -> [f64; 2] {
         place
     };
     let (in_a, in_b) = (place(a), place(b));
-    let (fluid_a, fluid_b) = (a.system().fluid(), b.system().fluid());
+    let (fluid_a, fluid_b, reference) = (a.system().fluid(), b.system().fluid(), b.system());
     let mut sums = [0.0; 2];
+    // Across a periodic side a particle may be a period away: not both it and the same place ten rows on lie at a side.
+    let way = |a: &Vector<D>, b: &Vector<D>, on: f64| {
+        let [a, b] = [a, b].map(|x| reference.wrapped(&(x + Vector::repeat(on))));
+        a - b
+    };
+    let apart = |a: &Vector<D>, b: &Vector<D>| {
+        let ways = [0.0, 10.0 * model.dp].map(|on| way(a, b, on));
+        Vector::<D>::from_fn(|k, _| if ways[0][k].abs() < ways[1][k].abs() { ways[0][k] } else { ways[1][k] })
+    };
     for (i, j) in in_a.into_iter().zip(in_b) {
-        sums[0] += ((fluid_a.r[i] - fluid_b.r[j]) / model.dp).norm_squared();
+        sums[0] += (apart(&fluid_a.r[i], &fluid_b.r[j]) / model.dp).norm_squared();
         sums[1] += ((fluid_a.v[i] - fluid_b.v[j]) / model.c0).norm_squared();
     }
     sums.map(|sum| (sum / n as f64).sqrt())
@@ -320,14 +333,17 @@ fn an_alarm_goes_back_and_halves_the_step() {
 
 #[test]
 fn what_no_device_computes_is_refused_with_the_remedy() {
-    let refused = |model: Model| {
-        let error = Simulation::new(dam(model, [0.8, 0.3])).unwrap().on_device(&device()).map(|_| ()).unwrap_err();
+    let refused_setup = |setup: Setup<2>| {
+        let error = Simulation::new(setup).unwrap().on_device(&device()).map(|_| ()).unwrap_err();
         assert!(error.to_string().contains("leave --device (model.device) out"), "{error}");
         error.message
     };
+    let refused = |model: Model| refused_setup(dam(model, [0.8, 0.3]));
     let water = || Model::water(2, 0.05, 0.3);
     assert!(refused(water().slip(Slip::None)).contains("slip"));
-    assert!(refused(water().gamma(5.0)).contains("gamma"));
+    assert!(refused(water().gamma(1.4)).contains("gamma"));
+    let shaken = dam(water().for_waves(), [0.8, 0.3]).gravity_law([0.0, -9.81]);
+    assert!(refused_setup(shaken).contains("near the surface"));
     let error = Simulation::new(dam(water(), [0.8, 0.3])).unwrap().on_device("no such card").map(|_| ()).unwrap_err();
     assert!(error.message.contains("no such card"), "{error}");
 }
@@ -428,7 +444,7 @@ where
             "{:?} {:?} {:?} {:?} {:?}",
             model.kernel, model.viscosity, model.diffusion, model.shifting, model.gradient
         );
-        let (traces, units) = model.pair_traces::<D>().expect("traces");
+        let (traces, units) = model.pair_traces::<D>(false).expect("traces");
         // Sums of the first pass: there is no stress yet, and gradients are corrected where few neighbours are.
         let plain = model.gradient == PressureGradient::Plain;
         let sim = Simulation::new(dam(model.clone(), size).with_reference()).expect("a sound setup");
@@ -456,6 +472,10 @@ where
                     "b_pressure" => pressure(rho),
                     "a_volume" => 1.0 / (1.0 + x_a),
                     "b_volume" => 1.0 / (1.0 + x_b),
+                    _ if input.starts_with("slope") => {
+                        let k: usize = input[5..].parse().unwrap();
+                        system.gravity()[k] / model.c0.powi(2) * length
+                    }
                     _ if input.starts_with("sum") => sums[input[3..].parse::<usize>().unwrap()],
                     // The mark that suppresses shifting comes first, then the repulsion; the others are zero.
                     _ if input.contains("_row") => {
@@ -515,8 +535,11 @@ fn traces_evaluate_to_the_sums_of_the_reference() {
 fn a_pair_takes_no_more_operations_than_before() {
     // Arithmetic of a pair in gather form after the differences, by the trace; these may only fall.
     let count = |model: Model, dimension: usize| {
-        let traces =
-            if dimension == 2 { model.pair_traces::<2>().unwrap().0 } else { model.pair_traces::<3>().unwrap().0 };
+        let traces = if dimension == 2 {
+            model.pair_traces::<2>(false).unwrap().0
+        } else {
+            model.pair_traces::<3>(false).unwrap().0
+        };
         [traces.fluid.count(), traces.wall.count(), traces.extrapolation.count()]
     };
     let of = |dimension| {
@@ -564,12 +587,23 @@ fn every_shader_is_valid_and_translates_to_metal_and_hlsl() {
     {
         let mut checked = 0;
         for model in every_choice::<D>(dp) {
-            let sim = Simulation::new(dam(model, size)).unwrap();
-            // Half of them with what the host reads of the water.
+            // Half of them with periodic sides, beyond which the walls end, and with what the host reads of the water.
+            let mut setup = dam(model, size);
+            if checked % 2 == 1 {
+                let width = 4.0 * size[0];
+                setup = setup.periodic(0, -width, width);
+            }
+            let sim = Simulation::new(setup).unwrap();
             let Ok(texts) = pontoon::device::shaders_of(sim.system(), checked % 2 == 1) else { continue };
             checked += 1;
             let all = [&texts.search, &texts.lists, &texts.sweep, &texts.step, &texts.solids];
-            for text in all.into_iter().chain(&texts.gaps).chain(&texts.inputs).chain(&texts.moments).chain(&texts.near)
+            let optional = [&texts.images, &texts.gaps];
+            for text in all
+                .into_iter()
+                .chain(optional.into_iter().flatten())
+                .chain(&texts.inputs)
+                .chain(&texts.moments)
+                .chain(&texts.near)
             {
                 let module = front::wgsl::parse_str(text).expect("WGSL");
                 let mut validator =

@@ -3,6 +3,7 @@
 use super::{
     gpu::{Adapter, Gpu},
     layout::Layout,
+    periodic::Sides,
     shaders::{GROUP, ShaderTexts, cell_width},
     solids::{SOLID_WORDS, SolidChunks},
 };
@@ -12,7 +13,7 @@ use crate::{
 };
 
 /// Control words.
-pub(super) const WORDS: usize = 32;
+pub(super) const WORDS: usize = 36;
 
 /// The control words: `Control` of `shaders/common.wgsl`.
 pub(super) struct Control(pub(super) [u32; WORDS]);
@@ -37,6 +38,7 @@ impl Control {
     pub(super) const LONGEST: usize = 23;
     pub(super) const FACTOR: usize = 26;
     pub(super) const FOUND: usize = 27;
+    pub(super) const GRAVITY: usize = 32;
 
     /// A displacement that asks for new lists.
     pub(super) const FAR: u32 = 0x7f00_0000;
@@ -136,6 +138,10 @@ pub(super) struct Counts {
     size: [i32; 4],
     origin: [i32; 4],
     pub(super) cells: usize,
+    /// Kinds of particles that are sorted into cells.
+    kinds: usize,
+    /// Most images of a water particle across periodic sides.
+    images_of_each: usize,
     /// Entries of a list.
     pub(super) most: usize,
     /// Particles whose lists share a buffer.
@@ -146,7 +152,7 @@ impl Counts {
     /// Those of `system`, for lists that reach `margin` beyond the support.
     pub(super) fn new<const D: usize>(
         system: &System<D>,
-        layout: &Layout,
+        (layout, sides): (&Layout, &Sides<D>),
         adapter: &Adapter,
         margin: f64,
     ) -> Result<Self> {
@@ -158,6 +164,9 @@ impl Counts {
                 let c = layout.coarse(r[k], f64::floor);
                 (low[k], high[k]) = if i == 0 { (c, c) } else { (c.min(low[k]), c.max(high[k])) };
             }
+        }
+        for (k, [from, to]) in (0..D).filter_map(|k| Some((k, sides.reach(k)?))) {
+            (low[k], high[k]) = (low[k].min(from), high[k].max(to));
         }
         // Two empty cells around all.
         let (width, mut origin, mut size) = (cell_width(margin), [0; 4], [1; 4]);
@@ -175,7 +184,9 @@ impl Counts {
         }
         let ratio = model.support_radius() * (1.0 + margin) / model.dp;
         let volume = if D == 2 { std::f64::consts::PI * ratio.powi(2) } else { 4.19 * ratio.powi(3) };
-        let mut counts = Self { n, water, size, origin, cells: cells as usize, most: 0, part: 0 };
+        let (kinds, images_of_each) = (sides.kinds(), sides.images_of_each());
+        let mut counts =
+            Self { n, water, size, origin, cells: cells as usize, kinds, images_of_each, most: 0, part: 0 };
         counts.set_list_length((1.08 * volume) as usize + 4, adapter);
         Ok(counts)
     }
@@ -191,8 +202,29 @@ impl Counts {
         self.n.div_ceil(self.part).max(1)
     }
 
-    pub(super) fn words(&self) -> [u32; 12] {
-        let mut words = [0; 12];
+    /// Room for the images across periodic sides.
+    pub(super) fn images(&self) -> usize {
+        self.water * self.images_of_each
+    }
+
+    /// Particles and room for the images.
+    pub(super) fn slots(&self) -> usize {
+        self.n + self.images()
+    }
+
+    /// Chunks in which the velocities of the water are added up, if there are periodic sides.
+    pub(super) fn flow_chunks(&self) -> usize {
+        if self.images_of_each > 0 { self.water.div_ceil(GROUP) } else { 0 }
+    }
+
+    /// Cells of all kinds of particles.
+    pub(super) fn all_cells(&self) -> usize {
+        self.kinds * self.cells
+    }
+
+    pub(super) fn words(&self) -> [u32; 16] {
+        let mut words = [0; 16];
+        words[12] = self.slots() as u32;
         words[..4].copy_from_slice(&[self.n, self.water, self.cells, self.most].map(|x| x as u32));
         for k in 0..4 {
             (words[4 + k], words[8 + k]) = (self.size[k] as u32, self.origin[k] as u32);
@@ -235,6 +267,8 @@ pub(super) struct PairBuffers {
     pub(super) gaps: wgpu::Buffer,
     pub(super) local: wgpu::Buffer,
     pub(super) chunks: wgpu::Buffer,
+    pub(super) copied: wgpu::Buffer,
+    pub(super) flow: wgpu::Buffer,
 }
 
 /// The arrays of the search.
@@ -260,25 +294,27 @@ impl Buffers {
         let ([rows, input_rows, kept_rows], gaps) = (texts.rows, texts.gaps.is_some());
         let (n, boundary) = (counts.n, counts.n - counts.water);
         let history = if verlet { 16 * n } else { 16 };
-        let solids = chunks.owners.iter().max().map_or(1, |most| most + 1);
-        let total = 2 * counts.cells + 1;
+        let solids = chunks.copies.len().max(1);
+        let (slots, total) = (counts.slots(), counts.all_cells() + 1);
         let if_gaps = |bytes: usize| if gaps { bytes } else { 16 };
         let aways = if gaps || texts.near.is_some() { 16 * boundary } else { 16 };
         let pairs = PairBuffers {
-            positions: gpu.buffer(16 * n)?,
-            velocities: gpu.buffer(16 * n)?,
+            positions: gpu.buffer(16 * slots)?,
+            velocities: gpu.buffer(16 * slots)?,
             built: gpu.buffer(16 * n)?,
             sums: gpu.buffer(4 * rows * n)?,
-            rows: gpu.buffer(4 * input_rows * n)?,
+            rows: gpu.buffer(4 * input_rows * slots)?,
             spans: gpu.buffer(8 * n)?,
             walls: gpu.buffer(16 * boundary)?,
             aways: gpu.buffer(aways)?,
             gaps: gpu.buffer(if_gaps(4 * boundary))?,
             local: gpu.buffer(16 * boundary)?,
             chunks: gpu.buffer(4 * chunks.members.len())?,
+            copied: gpu.buffer(16 * chunks.copied.len())?,
+            flow: gpu.buffer(16 * counts.flow_chunks())?,
         };
         let search = SearchBuffers {
-            order: gpu.buffer(4 * n)?,
+            order: gpu.buffer(4 * slots)?,
             count: gpu.buffer(4 * total)?,
             start: gpu.buffer(4 * total)?,
             blocks: gpu.buffer(4 * total.div_ceil(1024))?,
@@ -288,6 +324,7 @@ impl Buffers {
         };
         gpu.write(&pairs.local, 0, &chunks.local);
         gpu.write(&pairs.chunks, 0, &chunks.members);
+        gpu.write(&pairs.copied, 0, &chunks.copied);
         let mut buffers = Self {
             control: gpu.buffer(4 * WORDS)?,
             places: gpu.buffer(32 * n)?,
@@ -296,7 +333,7 @@ impl Buffers {
             slot: gpu.buffer(4 * n)?,
             solids: gpu.buffer(4 * SOLID_WORDS * solids)?,
             depths: gpu.buffer(8 * boundary)?,
-            loads: gpu.buffer(32 * chunks.owners.len())?,
+            loads: gpu.buffer(32 * chunks.owners.len().max(1))?,
             lists: Vec::new(),
             pairs,
             search,
@@ -336,10 +373,23 @@ impl Buffers {
 
     /// Memory, B.
     pub(super) fn bytes(&self) -> u64 {
-        let PairBuffers { positions, velocities, built, sums, rows, spans, walls, aways, gaps, local, chunks } =
-            &self.pairs;
+        let PairBuffers {
+            positions,
+            velocities,
+            built,
+            sums,
+            rows,
+            spans,
+            walls,
+            aways,
+            gaps,
+            local,
+            chunks,
+            copied,
+            flow,
+        } = &self.pairs;
         let SearchBuffers { order, count, start, blocks, spare_places, spare, spare_rows } = &self.search;
-        let pairs = [positions, velocities, built, sums, rows, spans, walls, aways, gaps, local, chunks];
+        let pairs = [positions, velocities, built, sums, rows, spans, walls, aways, gaps, local, chunks, copied, flow];
         let search = [order, count, start, blocks, spare_places, spare, spare_rows];
         let solids = [&self.slot, &self.solids, &self.depths, &self.loads];
         let all =

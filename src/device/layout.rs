@@ -23,6 +23,15 @@ pub(super) struct Layout {
 /// A place: `hi` of three axes and the index, `lo` of three axes and the solid.
 pub(super) type Place = [u32; 8];
 
+/// The place with these coordinates, in units of a place.
+pub(super) fn place_of<const D: usize>(x: [i64; D]) -> Place {
+    let mut place = [0; 8];
+    for k in 0..D {
+        (place[k], place[4 + k]) = ((x[k] >> 32) as u32, x[k] as u32);
+    }
+    place
+}
+
 impl Layout {
     /// For the particles of `model`.
     pub(super) fn new<const D: usize>(model: &Model) -> Self {
@@ -37,13 +46,19 @@ impl Layout {
 
     /// The place of a particle at `r` (m).
     pub(super) fn place<const D: usize>(&self, r: &Vector<D>, index: u32, solid: u32) -> Place {
-        let mut place = [0; 8];
-        for k in 0..D {
-            let q = (r[k] * self.inv_fine).round() as i64;
-            (place[k], place[4 + k]) = ((q >> 32) as u32, q as u32);
-        }
+        let mut place = place_of(std::array::from_fn::<_, D, _>(|k| self.fine(r[k])));
         (place[3], place[7]) = (index, solid);
         place
+    }
+
+    /// A coordinate (m) in units of a place.
+    pub(super) fn fine(&self, x: f64) -> i64 {
+        (x * self.inv_fine).round() as i64
+    }
+
+    /// The place of `r` (m) moved by as many of these periods (units of a place).
+    pub(super) fn place_away<const D: usize>(&self, r: &Vector<D>, periods: [i64; D], periods_away: [i64; D]) -> Place {
+        place_of(std::array::from_fn::<_, D, _>(|k| self.fine(r[k]) + periods[k] * periods_away[k]))
     }
 
     /// Where a particle is, m.

@@ -13,6 +13,7 @@ mod gpu;
 mod layout;
 mod near;
 mod passes;
+mod periodic;
 mod shaders;
 mod solids;
 mod text;
@@ -25,6 +26,7 @@ use gpu::Gpu;
 use layout::Layout;
 use near::{Answer, Near};
 use passes::{Passes, Shaders};
+use periodic::Sides;
 use shaders::{ShaderInput, TICKS, entries};
 use solids::SolidChunks;
 
@@ -55,6 +57,7 @@ const SUBMISSION: f64 = 0.1;
 pub(crate) struct Device<const D: usize> {
     gpu: Gpu,
     layout: Layout,
+    sides: Sides<D>,
     units: Units,
     shaders: Shaders,
     rows: RowCounts,
@@ -194,13 +197,14 @@ fn sponge_statements<const D: usize>(system: &System<D>, layout: &Layout, units:
 #[doc(hidden)]
 pub fn shaders_of<const D: usize>(system: &System<D>, reads: bool) -> Result<ShaderTexts> {
     let reads = WaterReads { near: reads, watched: if reads { vec![0] } else { Vec::new() } };
-    shader_texts(system, &Layout::new::<D>(system.model()), &SolidChunks::new(system), &reads)
+    let layout = Layout::new::<D>(system.model());
+    shader_texts(system, (&layout, &Sides::new(system, &layout)), &SolidChunks::new(system), &reads)
 }
 
 /// The texts of the shaders for the present state of `system`.
 fn shader_texts<const D: usize>(
     system: &System<D>,
-    layout: &Layout,
+    (layout, sides): (&Layout, &Sides<D>),
     chunks: &SolidChunks,
     reads: &WaterReads,
 ) -> Result<ShaderTexts> {
@@ -208,7 +212,8 @@ fn shader_texts<const D: usize>(
         return Err(refused(what));
     }
     let model = system.model();
-    let (traces, units) = model.pair_traces::<D>().ok_or_else(|| refused("this pair loop"))?;
+    let gravity_changes = device_state::gravity_changes(system);
+    let (traces, units) = model.pair_traces::<D>(gravity_changes).ok_or_else(|| refused("this pair loop"))?;
     let domain = system.domain();
     let input = ShaderInput::<D> {
         model,
@@ -219,10 +224,12 @@ fn shader_texts<const D: usize>(
             std::array::from_fn(|k| layout.coarse(domain.min[k], f64::floor)),
             std::array::from_fn(|k| layout.coarse(domain.max[k], f64::ceil)),
         ],
+        sides: *sides,
         margin: MARGIN,
         chunks: [chunks.moving, chunks.owners.len()],
         near: reads.near || !reads.watched.is_empty(),
         weighs: !reads.watched.is_empty(),
+        gravity_changes,
         sponge: sponge_statements(system, layout, &units)?,
         gaps: device_state::has_free_solids(system) && model.walls == Walls::RelaxedAdami,
     };
@@ -241,12 +248,13 @@ impl<const D: usize> Device<D> {
     ) -> Result<Self> {
         let (model, chunks) = (system.model(), SolidChunks::new(system));
         let layout = Layout::new::<D>(model);
-        let texts = shader_texts(system, &layout, &chunks, &reads)?;
+        let sides = Sides::new(system, &layout);
+        let texts = shader_texts(system, (&layout, &sides), &chunks, &reads)?;
         if !system.fluid().r.iter().chain(system.boundary().r).all(|r| layout.reaches(r)) {
             return Err(refused("places a million kernel supports from the origin"));
         }
         let gpu = Gpu::open(name)?;
-        let counts = Counts::new(system, &layout, &gpu.adapter, MARGIN)?;
+        let counts = Counts::new(system, (&layout, &sides), &gpu.adapter, MARGIN)?;
         let verlet = matches!(model.scheme, TimeScheme::Verlet { .. });
         let shaders = Shaders::new(&gpu, &texts, verlet)?;
         let buffers = Buffers::new(&gpu, &counts, &chunks, &texts, verlet)?;
@@ -258,6 +266,7 @@ impl<const D: usize> Device<D> {
         let mut device = Self {
             gpu,
             layout,
+            sides,
             units,
             shaders,
             rows,
@@ -297,9 +306,9 @@ impl<const D: usize> Device<D> {
         let (water, boundary) = (system.fluid(), system.boundary());
         let count = water.len();
         let of_water = (0..count).map(|i| (water.r[i], water.v[i], water.rho[i], u32::MAX));
-        let of_boundary = (0..boundary.len()).map(|i| {
-            (boundary.r[i], boundary.v[i], boundary.rho[i], device_state::solid_of_boundary(system, i) as u32)
-        });
+        let of_boundary = (0..boundary.len())
+            .zip(self.chunks.set_of_each(system))
+            .map(|(i, set)| (boundary.r[i], boundary.v[i], boundary.rho[i], set));
         let all: Vec<_> = of_water.chain(of_boundary).collect();
         let places: Vec<_> =
             all.iter().enumerate().map(|(i, (r, _, _, solid))| layout.place(r, i as u32, *solid)).collect();
@@ -310,21 +319,22 @@ impl<const D: usize> Device<D> {
             let scale = (self.units.time / self.units.length).powi(2);
             for (row, (i, j)) in (row..).zip(entries(D)) {
                 let values: Vec<f32> = stress.iter().map(|stress| (stress[(i, j)] * scale) as f32).collect();
-                gpu.write(&buffers.pairs.rows, 4 * row * self.counts.n, &values);
+                gpu.write(&buffers.pairs.rows, 4 * row * self.counts.slots(), &values);
             }
         }
         let mut control = Control::start();
         if let Stepper::Verlet(verlet) = stepper {
             let history = verlet.history();
             if !history.velocity.is_empty() || !history.boundary_density.is_empty() {
-                let rho = history.density.iter().chain(&history.boundary_density);
-                let v = history.velocity.iter().copied().chain(boundary.v.iter().copied());
-                let before: Vec<_> = v.zip(rho).map(|(v, rho)| layout.motion(&v, *rho)).collect();
+                let rho = history.density.iter().take(count).chain(&history.boundary_density);
+                let v = history.velocity.iter().take(count).chain(boundary.v);
+                let before: Vec<_> = v.zip(rho).map(|(v, rho)| layout.motion(v, *rho)).collect();
                 gpu.write(&buffers.before, 0, &before);
                 control.set_history(history.steps, history.foldings, history.dt / self.units.time);
             }
         }
         gpu.write(&buffers.control, 0, &control.0);
+        self.write_gravity(system);
         (self.start, self.ticks) = (time, 0);
         self.write_solids(system);
         let constants: Vec<[f32; 2]> = device_state::wall_constants(system)
@@ -336,9 +346,16 @@ impl<const D: usize> Device<D> {
         self.gpu.check()
     }
 
+    /// Gives the device the gravity of the next force pass.
+    pub(crate) fn write_gravity(&self, system: &System<D>) {
+        let gravity = system.gravity() * (self.units.time * self.units.time / self.units.length);
+        let words: Vec<f32> = gravity.iter().map(|x| *x as f32).collect();
+        self.gpu.write(&self.buffers.control, Control::GRAVITY * 4, &words);
+    }
+
     /// Gives the device the kinematics of the solids.
     fn write_solids(&mut self, system: &System<D>) {
-        let solids = self.chunks.solids(system, &self.layout, &self.units);
+        let solids = self.chunks.solids(system, (&self.layout, &self.sides), &self.units);
         self.gpu.write(&self.buffers.solids, 0, &solids);
     }
 
@@ -501,6 +518,15 @@ impl<const D: usize> Device<D> {
         self.gpu.run(&[], [self.passes.place.as_ref()]);
     }
 
+    /// The sum of the velocities (m/s) of the water, if there are periodic sides; else zero.
+    pub(crate) fn velocity_sum(&self) -> Result<Vector<D>> {
+        self.gpu.run(&[], self.passes.velocities.as_deref());
+        let [sums] = self.gpu.read::<f32, 1>([(&self.buffers.pairs.flow, 4 * self.counts.flow_chunks())])?;
+        let unit = self.units.length / self.units.time;
+        let sum = |k: usize| sums.chunks_exact(4).map(|chunk| f64::from(chunk[k])).sum::<f64>() * unit;
+        Ok(Vector::from_fn(|k, _| sum(k)))
+    }
+
     /// Makes a force pass at the present state. Returns the acceleration (m/s²) and the rate of ρ/ρ₀ (1/s) of each water
     /// particle, in the order of `system`, and the largest values that limit a step.
     pub(crate) fn rates(&mut self, system: &System<D>) -> Result<(Vec<PairSums<D>>, StepLimits)> {
@@ -546,11 +572,12 @@ impl<const D: usize> Device<D> {
         };
         device_state::take_from_device(system, of_water, |i| layout.density(of(water + i).1));
         if let Some(first) = self.rows.stress {
-            let [rows] = self.gpu.read::<f32, 1>([(&self.buffers.pairs.rows, self.rows.inputs * n)])?;
+            let slots = self.counts.slots();
+            let [rows] = self.gpu.read::<f32, 1>([(&self.buffers.pairs.rows, self.rows.inputs * slots)])?;
             let scale = (self.units.length / self.units.time).powi(2);
             let entry = |i: usize, row: usize, column: usize| {
                 let (a, b) = (row.max(column), row.min(column));
-                f64::from(rows[(first + a * (a + 1) / 2 + b) * n + slot[i]]) * scale
+                f64::from(rows[(first + a * (a + 1) / 2 + b) * slots + slot[i]]) * scale
             };
             device_state::set_fluid_stress(system, |i| Matrix::from_fn(|row, column| entry(i, row, column)));
         }
@@ -559,9 +586,10 @@ impl<const D: usize> Device<D> {
             let control = self.control()?;
             let of = |i: usize| &before[4 * slot[i]..][..4];
             if control.has_history() {
+                let all = || (0..water).chain(device_state::originals(system));
                 verlet.set_history(VerletHistory {
-                    velocity: (0..water).map(|i| layout.velocity(of(i))).collect(),
-                    density: (0..water).map(|i| layout.density(of(i))).collect(),
+                    velocity: all().map(|i| layout.velocity(of(i))).collect(),
+                    density: all().map(|i| layout.density(of(i))).collect(),
                     boundary_density: (water..n).map(|i| layout.density(of(i))).collect(),
                     dt: f64::from(control.dt_before()) * self.units.time,
                     steps: control.since_euler(),

@@ -26,6 +26,8 @@ pub(super) struct Passes {
     pub(super) place: Arc<Pass>,
     /// Adds up the loads.
     pub(super) loads: Arc<Pass>,
+    /// Adds up the velocities of the water, if there are periodic sides.
+    pub(super) velocities: Option<Arc<Pass>>,
 }
 
 /// The shaders of a scene.
@@ -38,6 +40,7 @@ pub(super) struct Shaders {
     gaps: Option<Shader>,
     inputs: Option<Shader>,
     moments: Option<Shader>,
+    images: Option<Shader>,
     /// Whether the stress of the water is kept.
     stress: bool,
     verlet: bool,
@@ -66,6 +69,7 @@ impl Shaders {
             gaps: optional(&texts.gaps, &["find_gaps", "add_gaps"])?,
             inputs: optional(&texts.inputs, &["fill_rows", "close_stress"])?,
             moments: optional(&texts.moments, &["sweep_moments"])?,
+            images: optional(&texts.images, &["place_images", "copy_rows", "update_copies", "add_velocities"])?,
             stress: texts.stress.is_some(),
             verlet,
         })
@@ -100,7 +104,9 @@ impl Passes {
         buffers: &Buffers,
     ) -> Result<Self> {
         let params = gpu.uniform(&counts.words());
-        let [rates, close_stress] = rates(gpu, shaders, counts, buffers, &params)?;
+        let images = images(gpu, shaders, (counts, chunks), buffers, &params)?;
+        let velocities = images.add_velocities.clone();
+        let [rates, close_stress] = rates(gpu, shaders, counts, buffers, &params, images)?;
         let n = counts.n;
         let b = &buffers.pairs;
         let solids = Maker::new(
@@ -159,7 +165,7 @@ impl Passes {
             whole = [&first[..], &rates, &close_stress, &[rest.clone(), finish.clone()]].concat();
             second = [std::slice::from_ref(&place), &rates, &close_stress, &[loads.clone(), rest, finish]].concat();
         }
-        Ok(Self { derive, rates, step: whole, first, second, place, loads })
+        Ok(Self { derive, rates, step: whole, first, second, place, loads, velocities })
     }
 }
 
@@ -171,9 +177,10 @@ fn rates(
     counts: &Counts,
     buffers: &Buffers,
     params: &wgpu::Buffer,
+    images: ImagePasses,
 ) -> Result<[Vec<Arc<Pass>>; 2]> {
-    let (b, searched, n, cells) = (&buffers.pairs, &buffers.search, counts.n, counts.cells);
-    let total = 2 * cells + 1;
+    let (b, searched, n, cells) = (&buffers.pairs, &buffers.search, counts.n, counts.all_cells());
+    let total = counts.all_cells() + 1;
     let search = Maker::new(
         gpu,
         &shaders.search,
@@ -205,10 +212,11 @@ fn rates(
         search.pass("scan_blocks", 1)?,
         search.pass("scan_add", total)?,
         search.pass("scatter", n)?,
-        search.pass("settle", 2 * cells)?,
-        search.pass("gather", n)?,
+        search.pass("settle", cells)?,
+        search.pass("gather", counts.slots())?,
         search.pass("put_back", n)?,
     ];
+    passes.extend(images.place);
     let (mut sweeps, mut corrections) = (Vec::new(), Vec::new());
     for (number, list) in buffers.lists.iter().take(counts.parts()).enumerate() {
         let start = number * counts.part;
@@ -311,6 +319,54 @@ fn rates(
         }
     }
     passes.extend(corrections);
+    passes.extend(images.before_sums);
     passes.extend(sweeps);
     Ok([passes, close])
+}
+
+/// The passes for images across periodic sides: after the search, before the sums over pairs, and after a step.
+#[derive(Default)]
+struct ImagePasses {
+    place: Option<Arc<Pass>>,
+    before_sums: Vec<Arc<Pass>>,
+    add_velocities: Option<Arc<Pass>>,
+}
+
+/// Those of the scene.
+fn images(
+    gpu: &Gpu,
+    shaders: &Shaders,
+    (counts, chunks): (&Counts, &SolidChunks),
+    buffers: &Buffers,
+    params: &wgpu::Buffer,
+) -> Result<ImagePasses> {
+    let Some(text) = &shaders.images else { return Ok(ImagePasses::default()) };
+    let (b, searched) = (&buffers.pairs, &buffers.search);
+    let maker = Maker::new(
+        gpu,
+        text,
+        vec![
+            params,
+            &buffers.control,
+            &buffers.places,
+            &buffers.motion,
+            &b.positions,
+            &b.velocities,
+            &searched.start,
+            &searched.order,
+            &buffers.slot,
+            &b.rows,
+            &b.copied,
+            &b.flow,
+        ],
+    );
+    let mut before_sums = Vec::new();
+    if shaders.inputs.is_some() {
+        before_sums.push(maker.pass("copy_rows", counts.images())?);
+    }
+    if !chunks.copied.is_empty() {
+        before_sums.push(maker.pass("update_copies", chunks.copied.len())?);
+    }
+    let place = Some(maker.pass("place_images", counts.images())?);
+    Ok(ImagePasses { place, before_sums, add_velocities: Some(maker.pass("add_velocities", counts.water)?) })
 }

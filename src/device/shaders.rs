@@ -1,6 +1,9 @@
 //! The text of the shaders: hand-written files for search, lists and steps, and the traces of the equations in between.
 
-use super::text::{indented, statements};
+use super::{
+    periodic::Sides,
+    text::{indented, statements},
+};
 use crate::{
     interaction::PairTraces,
     model::{Model, PressureGradient, TimeScheme, Walls},
@@ -29,6 +32,7 @@ pub(super) const TICKS: f64 = (1 << 24) as f64;
 pub(super) const EXCESS: f64 = 1.0 / (1u64 << 31) as f64;
 
 const COMMON: &str = include_str!("shaders/common.wgsl");
+const PERIODIC: &str = include_str!("shaders/periodic.wgsl");
 
 /// The data from which the texts of the shaders are written.
 pub(super) struct ShaderInput<'a, const D: usize> {
@@ -38,6 +42,7 @@ pub(super) struct ShaderInput<'a, const D: usize> {
     pub(super) limits: ParticleLimits,
     /// The domain in 2⁻⁸ of the support.
     pub(super) domain: [[i32; D]; 2],
+    pub(super) sides: Sides<D>,
     /// How far the lists reach beyond the support, over the support.
     pub(super) margin: f64,
     /// Boundary particles of moving solids, in whole chunks; all chunks.
@@ -48,6 +53,8 @@ pub(super) struct ShaderInput<'a, const D: usize> {
     pub(super) near: bool,
     /// Whether the host reads the weights of the water around boundary particles.
     pub(super) weighs: bool,
+    /// Whether gravity changes with time.
+    pub(super) gravity_changes: bool,
     /// Statements that add the rates of the sponge layers at `place` to `rate`.
     pub(super) sponge: String,
 }
@@ -65,6 +72,8 @@ pub struct ShaderTexts {
     pub step: String,
     /// Solids.
     pub solids: String,
+    /// Images across periodic sides, if there are such sides.
+    pub images: Option<String>,
     /// Pressure across gaps, if there may be any.
     pub gaps: Option<String>,
     /// Additional inputs of the pair loop, if terms read any.
@@ -93,18 +102,18 @@ fn vector<const D: usize>(x: impl Fn(usize) -> String, none: &str) -> String {
 }
 
 impl<const D: usize> ShaderInput<'_, D> {
-    /// The texts; `None` if a constant of the model overflows single precision, or γ is not 7.
+    /// The texts; `None` if a constant of the model overflows single precision, or γ is no whole
+    /// number from 1 to 7.
     pub(super) fn texts(&self) -> Option<ShaderTexts> {
         let properties = self.model.fluid_properties::<D>().in_units(&self.units);
-        let head = format!("{COMMON}{}", self.constants(&properties));
+        let head = format!("{COMMON}{PERIODIC}{}", self.constants(&properties));
         let with_head = |text: &str| format!("{head}{text}");
         let sum = |k: usize| format!("sums[{k}u * params.n + k]");
         let force = vector::<D>(sum, "0.0f");
         let eos = EquationOfState::new(properties.c0, properties.gamma);
-        eos.binomial_pressure(0.0)?;
+        let coefficients = eos.coefficients()?;
         let pressure = Trace::record(&mut |recorder| {
-            let p = eos.binomial_pressure(recorder.input("x")).unwrap_or_else(|| recorder.constant(0.0));
-            recorder.result("pressure", p);
+            recorder.result("pressure", eos.binomial_pressure(&coefficients, recorder.input("x")));
         });
         let step = include_str!("shaders/step.wgsl")
             .replace("{{PRESSURE}}", &indented(&statements(&pressure, "t", str::to_string)?, 4))
@@ -125,7 +134,7 @@ impl<const D: usize> ShaderInput<'_, D> {
             gaps: self.gaps.then(|| with_head(&gaps)),
             search: with_head(include_str!("shaders/search.wgsl")),
             lists: with_head(include_str!("shaders/lists.wgsl")),
-            sweep: with_head(&self.sweep(&properties, &eos)?),
+            sweep: with_head(&self.sweep(&properties, &eos, &coefficients)?),
             step: with_head(&step),
             inputs: (self.traces.rows[0] > 0)
                 .then(|| self.input_rows(&properties))
@@ -133,6 +142,7 @@ impl<const D: usize> ShaderInput<'_, D> {
                 .map(|text| with_head(&text)),
             near: self.near.then(|| with_head(include_str!("shaders/near.wgsl"))),
             moments: self.moments(&properties).map(|text| with_head(&text)),
+            images: (self.sides.kinds() > 2).then(|| with_head(include_str!("shaders/images.wgsl"))),
             rows: [self.traces.rows[1], self.traces.rows[0], self.kept_rows()],
             stress: self.traces.layout.stress,
             solids: with_head(&include_str!("shaders/solids.wgsl").replace("{{FORCE}}", &force)),
@@ -164,10 +174,12 @@ impl<const D: usize> ShaderInput<'_, D> {
             // Two particles that approach by half the margin each.
             format!("const MARGIN2: u32 = {}u;", ((0.5 * margin * support * 0.999).powi(2) as f32).to_bits()),
             format!("const KEPT_ROWS: u32 = {}u;", self.kept_rows()),
+            format!("const ROWS: u32 = {}u;", self.traces.rows[0]),
             format!("const CORRECT_EVERY: u32 = {}u;", gradient_correction::PASSES),
             format!("const MOVING: u32 = {}u;", chunks[0] * GROUP),
             format!("const CHUNKS: u32 = {}u;", chunks[1]),
-            format!("const GRAVITY: vec3<f32> = vec3<f32>({});", vector::<D>(|k| float(properties.gravity[k]), "0.0f")),
+            self.gravity(properties),
+            self.sides.constants(),
             format!("const SMOOTHING: f32 = {};", float(properties.h)),
             format!("const SOUND: f32 = {};", float(properties.c0)),
             format!("const COURANT: f32 = {};", float(model.cfl)),
@@ -185,8 +197,21 @@ impl<const D: usize> ShaderInput<'_, D> {
         lines.join("\n") + "\n"
     }
 
+    /// The functions for gravity, and for the slope g/c₀² of the excess density in water at rest.
+    fn gravity(&self, properties: &FluidProperties<D>) -> String {
+        let c2 = properties.c0.powi(2);
+        let constant = |of: f64| format!("vec3<f32>({})", vector::<D>(|k| float(properties.gravity[k] / of), "0.0f"));
+        let [gravity, slope] = match self.gravity_changes {
+            true => ["control.gravity.xyz".into(), format!("control.gravity.xyz * {}", float(1.0 / c2))],
+            false => [1.0, c2].map(constant),
+        };
+        format!(
+            "fn gravity() -> vec3<f32> {{ return {gravity}; }}\nfn density_slope() -> vec3<f32> {{ return {slope}; }}"
+        )
+    }
+
     /// The sums over pairs: one kernel for the water, one for the boundary particles.
-    fn sweep(&self, properties: &FluidProperties<D>, eos: &EquationOfState) -> Option<String> {
+    fn sweep(&self, properties: &FluidProperties<D>, eos: &EquationOfState, coefficients: &[f64]) -> Option<String> {
         let [_, sums] = self.traces.rows;
         let relaxed = self.model.walls == Walls::RelaxedAdami;
         let fluid = pair_body(&self.traces.fluid, "t")?;
@@ -206,7 +231,7 @@ impl<const D: usize> ShaderInput<'_, D> {
             // The results of the extrapolation have the names of those of the pair.
             beside = format!("{{\n{wall}}}\n{{\n{fit}}}\n");
             target = if relaxed {
-                let equations = statements(&wall_target(properties, eos), "w", read(wall_input))?;
+                let equations = statements(&wall_target(properties, eos, coefficients), "w", read(wall_input))?;
                 include_str!("shaders/wall_target.wgsl").replace("{{TARGET}}", &equations)
             } else {
                 "aways[k - params.water] = vec4<f32>(0.0f, 0.0f, 0.0f, fit0);\n".into()
@@ -256,14 +281,14 @@ impl<const D: usize> ShaderInput<'_, D> {
         let mut fill = String::new();
         if let Some(row) = layout.mark {
             fill += "if (k >= params.water) {\n";
-            fill += &format!("    rows[{row}u * params.n + k] = f32(solids[places[k].lo.w].origin.hi.w);\n}}\n");
+            fill += &format!("    rows[{row}u * params.slots + k] = f32(solids[places[k].lo.w].origin.hi.w);\n}}\n");
         }
         if let Some(row) = layout.repulsion {
             let trace = Trace::record(&mut |recorder| {
                 recorder.result("repulsion", repulsion(recorder.input("p"), recorder.input("volume")));
             });
             fill += &statements(&trace, "t", str::to_string)?;
-            fill += &format!("rows[{row}u * params.n + k] = out_repulsion;\n");
+            fill += &format!("rows[{row}u * params.slots + k] = out_repulsion;\n");
         }
         let mut stress = String::new();
         if let (Some(row), Some(strain), Some(law)) = (layout.stress, layout.strain, self.model.viscosity.stress()) {
@@ -276,7 +301,7 @@ impl<const D: usize> ShaderInput<'_, D> {
                 None => name.into(),
             })?;
             for n in 0..entries(D).count() {
-                stress += &format!("rows[{}u * params.n + k] = out_stress{n};\n", row + n);
+                stress += &format!("rows[{}u * params.slots + k] = out_stress{n};\n", row + n);
             }
         }
         let text = include_str!("shaders/rows.wgsl");
@@ -305,7 +330,7 @@ impl<const D: usize> ShaderInput<'_, D> {
             None => name.into(),
         })?;
         for n in 0..count {
-            text += &format!("rows[{}u * params.n + k] = out_correction{n};\n", row + n);
+            text += &format!("rows[{}u * params.slots + k] = out_correction{n};\n", row + n);
         }
         let zeros: String = (first..first + count).map(|row| format!("var sum{row} = 0.0f;\n")).collect();
         let shader = include_str!("shaders/moments.wgsl");
@@ -366,9 +391,10 @@ fn pair_input(name: &str) -> String {
     match name.split_at(1) {
         ("r", k) if k.len() == 1 => format!("r.{}", axis(k)),
         ("v", k) if k.len() == 1 => format!("v.{}", axis(k)),
-        _ => match (name.strip_prefix("a_row"), name.strip_prefix("b_row")) {
-            (Some(row), _) => format!("rows[{row}u * params.n + k]"),
-            (_, Some(row)) => format!("rows[{row}u * params.n + j]"),
+        _ => match (name.strip_prefix("a_row"), name.strip_prefix("b_row"), name.strip_prefix("slope")) {
+            (Some(row), ..) => format!("rows[{row}u * params.slots + k]"),
+            (_, Some(row), _) => format!("rows[{row}u * params.slots + j]"),
+            (.., Some(k)) => format!("slope.{}", axis(k)),
             _ => name.into(),
         },
     }
@@ -392,7 +418,7 @@ fn wall_input(name: &str) -> String {
         "prompt_increase" => "wall.w".into(),
         _ => match (name.strip_prefix("pull"), name.strip_prefix("g"), name.strip_prefix("v")) {
             (Some(k), ..) => component("pull", k),
-            (_, Some(k), _) => component("GRAVITY", k),
+            (_, Some(k), _) => component("gravity()", k),
             (.., Some(k)) => component("velocity", k),
             _ => name.into(),
         },
@@ -401,7 +427,7 @@ fn wall_input(name: &str) -> String {
 
 /// The target of a boundary particle, its density as excess density: inputs `sum0`… of the extrapolation, `pull0`…, `g0`…, `v0`…,
 /// `depth`, `own`, `full_weight` and `promptness`.
-fn wall_target<const D: usize>(properties: &FluidProperties<D>, eos: &EquationOfState) -> Trace {
+fn wall_target<const D: usize>(properties: &FluidProperties<D>, eos: &EquationOfState, coefficients: &[f64]) -> Trace {
     Trace::record(&mut |recorder| {
         let each = |name: &str| -> [Traced; D] { std::array::from_fn(|k| recorder.input(&format!("{name}{k}"))) };
         let sum = |row: usize| recorder.input(&format!("sum{row}"));
@@ -413,7 +439,7 @@ fn wall_target<const D: usize>(properties: &FluidProperties<D>, eos: &EquationOf
         };
         let pressure = fit.pressure(&each("pull"), &each("g"), recorder.input("depth"));
         let cover = Cover { share: fit.weight_sum / recorder.input("full_weight") };
-        let density = eos.binomial_compression(pressure);
+        let density = eos.binomial_compression(coefficients, pressure);
         let (own, promptness) = (recorder.input("own"), recorder.input("promptness"));
         let target = WallTarget::new(density, own, fit.approach(&each("v")), cover, promptness, [1.0, properties.c0]);
         recorder.result("density", target.density);

@@ -1,6 +1,6 @@
 //! The solids as a device has them, and the chunks of their boundary particles in which their loads are added up.
 
-use super::{layout::Layout, shaders::GROUP};
+use super::{layout::Layout, periodic::Sides, shaders::GROUP};
 use crate::{
     math::{Bivector, Matrix, Vector},
     solid::{Load, Role},
@@ -22,6 +22,11 @@ pub(super) struct SolidChunks {
     pub(super) owners: Vec<usize>,
     /// Chunks of moving solids.
     pub(super) moving: usize,
+    /// Number of the solid and of the copy of each set of boundary particles: those of a solid, or of one of its copies beside periodic
+    /// sides. For the device, each set has a solid of its own.
+    pub(super) copies: Vec<[usize; 2]>,
+    /// Index of each boundary particle of a first copy that has others, particles of a copy, and copies.
+    pub(super) copied: Vec<[u32; 4]>,
     /// Positions of the boundary particles in the frames of their solids, in the units of the pair loop.
     pub(super) local: Vec<[f32; 4]>,
 }
@@ -45,27 +50,43 @@ impl SolidChunks {
         let unit = system.model().single_precision_units::<D>().length;
         let mut local = vec![[0.0; 4]; system.boundary().len()];
         for &solid in &moving {
-            for (i, r) in system.solids()[solid].boundary.clone().zip(device_state::local_boundary(system, solid)) {
+            let own = device_state::local_boundary(system, solid);
+            for (i, r) in system.solids()[solid].boundary.clone().zip(own.iter().cycle()) {
                 (0..D).for_each(|k| local[i][k] = (r[k] / unit) as f32);
             }
         }
-        Self { members, owners, moving: chunks_of_moving, local }
+        let (mut copies, mut copied) = (Vec::new(), Vec::new());
+        for (number, solid) in system.solids().iter().enumerate() {
+            let (count, first) = (solid.copies(), solid.boundary_of_copy(0));
+            copies.extend((0..count).map(|copy| [number, copy]));
+            let length = first.len();
+            copied.extend(first.filter(|_| count > 1).map(|i| [i as u32, length as u32, count as u32, 0]));
+        }
+        Self { members, owners, moving: chunks_of_moving, copies, copied, local }
     }
 
-    /// The words of all solids.
+    /// Number of the set of each boundary particle.
+    pub(super) fn set_of_each<'a, const D: usize>(&'a self, system: &'a System<D>) -> impl Iterator<Item = u32> + 'a {
+        let length = |&[solid, copy]: &[usize; 2]| system.solids()[solid].boundary_of_copy(copy).len();
+        (0u32..).zip(&self.copies).flat_map(move |(set, of)| std::iter::repeat_n(set, length(of)))
+    }
+
+    /// The words of all sets of boundary particles.
     pub(super) fn solids<const D: usize>(
         &self,
         system: &System<D>,
-        layout: &Layout,
+        (layout, sides): (&Layout, &Sides<D>),
         units: &Units,
     ) -> Vec<[u32; SOLID_WORDS]> {
         let (rate, speed) = (units.time, units.time / units.length);
-        let one = |i: usize| {
+        let one = |&[i, copy]: &[usize; 2]| {
             let (solid, mut words) = (&system.solids()[i], [0; SOLID_WORDS]);
             let kinematics = &solid.kinematics;
-            words[..8].copy_from_slice(&layout.place(&kinematics.pose.position, 0, 0));
+            let away = device_state::periods_to_copy(system, i, copy);
+            let place = |r: &Vector<D>| layout.place_away(r, sides.periods(), away);
+            words[..8].copy_from_slice(&place(&kinematics.pose.position));
             words[3] = u32::from(device_state::suppresses_shifting(system, i));
-            words[8..16].copy_from_slice(&layout.place(&kinematics.centre, 0, 0));
+            words[8..16].copy_from_slice(&place(&kinematics.centre));
             let mut matrix = |at: usize, m: &Matrix<D>, scale: f64| {
                 for column in 0..D {
                     for row in 0..D {
@@ -85,7 +106,7 @@ impl SolidChunks {
             words[59] = (system.wall_promptness(solid) as f32).to_bits();
             words
         };
-        (0..system.solids().len()).map(one).collect()
+        self.copies.iter().map(one).collect()
     }
 
     /// The loads on all solids from the sums of the chunks, added up in double precision and in order.

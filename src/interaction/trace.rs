@@ -1,7 +1,7 @@
 //! Terms as traces: what a pair adds to the sums of its first particle, and a water particle to an extrapolation.
 //!
 //! Inputs of a pair: `r0`… and `v0`… (r_ab, v_ab), `difference` (x_b − x_a), `a_compression`, `a_pressure`, `a_volume` and the same of
-//! b, `a_row0`… (the rows of additional inputs), and `sum0`…, the sums so far. Results: `sum0`…, and `approach`, the larger of the
+//! b, `slope0`… (g/c₀²), `a_row0`… (the rows of additional inputs), and `sum0`…, the sums so far. Results: `sum0`…, and `approach`, the larger of the
 //! input of that name and |v_ab·r_ab|/(r² + η²).
 
 use super::{

@@ -318,7 +318,8 @@ impl<const D: usize> NeighbourLists<D> {
     #[cfg(feature = "gpu")]
     pub(crate) fn set_fluid_positions(&mut self, water: &[Vector<D>]) {
         (self.grids, self.known) = (Default::default(), None);
-        self.positions_at_build.copy_from_slice(water);
+        self.positions_at_build.clear();
+        self.positions_at_build.extend_from_slice(water);
     }
 
     /// Takes the positions (m) of `these` water particles alone, for queries at a point, until all are known again.

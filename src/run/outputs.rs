@@ -12,6 +12,8 @@ use super::{
     orders::{Leader, Order},
     probe_factory,
 };
+#[cfg(feature = "gpu")]
+use crate::probe::ProbeReads;
 use crate::{
     error::{Error, ErrorCode, ErrorKind, Result},
     math::Bounds,

@@ -2,13 +2,12 @@
 
 use std::time::Instant;
 
-use super::Simulation;
+use super::{Simulation, change_gravity};
 use crate::{
     coupling::{AcousticAddedMass, Bodies, Hook, Interval, drift_half_step},
     device::{Adapter, Device, DeviceSteps, SecondHalf, StepRequest, StepsEnd, WaterReads, refused},
     error::{ErrorCode, Result},
     interaction::{PairSums, StepLimits},
-    math::Bounds,
     model::TimeScheme,
     solid::{Role, Solid},
     system::{System, device_state, has_water_beside},
@@ -21,8 +20,8 @@ pub(super) struct OnDevice<const D: usize> {
     host_is_current: bool,
     /// Whether the loads of the solids are those of the last force pass.
     loads_are_current: bool,
-    /// Whether no solid moves.
-    all_fixed: bool,
+    /// Whether the host changes nothing between two outputs: no solid moves, and gravity is constant.
+    runs_alone: bool,
     /// Numbers of the solids whose boundary particles the host places too.
     watched_solids: Vec<usize>,
     /// Steps after which a state for a rollback is stored.
@@ -72,14 +71,15 @@ pub(super) fn place<const D: usize>(mut sim: Simulation<D>, name: &str) -> Resul
     let moored = !sim.bodies.moorings.is_empty();
     let near = moored || !sim.bodies.added_masses().is_empty() || sim.system.solids().iter().any(absorbs);
     let device = Device::new(name, &sim.system, &sim.stepper, sim.clock.time, WaterReads { near, watched })?;
-    let all_fixed = !moored && sim.system.solids().iter().all(|solid| matches!(solid.spec.role, Role::Fixed));
+    let all_fixed = sim.system.solids().iter().all(|solid| matches!(solid.spec.role, Role::Fixed));
+    let runs_alone = !moored && all_fixed && !device_state::gravity_changes(&sim.system);
     device_state::leave_to_device(&mut sim.system);
     let (host_is_current, loads_are_current) = (true, true);
     let own = OnDevice {
         device,
         host_is_current,
         loads_are_current,
-        all_fixed,
+        runs_alone,
         watched_solids,
         next_state: 0,
         host_changed: false,
@@ -165,17 +165,17 @@ pub(super) fn steps<const D: usize>(
 }
 
 /// Advances by up to `most` steps until time `pause` (s) is reached, not past `end` (s); the state stays on the device. Makes
-/// only one step if a solid moves or there is a `hook`.
+/// only one step if a solid moves, gravity changes or there is a `hook`.
 fn advance<const D: usize>(
     sim: &mut Simulation<D>,
     (most, pause): (u64, f64),
     end: f64,
     hook: Option<&mut Hook<D>>,
 ) -> Result<()> {
-    let all_fixed = sim.device.as_ref().is_some_and(|own| own.all_fixed);
+    let runs_alone = sim.device.as_ref().is_some_and(|own| own.runs_alone);
     let factor = sim.rollback.step_factor(sim.clock.time);
     let request = StepRequest { longest: sim.host_step_limit(), factor, pause, end };
-    let done = if all_fixed && hook.is_none() {
+    let done = if runs_alone && hook.is_none() {
         let Some(own) = &mut sim.device else { return Ok(()) };
         (own.host_is_current, own.loads_are_current) = (false, false);
         own.device.run(most, &request)?
@@ -191,7 +191,7 @@ fn advance<const D: usize>(
     take_steps(sim, &done)
 }
 
-/// One step of a scene whose solids move.
+/// One step of a scene whose solids move or whose gravity changes.
 fn body_step<const D: usize>(
     sim: &mut Simulation<D>,
     request: &StepRequest,
@@ -200,7 +200,7 @@ fn body_step<const D: usize>(
     let Simulation { device: Some(own), system, bodies, clock, stepper, .. } = sim else { return Ok(None) };
     (own.host_is_current, own.loads_are_current) = (false, true);
     let start: Vec<_> = system.solids.iter().map(|solid| solid.kinematics).collect();
-    let gauges = system.absorption_ranges(clock.time);
+    let gauges = device_state::with_originals(system, system.absorption_ranges(clock.time));
     let (over, SecondHalf { done, loads, near }) = loop {
         let first = match own.device.first_half(request, &gauges)? {
             Ok(first) => first,
@@ -211,14 +211,18 @@ fn body_step<const D: usize>(
             device_state::take_near(system, first.near);
             system.update_absorption(over.t);
         }
+        change_gravity(system, bodies, over.t + 0.5 * over.dt);
         if system.model().scheme == TimeScheme::Symplectic {
             drift_half_step(system, over);
+            own.device.write_gravity(system);
         }
         own.watched_solids.iter().for_each(|solid| device_state::place_solid(system, *solid));
-        if let Some(second) = own.device.second_half(system, request.end, &bodies.water_ranges(system, over))? {
+        let ranges = device_state::with_originals(system, bodies.water_ranges(system, over));
+        if let Some(second) = own.device.second_half(system, request.end, &ranges)? {
             break (over, second);
         }
         system.solids.iter_mut().zip(&start).for_each(|(solid, start)| solid.kinematics = *start);
+        change_gravity(system, bodies, over.t);
         own.device.move_solids(system);
     };
     device_state::set_loads(system, loads);
@@ -232,7 +236,14 @@ fn body_step<const D: usize>(
         }
     }
     let transfers = bodies.advance(system, over, done.weight, hook)?;
-    own.device.change_velocities(&device_state::velocity_changes(&transfers))?;
+    own.device.change_velocities(&device_state::velocity_changes(system, &transfers))?;
+    if device_state::holds_current(system) {
+        let sum = own.device.velocity_sum()?;
+        device_state::adapt_current(system, &sum, over.dt);
+    }
+    change_gravity(system, bodies, done.time);
+    bodies.update_masses(system, done.time, over.dt)?;
+    own.device.write_gravity(system);
     own.device.move_solids(system);
     Ok(Some(done))
 }

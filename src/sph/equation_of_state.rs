@@ -10,12 +10,29 @@ pub struct EquationOfState {
     gamma: f64,
 }
 
-/// `stiffness` [(1 + x)⁷ − 1], which loses no digit near x = 0.
+/// The binomial coefficients of γ = 7 but the first and the last.
+const SEVEN: [f64; 6] = [7.0, 21.0, 35.0, 35.0, 21.0, 7.0];
+
+/// `stiffness` [(1 + x)^γ − 1], which loses no digit near x = 0, with such coefficients of γ.
 #[inline(always)]
-fn binomial<N: Num>(stiffness: f64, x: N) -> N {
+fn binomial<N: Num>(stiffness: f64, coefficients: &[f64], x: N) -> N {
     let of = |c: f64| x.constant(c);
-    let sum = [21.0, 35.0, 35.0, 21.0, 7.0].into_iter().fold(x + of(7.0), |sum, c| x.fma(sum, of(c)));
+    let sum = coefficients.iter().fold(of(1.0), |sum, c| x.fma(sum, of(*c)));
     of(stiffness) * x * sum
+}
+
+/// xⁿ.
+#[cfg(feature = "gpu")]
+fn power<N: Num>(x: N, n: u32) -> N {
+    match n {
+        0 => x.constant(1.0),
+        1 => x,
+        _ if n.is_multiple_of(2) => {
+            let root = power(x, n / 2);
+            root * root
+        }
+        _ => power(x, n - 1) * x,
+    }
 }
 
 impl EquationOfState {
@@ -27,7 +44,10 @@ impl EquationOfState {
     /// P/ρ₀ (m²/s²) at excess density `x` (–). For γ = 7 the binomial in x.
     #[inline(always)]
     pub(crate) fn pressure(&self, x: f64) -> f64 {
-        if self.gamma == 7.0 { binomial(self.stiffness, x) } else { self.stiffness * (self.gamma * x.ln_1p()).exp_m1() }
+        match self.gamma == 7.0 {
+            true => binomial(self.stiffness, &SEVEN, x),
+            false => self.stiffness * (self.gamma * x.ln_1p()).exp_m1(),
+        }
     }
 
     /// Excess density (–) at P/ρ₀ (m²/s²), the inverse of [`EquationOfState::pressure`].
@@ -35,23 +55,30 @@ impl EquationOfState {
         ((p / self.stiffness).ln_1p() / self.gamma).exp_m1()
     }
 
-    /// P/ρ₀ at excess density `x`, for γ = 7, in single precision too; `None` for another γ.
+    /// The binomial coefficients of γ but the first and the last, if γ is a whole number from 1 to 7.
     #[cfg(feature = "gpu")]
-    pub(crate) fn binomial_pressure<N: Num>(&self, x: N) -> Option<N> {
-        (self.gamma == 7.0).then(|| binomial(self.stiffness, x))
+    pub(crate) fn coefficients(&self) -> Option<Vec<f64>> {
+        let whole = (1..=7).find(|n| f64::from(*n) == self.gamma)?;
+        let coefficient = |k: u32| (1..=k).fold(1.0, |c, i| c * f64::from(whole - k + i) / f64::from(i));
+        Some((1..whole).rev().map(coefficient).collect())
     }
 
-    /// Excess density (–) at P/ρ₀ (m²/s²) for γ = 7 by four Newton steps. They suffice in single precision for P/ρ₀ from −0.1 to
-    /// 1 times c₀².
+    /// P/ρ₀ at excess density `x` with the [`coefficients`](Self::coefficients) of γ, in single precision too.
     #[cfg(feature = "gpu")]
-    pub(crate) fn binomial_compression<N: Num>(&self, p: N) -> N {
+    pub(crate) fn binomial_pressure<N: Num>(&self, coefficients: &[f64], x: N) -> N {
+        binomial(self.stiffness, coefficients, x)
+    }
+
+    /// Excess density (–) at P/ρ₀ (m²/s²) with the [`coefficients`](Self::coefficients) of γ, by four Newton steps. They suffice in
+    /// single precision for P/ρ₀ from −0.1 to 1 times c₀².
+    #[cfg(feature = "gpu")]
+    pub(crate) fn binomial_compression<N: Num>(&self, coefficients: &[f64], p: N) -> N {
         let of = |c: f64| p.constant(c);
-        let q = (p * of(1.0 / (7.0 * self.stiffness))).max(of(-0.12));
-        // (1 + x)⁷ = 1 + 7q; from above the iteration is monotone, and x = q is above.
+        let q = (p * of(1.0 / (self.gamma * self.stiffness))).max(of(-0.12));
+        // (1 + x)^γ = 1 + γq; from above the iteration is monotone, and x = q is above.
         (0..4).fold(q, |x, _| {
-            let one = x + of(1.0);
-            let cube = one * one * one;
-            x - (binomial(1.0 / 7.0, x) - q) / (cube * cube)
+            let slope = power(x + of(1.0), coefficients.len() as u32);
+            x - (binomial(1.0 / self.gamma, coefficients, x) - q) / slope
         })
     }
 

@@ -12,6 +12,11 @@ pub trait Num:
 {
     /// The constant `x`, in every lane of a number like this one.
     fn constant(self, x: f64) -> Self;
+    /// The constant `x`, which may change from pass to pass: component `k` of what a trace reads as the input `name`.
+    #[inline(always)]
+    fn parameter(self, _name: &str, _k: usize, x: f64) -> Self {
+        self.constant(x)
+    }
     /// self·b + c; lanes round once where the processor can.
     fn fma(self, b: Self, c: Self) -> Self;
     /// Square root.

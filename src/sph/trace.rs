@@ -297,6 +297,11 @@ impl Num for Traced<'_> {
     fn constant(self, x: f64) -> Self {
         Self { at: self.recorder.0.borrow_mut().put_constant(x), ..self }
     }
+    /// An input, but a parameter that is 0 stays a constant.
+    #[inline(never)]
+    fn parameter(self, name: &str, k: usize, x: f64) -> Self {
+        if x == 0.0 { self.constant(x) } else { self.recorder.input(&format!("{name}{k}")) }
+    }
     #[inline(never)]
     fn fma(self, b: Self, c: Self) -> Self {
         self.put(Operation::Fma(self.at, b.at, c.at))

@@ -3,13 +3,13 @@
 use std::collections::BTreeMap;
 
 use super::{
-    ParticleLimits, System,
+    Fluid, Images, ParticleLimits, System, driving,
     impulses::MomentumTransfer,
     thin_layers::{self, WaterAround},
 };
 use crate::{
-    math::{Matrix, Vector},
-    model::Slip,
+    math::{Bounds, Matrix, Vector},
+    model::{PressureGradient, Slip},
     solid::{Load, Role, Solid},
 };
 
@@ -26,20 +26,60 @@ pub(crate) struct WaterLoads<const D: usize> {
 
 /// What this system has that no device computes yet, if anything.
 pub(crate) fn unsupported_on_device<const D: usize>(system: &System<D>) -> Option<&'static str> {
-    let (model, region, driving) = (&system.model, &system.fluid_domain, &system.driving.driving);
+    let (model, region) = (&system.model, &system.fluid_domain);
     let [least, most] = region.limits.density;
     let cases = [
-        (system.fluid.images.periodic.iter().any(Option::is_some), "periodic sides"),
         (system.symmetry_planes().any(), "symmetry planes"),
         (!region.open_boundaries.is_empty(), "open boundaries ([[inflow]], [[outflow]])"),
-        (driving.current.is_some() || driving.towed.is_some(), "currents and towed frames"),
-        (!system.gravity_law.is_empty(), "gravity that changes with time"),
+        (
+            gravity_changes(system) && model.gradient == PressureGradient::NearSurface,
+            "gravity that changes with time beside gradients that are corrected near the surface",
+        ),
         (!(0.5..1.0).contains(&least) || !(1.0..=1.5).contains(&most), "density limits beyond 0.5 to 1.5"),
         (model.slip == Slip::None, "slip = \"none\""),
-        (model.gamma != 7.0, "an exponent model.gamma other than 7"),
-        (system.solids.iter().any(|solid| !solid.spec.ballast.is_empty()), "ballast"),
+        (
+            system.equation_of_state.coefficients().is_none(),
+            "an exponent model.gamma that is not a whole number from 1 to 7",
+        ),
     ];
     cases.into_iter().find(|(has, _)| *has).map(|(_, what)| what)
+}
+
+/// Whether gravity or what else drives the water changes with time.
+pub(crate) fn gravity_changes<const D: usize>(system: &System<D>) -> bool {
+    !system.gravity_law.is_empty() || !system.driving.is_none()
+}
+
+/// Whether a force holds a current.
+pub(crate) fn holds_current<const D: usize>(system: &System<D>) -> bool {
+    system.driving.driving.current.is_some()
+}
+
+/// Adapts the force that holds the current after a step `dt` (s), in which the velocities of the water add up to `sum` (m/s).
+pub(crate) fn adapt_current<const D: usize>(system: &mut System<D>, sum: &Vector<D>, dt: f64) {
+    let found = system.driving.driving.current.and_then(|current| system.discharge_by(current.axis, sum[current.axis]));
+    driving::adapt_current(system, found.unwrap_or(0.0), dt);
+}
+
+/// Distance (m) to which images of the water reach beyond a periodic side.
+pub(crate) fn image_width<const D: usize>(system: &System<D>) -> f64 {
+    system.fluid.images.width
+}
+
+/// Indices of the originals of all images of the water, in the order of the images.
+pub(crate) fn originals<const D: usize>(system: &System<D>) -> impl Iterator<Item = usize> {
+    system.fluid.images.originals.iter().map(|original| *original as usize)
+}
+
+/// How many periods copy number `copy` of the boundary particles of solid number `solid` is away from the solid, along each axis.
+pub(crate) fn periods_to_copy<const D: usize>(system: &System<D>, solid: usize, copy: usize) -> [i64; D] {
+    let (boundary, images, own) = (&system.boundary, &system.fluid.images, &system.solids[solid]);
+    if own.copied_axes == 0 {
+        return [0; D];
+    }
+    let way = images.way_to_copy(&boundary.middle(solid, &own.kinematics.pose), own.copied_axes, copy);
+    let periods = |k: usize| images.periodic[k].map_or(0.0, |[from, to]| (way[k] / (to - from)).round());
+    std::array::from_fn(|k| periods(k) as i64)
 }
 
 /// Whether a solid is free.
@@ -54,14 +94,15 @@ pub(crate) fn suppresses_shifting<const D: usize>(system: &System<D>, solid: usi
 
 /// Stress of the water from the last pass, m²/s², if the viscosity has one.
 pub(crate) fn fluid_stress<const D: usize>(system: &System<D>) -> Option<&[Matrix<D>]> {
-    system.fluid.stress.as_deref()
+    system.fluid.stress.as_deref().map(|stress| &stress[..system.own_count()])
 }
 
 /// Takes the stress (m²/s²) of each water particle from a device.
 pub(crate) fn set_fluid_stress<const D: usize>(system: &mut System<D>, stress: impl Fn(usize) -> Matrix<D>) {
-    for (i, own) in system.fluid.stress.iter_mut().flatten().enumerate() {
-        *own = stress(i);
-    }
+    let water = system.own_count();
+    let Fluid { stress: all, images, .. } = &mut system.fluid;
+    let which = (0..water).chain(images.originals.iter().map(|original| *original as usize));
+    all.iter_mut().flatten().zip(which).for_each(|(own, i)| *own = stress(i));
 }
 
 /// The valid range of a particle.
@@ -112,13 +153,15 @@ pub(crate) fn take_from_device<const D: usize>(
     water: impl Fn(usize) -> (Vector<D>, Vector<D>, f64),
     boundary_density: impl Fn(usize) -> f64,
 ) {
+    let count = system.own_count();
     let particles = &mut system.fluid.particles;
-    for i in 0..particles.r.len() {
+    for i in 0..count {
         (particles.r[i], particles.v[i], particles.rho[i]) = water(i);
     }
     for (i, rho) in system.boundary.particles.rho.iter_mut().enumerate() {
         *rho = boundary_density(i);
     }
+    system.renew_images();
     place_solids(system);
     system.neighbours.set_fluid_positions(&system.fluid.particles.r);
     system.boundary.poses_at_rebuild = Some(system.solids.iter().map(|solid| solid.kinematics.pose).collect());
@@ -157,21 +200,53 @@ pub(crate) fn place_solid<const D: usize>(system: &mut System<D>, solid: usize) 
     boundary.place(solid, &solids[solid], &fluid.images);
 }
 
-/// Takes water particles from a device, which are all that are known until [`take_from_device`].
+/// Takes water particles from a device, which with their images are all that are known until [`take_from_device`].
 pub(crate) fn take_near<const D: usize>(system: &mut System<D>, near: Vec<NearParticle<D>>) {
     let particles = &mut system.fluid.particles;
     for &(i, r, v, rho) in &near {
         let i = i as usize;
         (particles.r[i], particles.v[i], particles.rho[i]) = (r, v, rho);
     }
-    let (these, places): (Vec<_>, Vec<_>) = near.into_iter().map(|(i, r, ..)| (i, r)).unzip();
+    let (mut these, mut places): (Vec<_>, Vec<_>) = near.into_iter().map(|(i, r, ..)| (i, r)).unzip();
+    system.renew_images_of(&mut these, &mut places);
     system.neighbours.set_known_positions(these, &places);
 }
 
-/// The changes of velocity (m/s) of water particles in all `transfers`, each particle once and in order.
-pub(crate) fn velocity_changes<const D: usize>(transfers: &[MomentumTransfer<D>]) -> Vec<(usize, Vector<D>)> {
-    let mut sums = BTreeMap::<usize, Vector<D>>::new();
-    for (i, change) in transfers.iter().flat_map(|transfer| &transfer.changes) {
+/// The boxes (m) in which the water of `ranges` is, and its originals beyond the other sides.
+pub(crate) fn with_originals<const D: usize>(system: &System<D>, mut ranges: Vec<Bounds<D>>) -> Vec<Bounds<D>> {
+    let Images { periodic, width, .. } = &system.fluid.images;
+    for (axis, [from, to]) in periodic.iter().enumerate().filter_map(|(axis, side)| Some((axis, (*side)?))) {
+        let period = to - from;
+        let moved = |range: &Bounds<D>| {
+            let home = ((range.min[axis] - from) / period).floor();
+            let copies = [-1.0, 0.0, 1.0].map(|count| {
+                let mut range = *range;
+                for end in [&mut range.min, &mut range.max] {
+                    end[axis] += (count - home) * period;
+                }
+                range
+            });
+            copies.into_iter().filter(move |range| range.max[axis] > from - width && range.min[axis] < to + width)
+        };
+        let whole = |mut range: Bounds<D>| {
+            if range.max[axis] - range.min[axis] >= period {
+                (range.min[axis], range.max[axis]) = (from, to);
+            }
+            range
+        };
+        ranges = ranges.into_iter().flat_map(|range| moved(&whole(range)).collect::<Vec<_>>()).collect();
+    }
+    ranges
+}
+
+/// The changes of velocity (m/s) of water particles in all `transfers`, each particle once and in order, without images.
+pub(crate) fn velocity_changes<const D: usize>(
+    system: &System<D>,
+    transfers: &[MomentumTransfer<D>],
+) -> Vec<(usize, Vector<D>)> {
+    let (count, mut sums) = (system.own_count(), BTreeMap::<usize, Vector<D>>::new());
+    let changes = transfers.iter().flat_map(|transfer| &transfer.changes);
+    for (i, change) in changes.filter(|(i, _)| *i < count) {
         *sums.entry(*i).or_insert_with(Vector::zeros) += change;
     }
     sums.into_iter().collect()

@@ -118,7 +118,7 @@ impl DrivingState {
     }
 
     /// Whether nothing but gravity acts.
-    fn is_none(&self) -> bool {
+    pub(super) fn is_none(&self) -> bool {
         self.driving.current.is_none() && self.driving.towed.is_none()
     }
 
@@ -159,9 +159,17 @@ pub(super) fn start_current<const D: usize>(system: &mut System<D>) {
 
 /// Adapts the force that holds the current after a step `dt` (s).
 pub(crate) fn update_current<const D: usize>(system: &mut System<D>, dt: f64) {
+    if let Some(current) = system.driving.driving.current {
+        let found = system.discharge(current.axis).unwrap_or(0.0);
+        adapt_current(system, found, dt);
+    }
+}
+
+/// The same after a step with the discharge `found` (m³/s; m²/s in 2-D).
+pub(super) fn adapt_current<const D: usize>(system: &mut System<D>, found: f64, dt: f64) {
     let Some(Current { axis, discharge, response }) = system.driving.driving.current else { return };
     let section = mean_section(system, axis);
-    let now = system.discharge(axis).unwrap_or(0.0) / section;
+    let now = found / section;
     let DrivingState { start, current, .. } = &mut system.driving;
     current.integral += (discharge / section - now) * dt / (response * response);
     current.acceleration = current.integral - 2.0 / response * (now - *start);

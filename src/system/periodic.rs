@@ -250,6 +250,49 @@ impl<const D: usize> System<D> {
         (SortedWater { order, reflections }, lost)
     }
 
+    /// Makes the images of the water anew at its present places; the water keeps its order.
+    #[cfg(feature = "gpu")]
+    pub(super) fn renew_images(&mut self) {
+        let real = self.own_count();
+        let Fluid { particles, images, .. } = &mut self.fluid;
+        if !images.any() {
+            return;
+        }
+        let copies = images.make(&particles.r[..real]);
+        images.originals = copies.iter().map(|image| image.original).collect();
+        let order: Vec<u32> = (0..real as u32).chain(images.originals.iter().copied()).collect();
+        self.fluid.permute(&order);
+        for (r, image) in self.fluid.particles.r[real..].iter_mut().zip(&copies) {
+            *r += image.away;
+        }
+    }
+
+    /// Makes the images of `these` water particles at `places` (m) alone, which follow in both lists: no other image is known. The
+    /// tensors of the images stay behind until [`System::renew_images`].
+    #[cfg(feature = "gpu")]
+    pub(super) fn renew_images_of(&mut self, these: &mut Vec<u32>, places: &mut Vec<Vector<D>>) {
+        let real = self.own_count();
+        let Fluid { particles: Particles { r, v, rho, id }, images, .. } = &mut self.fluid;
+        if !images.any() {
+            return;
+        }
+        let copies = images.make(places);
+        images.originals = copies.iter().map(|image| these[image.original as usize]).collect();
+        r.truncate(real);
+        v.truncate(real);
+        rho.truncate(real);
+        id.truncate(real);
+        for (image, &original) in copies.iter().zip(&images.originals) {
+            let i = original as usize;
+            these.push(r.len() as u32);
+            places.push(r[i] + image.away);
+            r.push(r[i] + image.away);
+            v.push(v[i]);
+            rho.push(rho[i]);
+            id.push(id[i]);
+        }
+    }
+
     /// Limits the next step by the acceleration of the water without images and buffers.
     pub(super) fn limit_step_by_originals(&mut self) {
         if self.fluid.images.any() || !self.fluid.buffer.tags.is_empty() {

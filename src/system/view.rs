@@ -72,12 +72,18 @@ impl<const D: usize> System<D> {
 
     /// Discharge (m³/s; m²/s in 2-D) along the periodic axis number `axis`, a mean over the length of the period; `None` along another.
     pub fn discharge(&self, axis: usize) -> Option<f64> {
-        let [from, to] = (*self.periodic().get(axis)?)?;
+        self.periodic().get(axis)?.as_ref()?;
         let water = self.fluid().v;
         // Chunks are added in order.
         let parts: Vec<f64> = water.par_chunks(CHUNK).map(|v| v.iter().map(|v| v[axis]).sum()).collect();
+        self.discharge_by(axis, parts.iter().sum())
+    }
+
+    /// The same if the velocities of the water along the axis add up to `sum` (m/s).
+    pub(super) fn discharge_by(&self, axis: usize, sum: f64) -> Option<f64> {
+        let [from, to] = (*self.periodic().get(axis)?)?;
         let volume = self.properties.particle_volume() * self.water_multiplicity();
-        Some(parts.iter().sum::<f64>() * volume / (to - from))
+        Some(sum * volume / (to - from))
     }
 
     /// The open boundaries.

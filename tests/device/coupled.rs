@@ -13,7 +13,7 @@ use pontoon::{
 
 use super::{Shape, assert_rates_agree, beside, beside_with, dam, dam_with, device, distances, run, under};
 
-fn setup_of(text: &str) -> Setup<2> {
+pub fn setup_of(text: &str) -> Setup<2> {
     Scene::parse(text, Path::new(""), &[]).unwrap().build::<2>().unwrap().setup
 }
 
@@ -28,7 +28,7 @@ fn bits<const D: usize>(sim: &Simulation<D>) -> Vec<u64> {
 
 /// Asserts that `steps` steps of `setup` on the device have the same bits again, and that the processor goes on from their middle as
 /// the device does: water and solids within `bound` (dp).
-fn assert_repeats_and_resumes<const D: usize>(name: &str, setup: &Setup<D>, steps: usize, bound: f64)
+pub fn assert_repeats_and_resumes<const D: usize>(name: &str, setup: &Setup<D>, steps: usize, bound: f64)
 where
     Dim<D>: Dimension<D>,
 {
@@ -50,7 +50,7 @@ where
 }
 
 /// The largest distance of a solid from that of another simulation, dp.
-fn solids_apart<const D: usize>(a: &Simulation<D>, b: &Simulation<D>) -> f64 {
+pub fn solids_apart<const D: usize>(a: &Simulation<D>, b: &Simulation<D>) -> f64 {
     let pairs = a.system().solids().iter().zip(b.system().solids());
     let apart = pairs.map(|(a, b)| (a.kinematics.centre - b.kinematics.centre).norm());
     apart.fold(0.0, f64::max) / a.system().model().dp

@@ -7,6 +7,7 @@ struct Params {
     most: u32,       // room of a list
     size: vec4<i32>,   // cells along each axis
     origin: vec4<i32>, // where they begin, in 2^-8 of the support
+    slots: u32,      // particles and room for the images across periodic sides
 };
 struct Place { hi: vec4<i32>, lo: vec4<u32> };
 struct Control {
@@ -38,6 +39,7 @@ struct Control {
     outside: atomic<u32>, // whether water has left the domain in this step
     renewed: u32,         // whether there were new lists in this step
     pad: array<u32, 2>,
+    gravity: vec4<f32>,   // where it changes
 };
 struct Solid {
     origin: Place,           // of its frame; hi.w: 1 if water beside it is not shifted

@@ -25,7 +25,9 @@ fn list_pairs(@builtin(global_invocation_id) id: vec3<u32>) {
     let c = cell_of(places[k].hi);
     var m = 0u;
     var middle = 0u;
-    for (var kind = 0u; kind < select(1u, 2u, is_water); kind++) {
+    for (var turn = 0u; turn < select(KINDS - 1u, KINDS, is_water); turn++) {
+        // The images follow the water.
+        let kind = select(turn, (3u - turn) % 3u, PERIODIC);
         for (var layer = -LAYERS; layer <= LAYERS; layer++) {
             for (var line = -2; line <= 2; line++) {
                 let row = row_at(c, line, layer) + kind * params.cells;
@@ -39,7 +41,7 @@ fn list_pairs(@builtin(global_invocation_id) id: vec3<u32>) {
                 }
             }
         }
-        middle = select(middle, m, kind == 0u);
+        middle = select(middle, m, turn == KINDS - 2u);
     }
     spans[k] = vec2<u32>(middle, m);
     atomicMax(&control.longest, m);

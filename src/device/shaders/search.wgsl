@@ -22,6 +22,11 @@ fn cell(i: u32) -> u32 {
     return row_at(cell_of(places[i].hi), 0, 0) + 2u + select(0u, params.cells, i >= params.water);
 }
 
+// The cell of an image.
+fn image_cell(i: u32, way: u32) -> u32 {
+    return row_at(cell_of(away(places[i], way).hi), 0, 0) + 2u + 2u * params.cells;
+}
+
 // Once before each pass: whether something has moved so far that the lists may miss a pair.
 @compute @workgroup_size(1)
 fn decide() {
@@ -42,14 +47,25 @@ fn decide() {
 fn clear(@builtin(global_invocation_id) id: vec3<u32>) {
     if (control.rebuild == 0u) { return; }
     let i = index(id);
-    if (i <= 2u * params.cells) { atomicStore(&count[i], 0u); }
+    if (i <= KINDS * params.cells) { atomicStore(&count[i], 0u); }
 }
 
 @compute @workgroup_size(128)
 fn tally(@builtin(global_invocation_id) id: vec3<u32>) {
     if (control.rebuild == 0u) { return; }
     let i = index(id);
-    if (i < params.n) { atomicAdd(&count[cell(i)], 1u); }
+    if (i >= params.n) { return; }
+    if (PERIODIC && i < params.water) {
+        let way = way_in(places[i]);
+        if (way != 0u) {
+            places[i] = away(places[i], way);
+            positions[i] = vec4<i32>(middle(places[i]), positions[i].w);
+        }
+        for (var other = 1u; other < WAYS; other++) {
+            if (has_image(places[i], other)) { atomicAdd(&count[image_cell(i, other)], 1u); }
+        }
+    }
+    atomicAdd(&count[cell(i)], 1u);
 }
 
 const BLOCK: u32 = 1024u;
@@ -58,7 +74,7 @@ var<workgroup> part: array<u32, 128>;
 // Exclusive sums within blocks of 1024, and the sums of the blocks.
 @compute @workgroup_size(128)
 fn scan(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) l: u32) {
-    let total = select(0u, 2u * params.cells + 1u, control.rebuild != 0u);
+    let total = select(0u, KINDS * params.cells + 1u, control.rebuild != 0u);
     let block = group_index(group);
     let first = block * BLOCK + l * 8u;
     var own = 0u;
@@ -89,7 +105,7 @@ fn scan(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
 // Exclusive sums of the blocks, by one workgroup.
 @compute @workgroup_size(128)
 fn scan_blocks(@builtin(local_invocation_index) l: u32) {
-    let total = (2u * params.cells + BLOCK) / BLOCK;
+    let total = (KINDS * params.cells + BLOCK) / BLOCK;
     var sums_before = 0u;
     for (var first = 0u; first < total; first += 128u) {
         var own = 0u;
@@ -113,7 +129,7 @@ fn scan_blocks(@builtin(local_invocation_index) l: u32) {
 fn scan_add(@builtin(global_invocation_id) id: vec3<u32>) {
     if (control.rebuild == 0u) { return; }
     let i = index(id);
-    if (i <= 2u * params.cells) { start[i] += blocks[i / BLOCK]; }
+    if (i <= KINDS * params.cells) { start[i] += blocks[i / BLOCK]; }
 }
 
 @compute @workgroup_size(128)
@@ -123,20 +139,35 @@ fn scatter(@builtin(global_invocation_id) id: vec3<u32>) {
     if (i >= params.n) { return; }
     let c = cell(i);
     order[start[c] + atomicAdd(&count[c], 1u)] = i;
+    if (PERIODIC && i < params.water) {
+        for (var way = 1u; way < WAYS; way++) {
+            if (has_image(places[i], way)) {
+                let other = image_cell(i, way);
+                order[start[other] + atomicAdd(&count[other], 1u)] = i * WAYS + way;
+            }
+        }
+    }
 }
 
-// The atomics of before decided the order within a cell; now the index on the host does.
+// What decides the order within a cell: the index on the host, and the way of an image.
+fn key(k: u32) -> u32 {
+    let entry = order[k];
+    if (!PERIODIC || k < params.n) { return u32(places[entry].hi.w); }
+    return u32(places[entry / WAYS].hi.w) * WAYS + entry % WAYS;
+}
+
+// The atomics of before decided the order within a cell; now the key does.
 @compute @workgroup_size(128)
 fn settle(@builtin(global_invocation_id) id: vec3<u32>) {
     if (control.rebuild == 0u) { return; }
     let c = index(id);
-    if (c >= 2u * params.cells) { return; }
+    if (c >= KINDS * params.cells) { return; }
     let first = start[c];
     for (var k = first + 1u; k < start[c + 1u]; k++) {
         let mine = order[k];
-        let key = places[mine].hi.w;
+        let own = key(k);
         var m = k;
-        while (m > first && places[order[m - 1u]].hi.w > key) {
+        while (m > first && key(m - 1u) > own) {
             order[m] = order[m - 1u];
             m -= 1u;
         }
@@ -148,6 +179,7 @@ fn settle(@builtin(global_invocation_id) id: vec3<u32>) {
 fn gather(@builtin(global_invocation_id) id: vec3<u32>) {
     if (control.rebuild == 0u) { return; }
     let k = index(id);
+    if (PERIODIC && k >= params.n && k < start[KINDS * params.cells]) { order[k] = key(k); }
     if (k >= params.n) { return; }
     let i = order[k];
     spare_places[k] = places[i];
@@ -155,7 +187,7 @@ fn gather(@builtin(global_invocation_id) id: vec3<u32>) {
     spare[params.n + k] = velocities[i];
     spare[2u * params.n + k] = bitcast<vec4<f32>>(positions[i]);
     if (VERLET) { spare[3u * params.n + k] = before[i]; }
-    for (var row = 0u; row < KEPT_ROWS; row++) { spare_rows[row * params.n + k] = rows[row * params.n + i]; }
+    for (var row = 0u; row < KEPT_ROWS; row++) { spare_rows[row * params.n + k] = rows[row * params.slots + i]; }
 }
 
 @compute @workgroup_size(128)
@@ -172,5 +204,5 @@ fn put_back(@builtin(global_invocation_id) id: vec3<u32>) {
     built[k] = position;
     slot[u32(place.hi.w)] = k;
     if (VERLET) { before[k] = spare[3u * params.n + k]; }
-    for (var row = 0u; row < KEPT_ROWS; row++) { rows[row * params.n + k] = spare_rows[row * params.n + k]; }
+    for (var row = 0u; row < KEPT_ROWS; row++) { rows[row * params.slots + k] = spare_rows[row * params.n + k]; }
 }

@@ -52,9 +52,12 @@ fn add_loads(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_
         if (b != NONE) {
             let k = slot[params.water + b];
             let place = places[k];
-            let arm = between(place, solids[place.lo.w].centre);
-            let force = vec3<f32>({{FORCE}});
-            mine = Load(vec4<f32>(force, 0.0f), vec4<f32>(cross(arm, force), 0.0f));
+            // Beyond a periodic side the water is an image, and its load has been counted.
+            if (!PERIODIC || is_between_sides(place)) {
+                let arm = between(place, solids[place.lo.w].centre);
+                let force = vec3<f32>({{FORCE}});
+                mine = Load(vec4<f32>(force, 0.0f), vec4<f32>(cross(arm, force), 0.0f));
+            }
         }
     }
     part[l] = mine;

@@ -24,7 +24,7 @@ fn wall_change(wall: vec4<f32>, own: f32, relaxation: f32) -> f32 {
 {{CHANGE}}    return out_change;
 }
 
-fn acceleration(k: u32) -> vec3<f32> { return vec3<f32>({{FORCE}}) + GRAVITY; }
+fn acceleration(k: u32) -> vec3<f32> { return vec3<f32>({{FORCE}}) + gravity(); }
 
 fn compression_rate(k: u32) -> f32 { return sums[{{RATE}}u * params.n + k]; }
 

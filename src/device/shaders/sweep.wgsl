@@ -28,12 +28,13 @@ fn sweep_water(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invo
         let a_volume = 1.0f / (1.0f + a_compression);
         let a_pressure = velocity.w;
         let span = min(spans[k], vec2<u32>(params.most));
+        let slope = density_slope();
         var approach = 0.0f;
 {{ZERO_SUMS}}        for (var m = 0u; m < span.x; m++) {
 {{NEIGHBOUR}}{{FLUID}}        }
         for (var m = span.x; m < span.y; m++) {
 {{NEIGHBOUR}}{{WALL}}        }
-{{STORE}}        let force = vec3<f32>({{FORCE}}) + GRAVITY;
+{{STORE}}        let force = vec3<f32>({{FORCE}}) + gravity();
         atomicMax(&most_force, bitcast<u32>(dot(force, force)));
         atomicMax(&most_approach, bitcast<u32>(approach));
     }
@@ -56,6 +57,7 @@ fn sweep_boundary(@builtin(global_invocation_id) id: vec3<u32>) {
         let a_compression = f32(position.w) * EXCESS;
         let a_volume = 1.0f / (1.0f + a_compression);
         let a_pressure = velocity.w;
+        let slope = density_slope();
         var approach = 0.0f;
 {{ZERO_SUMS}}{{ZERO_FIT}}        for (var m = 0u; m < end; m++) {
 {{NEIGHBOUR}}{{BESIDE}}        }

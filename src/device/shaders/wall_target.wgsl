@@ -1,6 +1,6 @@
 let solid = solids[places[k].lo.w];
 let arm = between(places[k], solid.centre);
-let pull = GRAVITY - (solid.acceleration.xyz + solid.turning * arm);
+let pull = gravity() - (solid.acceleration.xyz + solid.turning * arm);
 let promptness = solid.acceleration.w;
 let constants = depths[places[k].hi.w - i32(params.water)];
 let depth = constants.x;

@@ -56,9 +56,10 @@ impl<const D: usize> Term<D> for FourtakasTerm<D> {
 
     #[inline(always)]
     fn rate<N: Num>(&self, ab: &Pair<N, D>, sum: (N, N)) -> (N, N) {
-        let mut rise = ab.constant(self.slope[0]) * ab.r_ab[0];
+        let slope = |i: usize| ab.r2.parameter("slope", i, self.slope[i]);
+        let mut rise = slope(0) * ab.r_ab[0];
         for i in 1..D {
-            rise = ab.constant(self.slope[i]).fma(ab.r_ab[i], rise);
+            rise = slope(i).fma(ab.r_ab[i], rise);
         }
         let stiffer = ab.constant(-self.stiffening).fma(ab.a.compression + ab.b.compression, ab.constant(1.0));
         let d = ab.constant(self.strength) * rise.fma(stiffer, ab.compression_difference);

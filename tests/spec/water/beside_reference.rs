@@ -39,9 +39,9 @@ pub fn sizes<const D: usize>(sim: &Simulation<D>, a: usize) -> (f64, f64) {
         let differences = (rho - fluid.rho[a]).abs() / rho0 + system.gravity().dot(&r).abs() / (c0 * c0);
         rate += (v.norm() + 0.2 * c0 * h * differences / r.norm().max(0.1 * h)) * grad * rho0;
     };
-    system.visit_fluid_near(&fluid.r[a], &mut |b, _, _| {
+    system.visit_fluid_near(&fluid.r[a], &mut |b, r, _| {
         if b != a {
-            meet(&fluid.r[b], &fluid.v[b], fluid.rho[b]);
+            meet(r, &fluid.v[b], fluid.rho[b]);
         }
     });
     system.visit_boundary_near(&fluid.r[a], &mut |b, _, _| meet(&boundary.r[b], &boundary.v[b], boundary.rho[b]));
