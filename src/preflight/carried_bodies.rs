@@ -1,20 +1,20 @@
 //! Bodies for which the level of the sea is not the measure: on other bodies, in the water of a hull, and held by a joint that lets
 //! loads through.
 
-use super::{BodySummary, Finding, PreflightContext, gaps::Gaps, hollows::lies_in_hollow};
+use super::{BodySummary, Finding, PreflightContext, hollows::lies_in_hollow};
 use crate::{
     math::{Vector, format::three_digits},
-    solid::{ForceSpec, JointKind, JointSpec},
+    solid::{JointKind, JointSpec, Solid},
 };
 
 /// Part of the weight of a body below which a load does not count.
 const LEAST_LOAD: f64 = 1e-6;
 
-/// Adds notes about free bodies whose draft and periods say little. `gaps` tells which solids touch, and `inside` has the level (m) of
-/// the water of each hull by its number.
+/// Adds notes about free bodies whose draft and periods say little. `touching` tells which solids touch another, and `inside` has the
+/// level (m) of the water of each hull by its number.
 pub(super) fn check<const D: usize>(
     context: &PreflightContext<D>,
-    (gaps, inside): (&Gaps, &[(usize, f64)]),
+    (touching, inside): (&[bool], &[(usize, f64)]),
     bodies: &[BodySummary],
     findings: &mut Vec<Finding>,
 ) {
@@ -24,13 +24,12 @@ pub(super) fn check<const D: usize>(
     for (i, solid) in context.solids().iter().enumerate() {
         let Some(body) = bodies.iter().find(|body| body.name == solid.spec.name) else { continue };
         let (sea, dp) = (context.still_water.level, context.dp());
-        let decks = if body.support == "solid" { decks_below(context, gaps, i) } else { Vec::new() };
-        if let Some(lower) = decks.first().map(|j| &context.solids()[*j].spec.name) {
-            let gives = match deck_below(context, gaps, i) {
-                Some(_) => "draft and GM are given with that weight, and whose periods without",
-                None => "draft and GM are given without that weight",
-            };
-            let what = format!("\"{}\" stands on \"{lower}\", whose {gives}", body.name);
+        let stands = touching[i] && body.support == "solid";
+        if let Some(lower) =
+            (0..bodies.len()).map(|j| &bodies[j].name).find(|name| stands && is_below(context, name, i))
+        {
+            let what =
+                format!("\"{}\" stands on \"{lower}\", whose draft and GM are given without that weight", body.name);
             let mend = "a joint between them gives those of both".into();
             findings.push(Finding::note("carried_body", what, mend));
         }
@@ -64,35 +63,16 @@ pub(super) fn check<const D: usize>(
     }
 }
 
-/// Returns solid number `i` and the only free solid on which it stands, if it is free and in the air.
-pub(super) fn deck_below<const D: usize>(context: &PreflightContext<D>, gaps: &Gaps, i: usize) -> Option<[usize; 2]> {
-    let solid = &context.solids()[i];
-    let &[deck] = &decks_below(context, gaps, i)[..] else { return None };
-    let level = context.still_water.level;
-    let is_dry = solid.spec.shape.submerged_volume(&solid.kinematics.pose, level).0 <= 0.0;
-    (is_dry && solid.body.is_some()).then_some([i, deck])
-}
-
-/// Returns the weight of solid number `i` as a force on solid number `deck`.
-pub(super) fn weight_on<const D: usize>(context: &PreflightContext<D>, [i, deck]: [usize; 2]) -> Option<ForceSpec<D>> {
-    let solid = &context.solids()[i];
-    let weight = solid.body.as_ref()?.mass * context.g;
-    let force = (0..D).map(|axis| if axis == D - 1 { -weight } else { 0.0 });
-    Some(ForceSpec::new(&solid.spec.name, deck).force(force).at(solid.kinematics.centre))
-}
-
-/// Returns the free solids under solid number `i`, in contact.
-fn decks_below<const D: usize>(context: &PreflightContext<D>, gaps: &Gaps, i: usize) -> Vec<usize> {
-    let solids = context.solids();
-    let bounds = |i: usize| solids[i].spec.shape.bounds_at(&solids[i].kinematics.pose);
-    let own = bounds(i);
-    let is_below = |j: usize| {
-        let other = bounds(j);
+/// Whether the free solid called `name` is under solid number `i`, in contact.
+fn is_below<const D: usize>(context: &PreflightContext<D>, name: &str, i: usize) -> bool {
+    let bounds = |solid: &Solid<D>| solid.spec.shape.bounds_at(&solid.kinematics.pose);
+    let own = bounds(&context.solids()[i]);
+    let other = context.solids().iter().enumerate().find(|(j, solid)| *j != i && solid.spec.name == name);
+    other.is_some_and(|(_, solid)| {
+        let other = bounds(solid);
         let overlaps = (0..D - 1).all(|axis| other.min[axis] < own.max[axis] && other.max[axis] > own.min[axis]);
         overlaps && other.min[D - 1] < own.min[D - 1] && other.max[D - 1] > own.min[D - 1] - context.dp()
-    };
-    let touched = gaps.pairs.iter().filter(|pair| pair.contains(&i)).map(|pair| pair[0] + pair[1] - i);
-    touched.filter(|j| solids[*j].body.is_some() && is_below(*j)).collect()
+    })
 }
 
 /// Whether the motion that a joint leaves free can raise a body.

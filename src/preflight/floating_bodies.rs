@@ -18,9 +18,7 @@ use serde::Serialize;
 
 use super::{
     Finding, PreflightContext,
-    carried_bodies::{deck_below, weight_on},
     expected_errors::heave_error,
-    gaps::Gaps,
     hollows::{hull, is_in_dry_hollow},
     lifetimes::overload,
     surface_samples::SurfaceSample,
@@ -208,15 +206,15 @@ fn turn_finding<const D: usize>(
 }
 
 impl<const D: usize> PreflightContext<'_, D> {
-    /// Returns the summaries of the free bodies and adds findings about them. `gaps` tells which solids touch; `moored` are the
-    /// ends of mooring lines.
+    /// Returns the summaries of the free bodies and adds findings about them. `touching` marks the solids that touch
+    /// another; `moored` are the ends of mooring lines.
     pub(super) fn bodies(
         &self,
-        gaps: &Gaps,
+        touching: &[bool],
         moored: Vec<MooredEnd<D>>,
         findings: &mut Vec<Finding>,
     ) -> Vec<BodySummary> {
-        let statics = self.statics(gaps).map(|statics| statics.with_mooring_stiffness(moored));
+        let statics = self.statics(touching).map(|statics| statics.with_mooring_stiffness(moored));
         let specs: Vec<&SolidSpec<D>> = self.solids().iter().map(|solid| &solid.spec).collect();
         let constraints = &self.system.constraints().at_start();
         let groups = JointGroups::of(&specs, constraints);
@@ -229,7 +227,7 @@ impl<const D: usize> PreflightContext<'_, D> {
             found.tied_to = others.map(|j| specs[j].name.clone()).collect();
             bodies.push(found);
             let first = bodies.len() - 1;
-            let touches = (0..specs.len()).any(|j| gaps.touching[j] && groups.jointed[j] == groups.jointed[i]);
+            let touches = (0..specs.len()).any(|j| touching[j] && groups.jointed[j] == groups.jointed[i]);
             self.flotation_findings(&bodies[first], (&statics, first), touches, findings);
             self.ballast_findings(i, &bodies[first], findings);
             findings.extend(self.unstable_ballast((&statics, first), i, &bodies[first]));
@@ -239,36 +237,23 @@ impl<const D: usize> PreflightContext<'_, D> {
         bodies
     }
 
-    /// Returns the free bodies with their ties and what stands on them, at rest; `None` without gravity.
-    fn statics(&self, gaps: &Gaps) -> Option<StaticSystem<'_, D>> {
+    /// Returns the free bodies with their ties, at rest; `None` without gravity.
+    fn statics(&self, touching: &[bool]) -> Option<StaticSystem<'_, D>> {
         if self.g == 0.0 {
             return None;
         }
         let level = self.still_water.level;
-        let carried: Vec<[usize; 2]> = (0..self.solids().len()).filter_map(|i| deck_below(self, gaps, i)).collect();
-        let lies = |i: usize| {
-            gaps.pairs.iter().any(|pair| pair.contains(&i) && !carried.contains(&[pair[0] + pair[1] - i, i]))
-        };
         let body = |(i, solid): (usize, &'_ Solid<D>)| {
             let body = self.solids()[i].body.as_ref()?;
             let (hull, pose) = (hull(self, i), solid.kinematics.pose);
             let [start, _] = hull.extent(&pose);
-            let bottom = if lies(i) { start } else { start.min(level - self.still_water.depth) };
+            let bottom = if touching[i] { start } else { start.min(level - self.still_water.depth) };
             Some(StaticBody { solid: i, hull, body, pose, bottom })
         };
         let bodies = self.solids().iter().enumerate().filter_map(body).collect();
         let specs: Vec<&SolidSpec<D>> = self.solids().iter().map(|solid| &solid.spec).collect();
         let water = WaterAtRest { rho0: self.system.model().rho0, g: self.g, level };
-        let mut constraints = self.system.constraints().at_start();
-        let lowest = |mut deck: usize| {
-            while let Some([_, next]) = carried.iter().find(|[upper, _]| *upper == deck) {
-                deck = *next;
-            }
-            deck
-        };
-        let weights = carried.iter().filter_map(|[upper, deck]| weight_on(self, [*upper, lowest(*deck)]));
-        constraints.forces.extend(weights);
-        Some(StaticSystem::new(bodies, &specs, &constraints, water))
+        Some(StaticSystem::new(bodies, &specs, &self.system.constraints().at_start(), water))
     }
 
     /// Adds findings about bodies that are thick enough to separate the water of both sides, but whose middle still

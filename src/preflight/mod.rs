@@ -222,8 +222,8 @@ pub fn preflight<const D: usize>(
     let gaps = look.gaps(&mut findings);
     hollows::check_hollows(&look, &mut findings);
     hollows::check_own_water(&look, &inside, &mut findings);
-    let bodies = look.bodies(&gaps, moorings::moored_ends(&look, sim), &mut findings);
-    carried_bodies::check(&look, (&gaps, &inside), &bodies, &mut findings);
+    let bodies = look.bodies(&gaps.touching, moorings::moored_ends(&look, sim), &mut findings);
+    carried_bodies::check(&look, (&gaps.touching, &inside), &bodies, &mut findings);
     overlapping_bodies::check(&look, &mut findings);
     look.misplaced_bodies(&gaps.touching, &mut findings);
     look.check_thickness(&mut findings);

@@ -18,7 +18,7 @@ use crate::{
     },
     math::Pose,
     solid::{
-        Constraints, ForceSpec, SolidSpec,
+        SolidSpec,
         hydrostatics::{HollowWater, Hull},
         mooring::forces_at_rest,
         statics::WaterAtRest,
@@ -116,7 +116,7 @@ fn note_other_levels<const D: usize>(
 }
 
 /// Lifts the bodies that start at their equilibrium. They carry their constraints in the state at the start: springs, steady
-/// forces, and bodies at given heights that are joined to them, hang on taut ropes or stand on their decks.
+/// forces, and bodies at given heights that are joined to them or hang on taut ropes.
 fn float_bodies<const D: usize>(
     scene: &Scene,
     ctx: &Context,
@@ -124,33 +124,8 @@ fn float_bodies<const D: usize>(
     water: &[WaterBody<D>],
     pool: &StillWater<D>,
 ) -> Result<()> {
-    let constraints = build_constraints(scene, ctx, &placed.specs, pool.still.level)?.at_start();
-    let (mut laden, mut gaps) = (constraints.clone(), Vec::new());
-    for (gap, weight) in placed.weights_above(scene, ctx, pool.still.level, &constraints, water) {
-        gaps.push((gap, weight.solid));
-        laden.forces.push(weight);
-    }
-    let find = |constraints: &Constraints<D>| equilibrium_rises(scene, ctx, placed, water, pool, constraints);
-    // The weights count if the decks come to the bodies on them.
-    let stands = |rises: &Vec<f64>| gaps.iter().all(|(gap, deck)| (gap - rises[*deck]).abs() < 0.5 * scene.dp);
-    let with_weights = if gaps.is_empty() { None } else { find(&laden).ok().filter(stands) };
-    let rises = with_weights.map_or_else(|| find(&constraints), Ok)?;
-    for ((config, spec), rise) in scene.solid.iter().zip(&mut placed.specs).zip(rises) {
-        spec.pose.position[D - 1] += if config.is_afloat() { rise } else { 0.0 };
-    }
-    Ok(())
-}
-
-/// Returns the rise (m) of each body to its equilibrium under these constraints.
-fn equilibrium_rises<const D: usize>(
-    scene: &Scene,
-    ctx: &Context,
-    placed: &PlacedSolids<D>,
-    water: &[WaterBody<D>],
-    pool: &StillWater<D>,
-    constraints: &Constraints<D>,
-) -> Result<Vec<f64>> {
     let (rho0, level) = (ctx.rho0.unwrap_or_default(), pool.still.level);
+    let constraints = build_constraints(scene, ctx, &placed.specs, pool.still.level)?.at_start();
     let specs: Vec<&SolidSpec<D>> = placed.specs.iter().collect();
     let afloat: Vec<bool> = scene.solid.iter().map(SolidConfig::is_afloat).collect();
     let bottom = level - pool.still.depth;
@@ -170,7 +145,7 @@ fn equilibrium_rises<const D: usize>(
         moored: &|i| pulls[i],
         g,
     };
-    let loads = TieLoads::at_start(&state, constraints);
+    let loads = TieLoads::at_start(&state, &constraints);
     let rise = |i: usize, mass: f64, others: &[usize]| {
         let alone = |e: Error| match others.iter().find(|other| **other != i) {
             Some(other) => {
@@ -206,7 +181,9 @@ fn equilibrium_rises<const D: usize>(
             own.iter().for_each(|i| rises[*i] += more);
         }
     }
-    Ok(rises)
+    let floats = (0..afloat.len()).filter(|i| afloat[*i]);
+    floats.for_each(|i| placed.specs[i].pose.position[D - 1] += rises[i]);
+    Ok(())
 }
 
 /// Returns the space that a solid encloses, if it can matter; `named`: whether a body of water names the solid.
@@ -273,34 +250,6 @@ impl<const D: usize> PlacedSolids<D> {
     fn displaced_mass(&self, i: usize, rho0: f64, level: f64, water: &[WaterBody<D>]) -> f64 {
         let pose = &self.specs[i].pose;
         rho0 * self.hull_at(i, pose, level, water).submerged_volume(pose, level).0
-    }
-
-    /// Returns the weights of free bodies at given heights, which nothing ties, above the only body below that starts at its
-    /// equilibrium, each with its height (m) above the deck of that body as placed.
-    fn weights_above(
-        &self,
-        scene: &Scene,
-        ctx: &Context,
-        level: f64,
-        constraints: &Constraints<D>,
-        water: &[WaterBody<D>],
-    ) -> Vec<(f64, ForceSpec<D>)> {
-        let (specs, afloat) = (&self.specs, |i: usize| scene.solid[i].is_afloat());
-        let bounds: Vec<_> = specs.iter().map(|spec| world_bounds(&spec.shape, &spec.pose)).collect();
-        let over = |i: usize, j: usize| {
-            (0..D - 1)
-                .all(|axis| bounds[i].min[axis] < bounds[j].max[axis] && bounds[i].max[axis] > bounds[j].min[axis])
-        };
-        let weight = |i: usize| {
-            let body = specs[i].initial_body().filter(|_| !afloat(i) && constraints.constraint_on(i, 0.0).is_none())?;
-            let mut below = (0..specs.len()).filter(|j| afloat(*j) && over(i, *j));
-            let (deck, None) = (below.next()?, below.next()) else { return None };
-            let displaced = self.displaced_mass(i, ctx.rho0.unwrap_or_default(), level, water);
-            let force = (0..D).map(|k| if k == D - 1 { (displaced - body.mass) * ctx.gravity_norm() } else { 0.0 });
-            let weight = ForceSpec::new(&specs[i].name, deck).force(force).at(specs[i].initial_kinematics().centre);
-            Some((bounds[i].min[D - 1] - bounds[deck].max[D - 1], weight))
-        };
-        (0..specs.len()).filter_map(weight).collect()
     }
 
     /// Returns the common rise (m) of these bodies from the places `rises` (m) at which they displace the additional mass `more`

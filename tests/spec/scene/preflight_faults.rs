@@ -272,30 +272,6 @@ fn a_thin_dry_wall_is_told_with_the_error_of_its_load() {
     assert!(!finding(&wall(0.04), "thin_wall").what.contains('%'));
 }
 
-/// A raft of 36 kg/m and 0.6 m² per metre of draft with a crate of 12 kg/m: 48 kg/m need a draft of 0.08 m, the raft alone 0.06 m.
-#[test]
-fn a_raft_with_a_crate_on_its_deck_has_the_draft_of_both_weights() {
-    let raft = |draft: &str| body("raft", [0.6, 0.2], 300.0, &format!("x = 1.0, draft = {draft}"));
-    let crate_on_it = |bottom: f64| body("crate", [0.2, 0.1], 600.0, &format!("x = 1.0, bottom = {bottom}"));
-    let found = |raft: &str, bottom: f64| report(&format!("{WATER}{TANK}{raft}{}", crate_on_it(bottom)));
-    let draft = |found: &Preflight| found.bodies[0].afloat.as_ref().map_or(0.0, |afloat| afloat.draft_m);
-    // The deck of both lies at 0.6 + 0.2 − 0.08 m. The bisection stops at 1e-14 of the height of the raft.
-    let both = found(&raft("\"equilibrium\""), 0.72);
-    assert!((both.bodies[0].draft_m - 0.08).abs() < 1e-9 && (draft(&both) - 0.08).abs() < 1e-9, "{:?}", both.bodies[0]);
-    assert!(find(&both, "carried_body").expect("noted").what.contains("given with that weight"));
-    assert!(find(&both, "off_draft").is_none(), "{:#?}", both.findings);
-    // A crate 5 dp above the deck falls: the raft starts at its own draft.
-    let falls = found(&raft("\"equilibrium\""), 0.84);
-    assert!((falls.bodies[0].draft_m - 0.06).abs() < 1e-9, "{:?}", falls.bodies[0]);
-    // On a raft at its own draft, inspect has the draft at which both rest.
-    let alone = found(&raft("0.06"), 0.74);
-    assert!((draft(&alone) - 0.08).abs() < 1e-9, "{:?}", alone.bodies[0]);
-    // BM = B³/(12 V) = 0.6³/(12 0.048), above KB = 0.04 m; the centre of mass of both is at (36 0.1 + 12 0.25)/48 m above the keel.
-    let gm = 0.216 / (12.0 * 0.048) + 0.04 - (36.0 * 0.1 + 12.0 * 0.25) / 48.0;
-    let told = both.bodies[0].afloat.as_ref().map_or(0.0, |afloat| afloat.tilts[0].gm_m);
-    assert!((told / gm - 1.0).abs() < 1e-6, "{told} m for {gm} m");
-}
-
 #[test]
 fn bodies_that_displace_the_same_water_are_told_with_its_volume() {
     let hull = body("hull", [0.6, 0.2], 300.0, "x = 1.0, draft = 0.1");
