@@ -13,7 +13,7 @@ use super::{
         open_boundary::FaceFlow,
         shape::{vector, world_bounds},
         solid::require_solid,
-        water::{StillWaterLevel, WaterBody, WaterConfig, require_near_origin},
+        water::{StillWaterLevel, WaterBody, WaterConfig, open_boxes, require_near_origin},
     },
 };
 use crate::{
@@ -167,7 +167,7 @@ impl Scene {
         let placed = placed_solids::<D>(&scene, ctx, &water, true)?;
         let solids = &placed.specs;
         require_plausible_units(ctx, &self.solid, &water, solids)?;
-        let constraints = build_constraints(&scene, ctx, solids, still.level)?;
+        let constraints = build_constraints(&scene, ctx, solids, &placed.levels)?;
         let domain = scene.domain.as_ref().map(|d| Bounds { min: vector(&d.min), max: vector(&d.max) });
         if let Some(domain) = &domain {
             require_inside_domain(ctx, domain, &water, solids)?;
@@ -371,14 +371,7 @@ impl<const D: usize> SceneParts<D> {
             towed: scene.towed.as_ref().map(|towed| towed.build(ctx)).transpose()?,
         };
         let own_levels = water.iter().filter_map(|body| Some((body.inside?, body.level))).collect();
-        let open = water.iter().filter(|body| body.inside.is_none());
-        let boxes: Vec<Bounds<D>> = open
-            .map(|body| {
-                let mut own = body.bounds();
-                own.max[D - 1] = body.level;
-                own
-            })
-            .collect();
+        let boxes = open_boxes(&water);
         let first_buffer = water.len();
         let (open_boundaries, buffers) = scene.open_boundaries(ctx, &water, &model)?;
         water.extend(buffers);
@@ -389,7 +382,7 @@ impl<const D: usize> SceneParts<D> {
         let rests = |s: &SolidSpec<D>| !matches!(s.role, Role::Free(_));
         let solid_shapes: Vec<(&Shape<D>, &Pose<D>, bool)> =
             solids.iter().zip(&starts).map(|(s, start)| (&s.shape, start, rests(s))).collect();
-        let spaces = placed.spaces(&starts);
+        let spaces = placed.spaces(&starts, &water);
         let inside = water.iter().map(|body| body.inside).collect();
         let filling = Filling { regions: &regions, inside, solids: &solid_shapes, spaces: &spaces, ranks };
         let Filled { water: mut filled, mut home, has_own_water } =

@@ -1,0 +1,144 @@
+//! Preflight: bodies beside several waters and in dry hollows have the draft, the support and the wind of their own surroundings.
+
+use std::path::Path;
+
+use pontoon::{
+    preflight::{BodySummary, Finding, Preflight},
+    scene::Scene,
+};
+
+use crate::common::preflight_report;
+
+/// A tank of 1.6 m at dp = 0.02 m.
+const TANK: &str = "dimension = 2\ndp = 0.02\nuntil = 1.0\nframes = \"off\"\n\
+    [[solid]]\nname = \"tank\"\nfixed = true\nshape = { tank = { size = [1.6, 0.9] } }\n";
+
+/// Water over the whole tank to 0.4 m.
+const SEA: &str = "[[water]]\nfill = { box = { min = [0.0, 0.0], max = [1.6, 0.4] } }\n";
+
+/// A bulkhead between water to 0.4 m and water to 0.2 m.
+const BASINS: &str = "[[solid]]\nname = \"bulkhead\"\nfixed = true\nshape = { box = { size = [0.08, 0.8] } }\n\
+    at = { x = 0.8, bottom = 0.0 }\n\
+    [[water]]\nfill = { box = { min = [0.0, 0.0], max = [0.76, 0.4] } }\n\
+    [[water]]\nfill = { box = { min = [0.84, 0.0], max = [1.6, 0.2] } }\n";
+
+fn scene(text: &str) -> Scene {
+    Scene::parse(text, Path::new(""), &[]).unwrap()
+}
+
+fn report(text: &str) -> Preflight {
+    preflight_report(&scene(text))
+}
+
+fn find<'a>(of: &'a Preflight, topic: &str) -> Option<&'a Finding> {
+    of.findings.iter().find(|finding| finding.topic == topic)
+}
+
+fn summary<'a>(of: &'a Preflight, name: &str) -> &'a BodySummary {
+    of.bodies.iter().find(|body| body.name == name).unwrap()
+}
+
+/// A dry barge of the inner size 0.6 m × 0.4 m with walls of 0.08 m, which is 0.76 m wide.
+fn barge(role: &str, at: &str) -> String {
+    format!(
+        "[[solid]]\nname = \"barge\"\nshape = {{ tank = {{ size = [0.6, 0.4], thickness = 0.08 }} }}\nat = {{ {at} }}\n{role}\n\
+         dry = true\n"
+    )
+}
+
+fn block(name: &str, [wide, high]: [f64; 2], at: &str, free: &str) -> String {
+    format!(
+        "[[solid]]\nname = \"{name}\"\nshape = {{ box = {{ size = [{wide}, {high}] }} }}\nat = {{ {at} }}\nfree = {{ {free} }}\n"
+    )
+}
+
+/// The barge of 100 kg/m and its cargo of 30 kg/m displace 130 kg/m over 0.76 m: a draft of 0.17105 m. The cargo in the hold displaces
+/// nothing, although it lies below the sea.
+#[test]
+fn cargo_that_is_fixed_in_a_dry_hold_displaces_no_water() {
+    let joint = "[[joint]]\nname = \"j\"\nkind = \"fixed\"\nbetween = [\"barge\", \"b\"]\nat = [0.8, 0.34]\n";
+    for wide in [0.2, 0.4] {
+        let cargo = block("b", [wide, 0.1], "x = 0.8, bottom = 0.34", "mass = 30.0");
+        let barge = barge("free = { mass = 100.0 }", "x = 0.5, draft = \"equilibrium\"");
+        let found = report(&format!("{TANK}{SEA}{barge}{cargo}{joint}"));
+        let own = summary(&found, "barge");
+        // The bisection stops at 1e-14 of the height.
+        assert!((own.draft_m - 130.0 / 760.0).abs() < 1e-9, "placed at {} m", own.draft_m);
+        assert!((own.afloat.as_ref().unwrap().draft_m - 130.0 / 760.0).abs() < 1e-9, "{own:?}");
+        assert_eq!(summary(&found, "b").displaced_kg, 0.0);
+        // BM = B³/(12 V) with B = 0.76 m, V = 0.13 m²; KB is half the draft. Above the keel the barge has its centre at that of its
+        // walls and floor, and the cargo, 0.1 m high, starts 0.34 m over the tank's floor with the keel at 0.4 m − draft.
+        let draft = 130.0 / 760.0;
+        let [floor, walls] = [0.76 * 0.08, 2.0 * 0.08 * 0.4];
+        let barge_centre = (floor * 0.04 + walls * 0.28) / (floor + walls);
+        let cargo_centre = 0.39 - (0.4 - draft);
+        let gm = 0.76f64.powi(3) / (12.0 * 0.13) + 0.5 * draft - (100.0 * barge_centre + 30.0 * cargo_centre) / 130.0;
+        let told = own.afloat.as_ref().unwrap().tilts[0].gm_m;
+        assert!((told / gm - 1.0).abs() < 1e-6, "{told} m for {gm} m");
+    }
+}
+
+#[test]
+fn loose_cargo_in_a_dry_hold_stands_there_and_is_noted() {
+    let keel = 0.4 - 100.0 / 760.0;
+    let cargo = block("b", [0.2, 0.1], &format!("x = 0.8, bottom = {}", keel + 0.08), "mass = 30.0");
+    let barge = barge("free = { mass = 100.0 }", "x = 0.5, draft = \"equilibrium\"");
+    let found = report(&format!("{TANK}{SEA}{barge}{cargo}"));
+    let own = summary(&found, "b");
+    assert!(own.support == "solid" && own.displaced_kg == 0.0 && own.afloat.is_none(), "{own:?}");
+    assert!(find(&found, "carried_body").unwrap().what.contains("\"b\" stands on \"barge\""));
+    // A light body on the floor of a dock below the level of the sea.
+    let dock = |bottom: &str| {
+        let light = block("b", [0.2, 0.1], &format!("x = 0.8, {bottom}"), "density = 500.0");
+        report(&format!("{TANK}{SEA}{}{light}", self::barge("fixed = true", "x = 0.5, y = 0.3")))
+    };
+    let on_floor = dock("bottom = 0.3");
+    assert!(summary(&on_floor, "b").support == "solid" && find(&on_floor, "beside_water").is_none());
+    let falls = dock("draft = \"equilibrium\"");
+    assert!(find(&falls, "beside_water").unwrap().what.contains("\"b\" starts where no water is"), "{falls:#?}");
+}
+
+/// A box of half the density of water and 0.1 m high floats 0.05 m deep in its own basin, with its bottom at 0.15 m.
+#[test]
+fn a_body_in_the_lower_of_two_basins_has_its_draft_there() {
+    for at in ["x = 1.2, bottom = 0.15", "x = 1.2, draft = \"equilibrium\"", "x = 1.2, draft = 0.05"] {
+        let text = format!("{TANK}{BASINS}{}", block("b", [0.3, 0.1], at, "density = 500.0"));
+        let found = report(&text);
+        let own = summary(&found, "b");
+        assert!((own.draft_m - 0.05).abs() < 1e-9 && (own.displaced_kg - 15.0).abs() < 1e-6, "{at}: {own:?}");
+        assert!((own.afloat.as_ref().unwrap().draft_m - 0.05).abs() < 1e-9, "{at}: {own:?}");
+        assert!(find(&found, "off_draft").is_none(), "{at}: {:#?}", found.findings);
+        let bottom = scene(&text).build::<2>().unwrap().setup.solids[2].pose.position[1] - 0.05;
+        assert!((bottom - 0.15).abs() < 1e-9, "{at}: {bottom} m");
+    }
+    let high =
+        report(&format!("{TANK}{BASINS}{}", block("b", [0.3, 0.1], "x = 1.2, bottom = 0.35", "density = 500.0")));
+    assert!(find(&high, "off_draft").unwrap().what.contains("starts 0.2 m, 10 dp, above its draft of 0.05 m"));
+}
+
+#[test]
+fn a_body_in_the_water_of_a_hull_has_its_draft_there() {
+    let dock = "[[water]]\ninside = \"barge\"\nfill = { box = { min = [0.5, 0.08], max = [1.1, 0.24] } }\n";
+    let found = |bottom: f64| {
+        let boat = block("b", [0.3, 0.1], &format!("x = 0.8, bottom = {bottom}"), "density = 500.0");
+        report(&format!("{TANK}{SEA}{dock}{}{boat}", barge("fixed = true", "x = 0.5, y = 0.08")))
+    };
+    let rests = found(0.19);
+    let own = summary(&rests, "b");
+    assert!((own.draft_m - 0.05).abs() < 1e-9 && (own.displaced_kg - 15.0).abs() < 1e-6, "{own:?}");
+    assert!(find(&rests, "off_draft").is_none() && find(&rests, "other_level").is_none(), "{:#?}", rests.findings);
+    let high = found(0.25);
+    let note = find(&high, "off_draft").unwrap();
+    assert!(note.what.contains("above its draft of 0.05 m") && note.mend.contains("bottom = 0.19"), "{note:?}");
+}
+
+/// The dock holds 0.6 m × 0.16 m of its own water, 240 particles, and none of the sea around it.
+#[test]
+fn a_hull_with_water_of_its_own_keeps_the_sea_out() {
+    let dock = barge("fixed = true", "x = 0.5, y = 0.08").replace("dry = true\n", "");
+    let own = "[[water]]\ninside = \"barge\"\nlevel = 0.24\nfill = { box = { min = [0.5, 0.08], max = [1.1, 0.4] } }\n";
+    let built = scene(&format!("{TANK}{SEA}{own}{dock}")).build::<2>().unwrap();
+    let within = built.setup.water.iter().filter(|x| x[0] > 0.5 && x[0] < 1.1 && x[1] > 0.08);
+    let (count, top) = within.fold((0, 0.0f64), |(count, top), x| (count + 1, top.max(x[1])));
+    assert!(count == 240 && top < 0.24, "{count} particles to {top} m");
+}
