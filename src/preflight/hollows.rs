@@ -150,7 +150,7 @@ pub(super) fn check_own_water<const D: usize>(
             |level: f64| filled().map(|(hollow, _)| hollow.volume_and_moment_below(pose, level).0).sum::<f64>();
         let within = (0..context.solids().len()).filter(|j| lies_in_hollow(context, *j, i));
         let others: f64 = within.map(|j| solid_below(context, j, level)).sum();
-        let wanted = volume(level) - others;
+        let wanted = (volume(level) - others).max(0.0);
         let found = filled().map(|(_, n)| *n as f64).sum::<f64>() * dp.powi(D as i32);
         let area = (volume(level) - volume(level - dp)) / dp;
         if (found - wanted).abs() > OFF_LATTICE * dp * area {

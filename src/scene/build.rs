@@ -395,6 +395,9 @@ impl<const D: usize> SceneParts<D> {
         if filled.r.is_empty() {
             return Err(no_water_error(ctx, &water, solids));
         }
+        if let Some(i) = (0..first_buffer).find(|i| home.iter().all(|own| *own as usize != *i)) {
+            return Err(empty_water_error(ctx, i, water[i].inside.map(|solid| &solids[solid].name)));
+        }
         let own_water: Vec<usize> =
             spaces.iter().zip(has_own_water).filter(|(_, own)| *own).map(|(space, _)| space.solid).collect();
         let plan = scene.resolved_plan(ctx, &still)?;
@@ -527,6 +530,22 @@ fn no_water_error<const D: usize>(ctx: &Context, water: &[WaterBody<D>], solids:
     let (name, size, room) = (&solids[i].name, size[axis], room[axis]);
     let what = format!("no water is left: \"{name}\" is {size:.4} m {way} and the water {room:.4} m");
     ctx.error_with_help(&format!("solid.{i}.shape"), what, "make it smaller, or the tank and its water larger")
+}
+
+/// Returns the error that body of water number `i`, inside the solid of this name, has no particle.
+fn empty_water_error(ctx: &Context, i: usize, inside: Option<&String>) -> Error {
+    let (what, help) = match inside {
+        Some(name) => (
+            format!("no particle of this water is left: it meets no hollow of \"{name}\" below its level"),
+            "let its region and its level reach into the hollow as the solid is placed",
+        ),
+        None => (
+            "no particle of this water is left: solids, hollows that stay dry or an earlier [[water]] take its place"
+                .into(),
+            "move it, or remove it: its level and its bottom count for the depth and for the speed of sound",
+        ),
+    };
+    ctx.error_with_help(&format!("water.{i}.fill"), what, help)
 }
 
 /// Returns the approximate numbers of water particles and boundary particles.

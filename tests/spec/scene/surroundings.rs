@@ -132,6 +132,24 @@ fn a_body_in_the_water_of_a_hull_has_its_draft_there() {
     assert!(note.what.contains("above its draft of 0.05 m") && note.mend.contains("bottom = 0.19"), "{note:?}");
 }
 
+#[test]
+fn water_without_a_particle_is_refused() {
+    let refused = |more: &str, words: &[&str]| {
+        let error = scene(&format!("{TANK}{SEA}{more}")).build::<2>().expect_err("refused").to_string();
+        words.iter().for_each(|word| assert!(error.contains(word), "{word} is not in\n{error}"));
+    };
+    let block = "[[solid]]\nname = \"k\"\nfixed = true\nshape = { box = { size = [0.4, 0.2] } }\nat = { x = 0.8, bottom = 0.1 }\n";
+    // In a block, below the floor, and inside an earlier water.
+    for [min, max] in [["0.7, 0.12", "0.9, 0.28"], ["0.3, -0.06", "0.9, -0.02"], ["0.1, 0.1", "0.3, 0.3"]] {
+        let water = format!("[[water]]\nfill = {{ box = {{ min = [{min}], max = [{max}] }} }}\n");
+        refused(&format!("{block}{water}"), &["water.1.fill", "no particle of this water is left"]);
+    }
+    // Beside the hull that it names.
+    let dry = barge("fixed = true", "x = 0.5, y = 0.3");
+    let inside = "[[water]]\ninside = \"barge\"\nfill = { box = { min = [1.3, 0.3], max = [1.5, 0.36] } }\n";
+    refused(&format!("{dry}{inside}"), &["water.1.fill", "meets no hollow of \"barge\""]);
+}
+
 /// The dock holds 0.6 m × 0.16 m of its own water, 240 particles, and none of the sea around it.
 #[test]
 fn a_hull_with_water_of_its_own_keeps_the_sea_out() {
