@@ -160,3 +160,15 @@ fn a_hull_with_water_of_its_own_keeps_the_sea_out() {
     let (count, top) = within.fold((0, 0.0f64), |(count, top), x| (count + 1, top.max(x[1])));
     assert!(count == 240 && top < 0.24, "{count} particles to {top} m");
 }
+
+#[test]
+fn a_probe_beyond_a_symmetry_plane_is_told_with_its_mirror_image() {
+    let probes = "[[probe]]\nname = \"p\"\npressure = [0.3, 0.1]\n[[probe]]\nname = \"e\"\nelevation = { x = 1.3 }\n\
+                  [[probe]]\nname = \"s\"\nflow = { from = [0.3, 0.0], to = [0.3, 0.5] }\n";
+    let found = report(&format!("symmetry = {{ x = 0.8 }}\n{TANK}{SEA}{probes}"));
+    let told: Vec<_> = found.findings.iter().filter(|finding| finding.topic == "probe_outside").collect();
+    assert_eq!(told.len(), 2, "{told:#?}");
+    for (finding, name) in told.iter().zip(["\"p\"", "\"s\""]) {
+        assert!(finding.what.contains(name) && finding.mend.contains("x = 1.3"), "{finding:?}");
+    }
+}
