@@ -492,6 +492,15 @@ impl<const D: usize> PreflightContext<'_, D> {
             [own] => (own.clone(), "s", "its"),
             all => (all.join(" with "), "", "their"),
         };
+        let loose = statics.loose_joints(number);
+        if let (Some(joint), true) = (loose.first(), statics.assembly_of(number).next() == Some(number)) {
+            let what = format!(
+                "GM, trim and roll of {name} take joint \"{joint}\"{} as rigid: the motion that it leaves free is not judged",
+                if loose.len() > 1 { " and others" } else { "" }
+            );
+            let mend = "look at that motion in a short run: a mast on a hinge falls though the GM is positive";
+            findings.push(Finding::note("loose_joint", what, mend.into()));
+        }
         // A body in the air that lies on another does not float.
         let is_carried = touches && body.displaced_kg <= 0.0;
         if statics.assembly_of(number).next() == Some(number) && !is_carried {

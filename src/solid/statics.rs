@@ -12,7 +12,7 @@ mod ties;
 use nalgebra::{DMatrix, DVector};
 
 use super::{
-    Constraints, FreeBody, JointSpec, LineEnd, SolidSpec,
+    Constraints, FreeBody, JointKind, JointSpec, LineEnd, SolidSpec,
     constraint::lines::start_length,
     hydrostatics::Hull,
     joint_groups::{JointGroups, merge},
@@ -375,6 +375,15 @@ impl<'a, const D: usize> StaticSystem<'a, D> {
             ends.contains(&Some(self.assembly[i])) && ends.contains(&None) && !joint.frees_rotation(axis)
         });
         grounded || self.assembly_of(i).any(locked)
+    }
+
+    /// Returns the names of the joints in the assembly of body `i` that leave a motion of its bodies free.
+    pub(crate) fn loose_joints(&self, i: usize) -> Vec<&str> {
+        let member = |end: Option<usize>| {
+            end.and_then(|solid| self.number(solid)).is_some_and(|j| self.assembly[j] == self.assembly[i])
+        };
+        let loose = |joint: &&JointSpec<D>| joint.kind != JointKind::Fixed && joint.between.into_iter().all(member);
+        self.joints.iter().filter(loose).map(|joint| &joint.name[..]).collect()
     }
 
     /// Returns whether two bodies rise together.

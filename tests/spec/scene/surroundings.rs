@@ -172,3 +172,15 @@ fn a_probe_beyond_a_symmetry_plane_is_told_with_its_mirror_image() {
         assert!(finding.what.contains(name) && finding.mend.contains("x = 1.3"), "{finding:?}");
     }
 }
+
+#[test]
+fn joints_that_are_not_rigid_are_named_beside_gm() {
+    let joined = |kind: &str| {
+        let raft = block("b", [0.4, 0.2], "x = 0.8, draft = \"equilibrium\"", "density = 400.0");
+        let mast = block("m", [0.08, 0.3], "x = 0.8, bottom = 0.55", "density = 200.0");
+        let joint = format!("[[joint]]\nname = \"j\"\nkind = \"{kind}\"\nbetween = [\"b\", \"m\"]\nat = [0.8, 0.55]\n");
+        report(&format!("{TANK}{SEA}{raft}{mast}{joint}"))
+    };
+    assert!(find(&joined("hinge"), "loose_joint").unwrap().what.contains("\"b\" with \"m\" take joint \"j\" as rigid"));
+    assert!(find(&joined("fixed"), "loose_joint").is_none());
+}
