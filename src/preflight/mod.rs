@@ -12,6 +12,7 @@ mod moorings;
 mod open_boundaries;
 mod periodic_sides;
 mod floating_bodies;
+mod hinged_bodies;
 mod hollows;
 mod initial_water;
 mod surface_samples;
@@ -230,6 +231,7 @@ pub fn preflight<const D: usize>(
     hollows::check_own_water(&look, &inside, &mut findings);
     let bodies = look.bodies(&gaps.touching, moorings::moored_ends(&look, sim), &mut findings);
     carried_bodies::check(&look, &gaps.touching, &bodies, &mut findings);
+    hinged_bodies::check(&look, &mut findings);
     look.misplaced_bodies(&gaps.touching, &mut findings);
     look.check_thickness(&mut findings);
     thin_parts::check_parts(&look, &mut findings);

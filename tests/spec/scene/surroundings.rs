@@ -184,3 +184,26 @@ fn joints_that_are_not_rigid_are_named_beside_gm() {
     assert!(find(&joined("hinge"), "loose_joint").unwrap().what.contains("\"b\" with \"m\" take joint \"j\" as rigid"));
     assert!(find(&joined("fixed"), "loose_joint").is_none());
 }
+
+/// A box of 0.4 m × 0.2 m, half as dense as water, hinged 0.4 m beside its middle at the still level. About the hinge the waterplane
+/// gives the stiffness ρ g (0.6³ − 0.2³)/3 N m, less that of the buoyancy of 40 kg, 0.05 m below the hinge. With its mass 0.1 m off the
+/// middle the moment is −40 g · 0.1 N m. With a motor of 10 N m it is 10 N m.
+#[test]
+fn a_body_on_a_hinge_out_of_balance_is_told_with_its_turn() {
+    let hinged = |free: &str, motor: &str| {
+        let joint = format!("[[joint]]\nname = \"j\"\nkind = \"hinge\"\nbetween = [\"b\"]\nat = [0.4, 0.4]\n{motor}\n");
+        report(&format!("{TANK}{SEA}{}{joint}", block("b", [0.4, 0.2], "x = 0.8, draft = \"equilibrium\"", free)))
+    };
+    let stiffness = 9.81 * (1000.0 * (0.6f64.powi(3) - 0.2f64.powi(3)) / 3.0 - 40.0 * 0.05);
+    let off_centre = ("density = 500.0, centre_offset = [0.1, 0.0]", "", -40.0 * 9.81 * 0.1);
+    for (free, motor, moment) in [off_centre, ("density = 500.0", "motor = { torque = 10.0 }", 10.0)] {
+        let found = hinged(free, motor);
+        let note = find(&found, "lists").unwrap_or_else(|| panic!("{:#?}", found.findings));
+        let words: Vec<f64> = note.what.split([' ', '°']).filter_map(|word| word.parse().ok()).collect();
+        // Three digits are printed.
+        assert!((words[0] / moment - 1.0).abs() < 5e-3, "{}", note.what);
+        let degrees = (moment / stiffness).abs().to_degrees();
+        assert!((words[1] / degrees - 1.0).abs() < 5e-3, "{} for {degrees}", note.what);
+    }
+    assert!(find(&hinged("density = 500.0", ""), "lists").is_none());
+}
