@@ -207,3 +207,18 @@ fn a_body_on_a_hinge_out_of_balance_is_told_with_its_turn() {
     }
     assert!(find(&hinged("density = 500.0", ""), "lists").is_none());
 }
+
+/// A floor of a quarter of dp carries the water on it; without a floor the water falls.
+#[test]
+fn a_thin_floor_carries_the_water() {
+    let tank = |points: &str| {
+        format!(
+            "dimension = 2\ndp = 0.02\nuntil = 1.0\nframes = \"off\"\n[[water]]\n\
+             fill = {{ box = {{ min = [0.0, 0.0], max = [1.0, 0.4] }} }}\n[[solid]]\nname = \"wall\"\nfixed = true\n\
+             shape = {{ polyline = {{ points = [{points}], thickness = 0.005 }} }}\n"
+        )
+    };
+    let with_floor = report(&tank("[0.0, 0.7], [0.0, 0.0], [1.0, 0.0], [1.0, 0.7]"));
+    assert!(find(&with_floor, "water_in_air").is_none(), "{:#?}", with_floor.findings);
+    assert!(find(&report(&tank("[0.0, 0.7], [0.0, -0.2]")), "water_in_air").is_some());
+}
