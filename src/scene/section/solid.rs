@@ -206,6 +206,15 @@ impl SolidConfig {
         }
         self.verify_role(ctx, key)?;
         ctx.require_positive(&format!("{key}.until"), self.until)?;
+        let release = self.free.as_ref().and_then(|free| free.release);
+        if let (Some(release), Some(until)) = (release, self.until.filter(|until| release.is_some_and(|t| t > *until)))
+        {
+            let what = format!("\"{}\" is released at {release} s, after its removal at {until} s", self.name);
+            let help = "release it before its time  until";
+            return Err(ctx
+                .error_with_help(&format!("{key}.free.release"), what, help)
+                .with_code(ErrorCode::OutOfRange));
+        }
         ctx.require_range(&format!("{key}.friction"), self.friction, 10.0)?;
         ctx.require_range(&format!("{key}.restitution"), self.restitution, 1.0)
     }

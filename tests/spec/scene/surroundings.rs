@@ -222,3 +222,12 @@ fn a_thin_floor_carries_the_water() {
     assert!(find(&with_floor, "water_in_air").is_none(), "{:#?}", with_floor.findings);
     assert!(find(&report(&tank("[0.0, 0.7], [0.0, -0.2]")), "water_in_air").is_some());
 }
+
+#[test]
+fn a_release_after_the_removal_is_refused_at_its_key() {
+    let body = block("b", [0.4, 0.2], "x = 0.8, draft = \"equilibrium\"", "density = 500.0, release = 0.8");
+    let refused = |until: &str| Scene::parse(&format!("{TANK}{SEA}{body}until = {until}\n"), Path::new(""), &[]);
+    let error = refused("0.5").expect_err("refused").to_string();
+    assert!(error.contains("free.release") && error.contains("after its removal at 0.5 s"), "{error}");
+    assert!(refused("0.9").is_ok());
+}
