@@ -370,7 +370,7 @@ fn bodies(bodies: &[BodySummary], dimension: usize) -> String {
         if !body.tied_to.is_empty() && !bodies[..i].iter().any(|other| body.tied_to.contains(&other.name)) {
             let _ = writeln!(
                 ties,
-                "  {} and {} move as one by their joints: GM, heave and roll are those of all",
+                "  {} and {} are joined: GM, heave and roll are those of all, as if their joints were rigid",
                 body.name,
                 body.tied_to.join(", ")
             );

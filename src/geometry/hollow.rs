@@ -7,7 +7,7 @@
 use std::{cmp::Reverse, collections::BinaryHeap};
 
 use super::Shape;
-use crate::math::{Matrix, Pose, Vector};
+use crate::math::{Bounds, Matrix, Pose, Vector};
 
 /// Edge of a cell, dp.
 const CELL: f64 = 0.5;
@@ -451,6 +451,17 @@ impl<const D: usize> Enclosure<D> {
                 }
             }
             hollow => Place::Hollow(hollow as usize),
+        }
+    }
+
+    /// Returns the number of the hollow of `shape` at `pose` in which the middle of the box `other` lies, if the box does not reach
+    /// beyond the sides of the shape.
+    pub(crate) fn number_around(&self, shape: &Shape<D>, pose: &Pose<D>, other: &Bounds<D>) -> Option<usize> {
+        let around = shape.bounds_at(pose);
+        let is_between = (0..D - 1).all(|k| around.min[k] <= other.min[k] && other.max[k] <= around.max[k]);
+        match self.place(shape, &pose.local(&((other.min + other.max) * 0.5))) {
+            Place::Hollow(hollow) if is_between => Some(hollow),
+            _ => None,
         }
     }
 

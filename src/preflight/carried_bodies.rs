@@ -1,7 +1,6 @@
-//! Bodies for which the level of the sea is not the measure: on other bodies, in the water of a hull, and held by a joint that lets
-//! loads through.
+//! Bodies whose equilibrium afloat is not the measure: on other bodies, and held by a joint that lets loads through.
 
-use super::{BodySummary, Finding, PreflightContext, hollows::lies_in_hollow};
+use super::{BodySummary, Finding, PreflightContext};
 use crate::{
     math::{Vector, format::three_digits},
     solid::{JointKind, JointSpec, Solid},
@@ -10,11 +9,10 @@ use crate::{
 /// Part of the weight of a body below which a load does not count.
 const LEAST_LOAD: f64 = 1e-6;
 
-/// Adds notes about free bodies whose draft and periods say little. `touching` tells which solids touch another, and `inside` has the
-/// level (m) of the water of each hull by its number.
+/// Adds notes about free bodies whose draft and periods say little. `touching` tells which solids touch another.
 pub(super) fn check<const D: usize>(
     context: &PreflightContext<D>,
-    (touching, inside): (&[bool], &[(usize, f64)]),
+    touching: &[bool],
     bodies: &[BodySummary],
     findings: &mut Vec<Finding>,
 ) {
@@ -23,7 +21,6 @@ pub(super) fn check<const D: usize>(
     }
     for (i, solid) in context.solids().iter().enumerate() {
         let Some(body) = bodies.iter().find(|body| body.name == solid.spec.name) else { continue };
-        let (sea, dp) = (context.still_water.level, context.dp());
         let stands = touching[i] && body.support == "solid";
         if let Some(lower) =
             (0..bodies.len()).map(|j| &bodies[j].name).find(|name| stands && is_below(context, name, i))
@@ -32,17 +29,6 @@ pub(super) fn check<const D: usize>(
                 format!("\"{}\" stands on \"{lower}\", whose draft and GM are given without that weight", body.name);
             let mend = "a joint between them gives those of both".into();
             findings.push(Finding::note("carried_body", what, mend));
-        }
-        let is_in = |(hull, level): &&(usize, f64)| (level - sea).abs() > dp && lies_in_hollow(context, i, *hull);
-        if let Some((hull, level)) = inside.iter().find(is_in) {
-            let what = format!(
-                "\"{}\" starts in the water inside \"{}\", which stands to {} m: its draft and periods are those in the sea, at {} m",
-                body.name,
-                context.solids()[*hull].spec.name,
-                three_digits(*level),
-                three_digits(sea)
-            );
-            findings.push(Finding::note("other_level", what, "give its height instead of a draft".into()));
         }
         let is_afloat = (body.displaced_kg - body.mass_kg).abs() <= LEAST_LOAD * body.mass_kg;
         let is_loaded = body.load_kg.abs() > LEAST_LOAD * body.mass_kg;

@@ -22,6 +22,7 @@ use super::{
     hollows::{hull, is_in_dry_hollow},
     lifetimes::overload,
     surface_samples::SurfaceSample,
+    surroundings::Surroundings,
     thickness::{load_error, thinnest_part},
 };
 use crate::{
@@ -34,7 +35,7 @@ use crate::{
         FreeBody, Solid, SolidSpec,
         joint_groups::JointGroups,
         righting::{Floating, Turn},
-        statics::{MooredEnd, StaticBody, StaticSystem, Support, WaterAtRest},
+        statics::{MooredEnd, NO_WATER, StaticBody, StaticSystem, Support, WaterAtRest},
     },
 };
 
@@ -242,18 +243,21 @@ impl<const D: usize> PreflightContext<'_, D> {
         if self.g == 0.0 {
             return None;
         }
-        let level = self.still_water.level;
+        let (level, constraints) = (self.still_water.level, self.system.constraints().at_start());
         let body = |(i, solid): (usize, &'_ Solid<D>)| {
             let body = self.solids()[i].body.as_ref()?;
             let (hull, pose) = (hull(self, i), solid.kinematics.pose);
             let [start, _] = hull.extent(&pose);
-            let bottom = if touching[i] { start } else { start.min(level - self.still_water.depth) };
-            Some(StaticBody { solid: i, hull, body, pose, bottom })
+            // Under a body without water and ties, which falls, the ground is not known.
+            let falls = self.level_around(i).is_none() && constraints.constraint_on(i, 0.0).is_none();
+            let bottom = if touching[i] || falls { start } else { start.min(level - self.still_water.depth) };
+            let level = self.level_around(i).unwrap_or(NO_WATER);
+            Some(StaticBody { solid: i, hull, body, pose, bottom, level })
         };
         let bodies = self.solids().iter().enumerate().filter_map(body).collect();
         let specs: Vec<&SolidSpec<D>> = self.solids().iter().map(|solid| &solid.spec).collect();
         let water = WaterAtRest { rho0: self.system.model().rho0, g: self.g, level };
-        Some(StaticSystem::new(bodies, &specs, &self.system.constraints().at_start(), water))
+        Some(StaticSystem::new(bodies, &specs, &constraints, water))
     }
 
     /// Adds findings about bodies that are thick enough to separate the water of both sides, but whose middle still
@@ -285,7 +289,7 @@ impl<const D: usize> PreflightContext<'_, D> {
             // What stands in the air is judged as it would float.
             Some(Support::Solid) => {
                 let mut pose = *pose;
-                let rise = hull(self, i).equilibrium_height(&pose, body.mass, model.rho0, self.still_water.level);
+                let rise = hull(self, i).equilibrium_height(&pose, body.mass, model.rho0, self.draft_level(i));
                 rise.ok().map(|rise| {
                     pose.position[D - 1] += rise;
                     pose
@@ -294,14 +298,14 @@ impl<const D: usize> PreflightContext<'_, D> {
             _ => None,
         };
         let wet = |face: &&SurfaceSample<D>| {
-            let below = rest.is_none_or(|pose| pose.point(&face.x)[D - 1] < self.still_water.level);
+            let below = rest.is_none_or(|pose| pose.point(&face.x)[D - 1] < self.draft_level(i));
             below && !is_in_dry_hollow(self, i, &(face.x + face.n * (0.5 * model.dp)))
         };
         let share = faces.iter().filter(wet).count() as f64 / faces.len().max(1) as f64;
         let least = 0.5 * model.cfl * model.rho0 * model.h * share * shape.surface_area();
         let thinnest_m = thinnest_part(shape, faces, model.dp).unwrap_or(model.dp);
         let displaced = match statics {
-            Some(_) => hull(self, i).submerged_volume(pose, self.still_water.level).0,
+            Some(statics) => hull(self, i).submerged_volume(pose, statics.bodies[number].level).0,
             None => volume,
         };
         BodySummary {
@@ -311,7 +315,7 @@ impl<const D: usize> PreflightContext<'_, D> {
             volume_m3: volume,
             density_ratio: body.mass / (model.rho0 * volume),
             displaced_kg: model.rho0 * displaced,
-            draft_m: self.still_water.level - self.lowest_point(solid),
+            draft_m: self.draft_level(i) - self.lowest_point(solid),
             afloat: afloat.map(|statics| self.afloat(solid, statics, number)),
             support: match support {
                 Some(Support::Water) => "water",
@@ -334,7 +338,7 @@ impl<const D: usize> PreflightContext<'_, D> {
 
     /// Returns the equilibrium of body `number` with its assembly.
     fn afloat(&self, solid: &Solid<D>, statics: &StaticSystem<D>, number: usize) -> Equilibrium {
-        let (level, rho0) = (self.still_water.level, self.system.model().rho0);
+        let (level, rho0) = (self.draft_level(statics.bodies[number].solid), self.system.model().rho0);
         let area = statics.waterplane(number);
         let added = rho0 * if D == 2 { PI * area * area / 8.0 } else { 4.0 / 3.0 * (area / PI).powf(1.5) };
         let (mass, stiffness) = statics.heaving_mass_and_stiffness(number);
@@ -385,7 +389,7 @@ impl<const D: usize> PreflightContext<'_, D> {
             body,
             pose: statics.pose(number),
             rho0: self.system.model().rho0,
-            level: self.still_water.level,
+            level: statics.bodies[number].level,
             free,
             neutral: NEUTRAL * hull.shape.bounds().size().min(),
         }
@@ -488,6 +492,15 @@ impl<const D: usize> PreflightContext<'_, D> {
             [own] => (own.clone(), "s", "its"),
             all => (all.join(" with "), "", "their"),
         };
+        let loose = statics.loose_joints(number);
+        if let (Some(joint), true) = (loose.first(), statics.assembly_of(number).next() == Some(number)) {
+            let what = format!(
+                "GM, trim and roll of {name} take joint \"{joint}\"{} as rigid: the motion that it leaves free is not judged",
+                if loose.len() > 1 { " and others" } else { "" }
+            );
+            let mend = "look at that motion in a short run: a mast on a hinge falls though the GM is positive";
+            findings.push(Finding::note("loose_joint", what, mend.into()));
+        }
         // A body in the air that lies on another does not float.
         let is_carried = touches && body.displaced_kg <= 0.0;
         if statics.assembly_of(number).next() == Some(number) && !is_carried {
@@ -505,8 +518,11 @@ impl<const D: usize> PreflightContext<'_, D> {
                 three_digits(off.abs() / self.dp()),
                 three_digits(afloat.draft_m)
             );
-            let mend = match all.len() {
-                1 => "it starts at rest with  draft = \"equilibrium\"".into(),
+            let mend = match (all.len(), self.surroundings[statics.bodies[number].solid]) {
+                (1, Surroundings::Hull(level)) => {
+                    format!("it starts at rest with  bottom = {}", three_digits(level - afloat.draft_m))
+                }
+                (1, _) => "it starts at rest with  draft = \"equilibrium\"".into(),
                 _ => {
                     let way = if off > 0.0 { "raise" } else { "lower" };
                     format!("{way} it by so much, and the bodies and joints of its assembly with it")

@@ -39,7 +39,7 @@ pub(super) fn hull<'a, const D: usize>(context: &'a PreflightContext<D>, i: usiz
     let solid = &context.solids()[i];
     let mut hull = Hull::new(&solid.spec.shape);
     let Some(own) = &context.hollows[i] else { return hull };
-    let (pose, level, dp) = (&solid.kinematics.pose, context.still_water.level, context.dp());
+    let (pose, level, dp) = (&solid.kinematics.pose, context.draft_level(i), context.dp());
     for (hollow, particles) in own.enclosure.hollows.iter().zip(&own.particles) {
         let volume_below = |level: f64| hollow.volume_and_moment_below(pose, level).0;
         let water = *particles as f64 * dp.powi(D as i32);
@@ -67,10 +67,9 @@ pub(super) fn check_hollows<const D: usize>(context: &PreflightContext<D>, findi
     if context.g == 0.0 {
         return;
     }
-    let level = context.still_water.level;
     for (i, (solid, own)) in context.solids().iter().zip(&context.hollows).enumerate() {
         let (Some(own), name) = (own, &solid.spec.name) else { continue };
-        let pose = &solid.kinematics.pose;
+        let (pose, level) = (&solid.kinematics.pose, context.draft_level(i));
         let above = |hollow: &Hollow<D>| !hollow.is_closed() && hollow.rim_height(pose) > level;
         let filled = own.enclosure.hollows.iter().zip(&own.particles).filter(|(hollow, n)| **n > 0 && above(hollow));
         let particles: usize = filled.map(|(_, n)| n).sum();
@@ -100,14 +99,19 @@ pub(super) fn check_hollows<const D: usize>(context: &PreflightContext<D>, findi
     }
 }
 
-/// Returns whether solid number `i` lies between the sides of solid number `hull`, with its middle in a hollow of this hull.
-pub(super) fn lies_in_hollow<const D: usize>(context: &PreflightContext<D>, i: usize, hull: usize) -> bool {
+/// Returns the number of water particles in the hollow of solid number `hull` between whose sides solid number `i` lies, with its
+/// middle in the hollow; `None` if it does not.
+pub(super) fn particles_around<const D: usize>(context: &PreflightContext<D>, i: usize, hull: usize) -> Option<usize> {
+    let own = context.hollows[hull].as_ref().filter(|_| i != hull)?;
     let (solid, other) = (&context.solids()[hull], &context.solids()[i]);
-    let [around, bounds] = [solid, other].map(|one| one.spec.shape.bounds_at(&one.kinematics.pose));
-    let is_between = (0..D - 1).all(|k| around.min[k] <= bounds.min[k] && bounds.max[k] <= around.max[k]);
-    let middle = solid.kinematics.pose.local(&((bounds.min + bounds.max) * 0.5));
-    let place = context.hollows[hull].as_ref().map(|own| own.enclosure.place(&solid.spec.shape, &middle));
-    i != hull && is_between && matches!(place, Some(Place::Hollow(_)))
+    let bounds = other.spec.shape.bounds_at(&other.kinematics.pose);
+    let around = own.enclosure.number_around(&solid.spec.shape, &solid.kinematics.pose, &bounds)?;
+    Some(own.particles[around])
+}
+
+/// Returns whether solid number `i` lies in a hollow of solid number `hull`.
+pub(super) fn lies_in_hollow<const D: usize>(context: &PreflightContext<D>, i: usize, hull: usize) -> bool {
+    particles_around(context, i, hull).is_some()
 }
 
 /// The volume (m³; m² in 2-D) of solid number `i` below `level` (m).
@@ -146,7 +150,7 @@ pub(super) fn check_own_water<const D: usize>(
             |level: f64| filled().map(|(hollow, _)| hollow.volume_and_moment_below(pose, level).0).sum::<f64>();
         let within = (0..context.solids().len()).filter(|j| lies_in_hollow(context, *j, i));
         let others: f64 = within.map(|j| solid_below(context, j, level)).sum();
-        let wanted = volume(level) - others;
+        let wanted = (volume(level) - others).max(0.0);
         let found = filled().map(|(_, n)| *n as f64).sum::<f64>() * dp.powi(D as i32);
         let area = (volume(level) - volume(level - dp)) / dp;
         if (found - wanted).abs() > OFF_LATTICE * dp * area {

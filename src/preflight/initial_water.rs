@@ -76,9 +76,10 @@ fn check_support<const D: usize>(
     let lowest = fluid.iter().filter(|x| own.contains(x)).map(|x| x[D - 1]).fold(f64::INFINITY, f64::min);
     let row: Vec<&Vector<D>> = fluid.iter().filter(|x| own.contains(x) && x[D - 1] < lowest + 0.5 * dp).collect();
     let is_carried = |x: &&Vector<D>| {
-        let mut below = **x;
-        below[D - 1] -= CARRIED * dp;
-        let by_solid = context.solids().iter().any(|solid| solid.distance(&below) < 0.5 * dp);
+        // Both places, because a thin floor lies between them.
+        let below = [0.5, CARRIED].map(|rows| Vector::from_fn(|i, _| x[i] - if i == D - 1 { rows * dp } else { 0.0 }));
+        let is_near = |y: &Vector<D>| context.solids().iter().any(|solid| solid.distance(y) < 0.5 * dp);
+        let by_solid = below.iter().any(is_near);
         let mut by_water = false;
         context.system.visit_fluid_near(x, &mut |_, y, _| by_water |= y[D - 1] < x[D - 1] - 0.5 * dp);
         by_solid || by_water

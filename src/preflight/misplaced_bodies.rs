@@ -18,7 +18,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         for (i, solid) in self.solids().iter().enumerate() {
             let Some(body) = &solid.body else { continue };
             if self.g > 0.0 && !touching[i] {
-                findings.extend(self.outside_water(solid, &water));
+                findings.extend(self.outside_water(i, solid, &water));
             }
             let size = solid.spec.shape.bounds().size().norm();
             let radius = |body: &FreeBody<D>| {
@@ -45,8 +45,8 @@ impl<const D: usize> PreflightContext<'_, D> {
         self.distant_attachments(findings);
     }
 
-    /// A finding about a body that starts beside or below the water, or is longer than the water.
-    fn outside_water(&self, solid: &Solid<D>, water: &Bounds<D>) -> Option<Finding> {
+    /// A finding about a body that starts where no water is, or is longer than the water.
+    fn outside_water(&self, i: usize, solid: &Solid<D>, water: &Bounds<D>) -> Option<Finding> {
         let (name, own) = (&solid.spec.name, world_bounds(&solid.spec.shape, &solid.kinematics.pose));
         let (long, there) = (own.size(), water.size());
         if own.contains(&water.min) && own.contains(&water.max) {
@@ -77,7 +77,12 @@ impl<const D: usize> PreflightContext<'_, D> {
                 return Some(Finding::warning("larger_than_water", what, mend));
             }
         }
-        None
+        let falls = self.level_around(i).is_none() && self.system.constraints().constraint_on(i, 0.0).is_none();
+        falls.then(|| {
+            let what = format!("\"{name}\" starts where no water is, and touches nothing: it falls");
+            let mend = "put it in the water, or on what carries it; a draft is measured from the highest level there";
+            Finding::warning("beside_water", what, mend.into())
+        })
     }
 
     /// Adds findings about ends of joints, lines and forces whose distance from their free body exceeds the body's size.

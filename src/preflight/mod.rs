@@ -13,9 +13,11 @@ mod open_boundaries;
 mod overlapping_bodies;
 mod periodic_sides;
 mod floating_bodies;
+mod hinged_bodies;
 mod hollows;
 mod initial_water;
 mod surface_samples;
+mod surroundings;
 mod gaps;
 mod wavemaker_checks;
 mod probe_positions;
@@ -55,6 +57,7 @@ use crate::{
 };
 use hollows::SolidHollows;
 use surface_samples::SurfaceSample;
+use surroundings::Surroundings;
 
 /// The default speed in 2-D and 3-D: water particles × force passes per second on one thread. The speed is half the
 /// result of `pontoon bench` on a slow machine with the default models.
@@ -195,6 +198,8 @@ struct PreflightContext<'a, const D: usize> {
     surface_samples: Vec<Vec<SurfaceSample<D>>>,
     /// The space that each solid encloses.
     hollows: Vec<Option<SolidHollows<D>>>,
+    /// The water around each solid.
+    surroundings: Vec<Surroundings>,
 }
 
 /// Evaluates a simulation before its first step. `columns` is the number of columns that each probe of the plan writes,
@@ -214,7 +219,10 @@ pub fn preflight<const D: usize>(
         |(solid, enclosure): (&Solid<D>, Option<_>)| Some(SolidHollows::new(enclosure?, solid, system.fluid().r));
     let hollows = system.solids().iter().zip(initial.enclosures).map(hollow).collect();
     let (boxes, inside) = (initial.boxes, initial.inside);
-    let look = PreflightContext { system, plan, still_water: initial.still, g, surface_samples: samples, hollows };
+    let (surface_samples, surroundings) = (samples, Vec::new());
+    let mut look =
+        PreflightContext { system, plan, still_water: initial.still, g, surface_samples, hollows, surroundings };
+    look.surroundings = surroundings::find_surroundings(&look, &boxes, &inside);
     let mut findings = Vec::new();
     let sound = look.sound_speed(&mut findings);
     let step = look.step_size_limits(sim.spring_step_limit(), &mut findings);
@@ -223,8 +231,9 @@ pub fn preflight<const D: usize>(
     hollows::check_hollows(&look, &mut findings);
     hollows::check_own_water(&look, &inside, &mut findings);
     let bodies = look.bodies(&gaps.touching, moorings::moored_ends(&look, sim), &mut findings);
-    carried_bodies::check(&look, (&gaps.touching, &inside), &bodies, &mut findings);
+    carried_bodies::check(&look, &gaps.touching, &bodies, &mut findings);
     overlapping_bodies::check(&look, &mut findings);
+    hinged_bodies::check(&look, &mut findings);
     look.misplaced_bodies(&gaps.touching, &mut findings);
     look.check_thickness(&mut findings);
     thin_parts::check_parts(&look, &mut findings);
@@ -255,6 +264,19 @@ impl<const D: usize> PreflightContext<'_, D> {
 
     fn solids(&self) -> &[Solid<D>] {
         self.system.solids()
+    }
+
+    /// Returns the still level (m) around solid number `i`; `None` if no water is there.
+    fn level_around(&self, i: usize) -> Option<f64> {
+        match self.surroundings[i] {
+            Surroundings::Open(level) | Surroundings::Hull(level) => Some(level),
+            Surroundings::Dry => None,
+        }
+    }
+
+    /// Returns the level (m) from which the draft of solid number `i` is measured: the highest one if no water is there.
+    fn draft_level(&self, i: usize) -> f64 {
+        self.level_around(i).unwrap_or(self.still_water.level)
     }
 
     /// Returns the end time (s) of the run.

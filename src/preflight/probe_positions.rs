@@ -9,6 +9,7 @@ use crate::{
     probe::ProbeLocation,
     scene::world_bounds,
     solid::Solid,
+    system::symmetry::SymmetryPlane,
 };
 
 /// Height above its level that water can reach, over its depth, –: that of a dam break at a wall.
@@ -22,22 +23,39 @@ impl<const D: usize> PreflightContext<'_, D> {
         for probe in &self.plan.probes {
             match probe.kind.location() {
                 Some(ProbeLocation::Points(places)) => {
+                    findings.extend(places.iter().filter_map(|at| self.beyond_plane(&probe.name, at)));
                     let points = places.iter().filter(|at| at.len() == D);
                     findings.extend(
                         points.filter_map(|at| self.point(&probe.name, Vector::from_fn(|i, _| at[i]), &all, sound)),
                     );
                 }
                 Some(ProbeLocation::Columns(places)) => {
+                    findings.extend(places.iter().filter_map(|at| self.beyond_plane(&probe.name, at)));
                     let places = places.iter().filter(|at| at.len() == D - 1);
                     findings.extend(places.filter_map(|at| self.gauge(&probe.name, at, &all, sound)));
                 }
                 Some(ProbeLocation::Section([from, to])) if from.len() == D && to.len() == D => {
+                    findings.extend([from, to].into_iter().find_map(|at| self.beyond_plane(&probe.name, at)));
                     let ends = [from, to].map(|at| Vector::from_fn(|i, _| at[i]));
                     findings.extend(self.section(&probe.name, ends, &all));
                 }
                 _ => {}
             }
         }
+    }
+
+    /// A place beyond a symmetry plane has no particles: only one side is computed.
+    fn beyond_plane(&self, name: &str, at: &[f64]) -> Option<Finding> {
+        let depth = |(axis, plane): &(usize, SymmetryPlane)| at.get(*axis).map_or(0.0, |x| plane.depth(*x));
+        let (axis, plane) = self.system.symmetry_planes().each().find(|own| depth(own) < -1e-9)?;
+        let (letter, height) = (["x", "y", "z"][axis], three_digits(plane.at));
+        let what = format!(
+            "probe \"{name}\" at {} m is beyond the symmetry plane {letter} = {height} m, on the side that is not computed: no \
+             water comes there",
+            coordinates(at)
+        );
+        let mend = format!("measure at its mirror image, {letter} = {}", three_digits(2.0 * plane.at - at[axis]));
+        Some(Finding::warning("probe_outside", what, mend))
     }
 
     /// A section needs a place on its line, in 3-D on its diagonal, that no solid covers.

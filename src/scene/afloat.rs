@@ -26,15 +26,22 @@ use crate::{
     },
 };
 
+/// Most repetitions of the search for the places of bodies, one of which may lie in a hollow of another.
+const SHELTER_PASSES: usize = 4;
+
 /// The solids of a scene, in their places.
 pub(super) struct PlacedSolids<const D: usize> {
     pub(super) specs: Vec<SolidSpec<D>>,
     /// The space that each solid encloses in its place.
     pub(super) enclosures: Vec<Option<Enclosure<D>>>,
+    /// The still level (m) at the place of each solid; `None` beside all water.
+    pub(super) levels: Vec<Option<f64>>,
+    /// The highest level, m.
+    highest: f64,
 }
 
-/// Returns the solids in their places in `water`. If `all` is true, the result includes the space that each solid encloses;
-/// otherwise only that of bodies that start at their equilibrium.
+/// Returns the solids in their places in `water`. If `all` is true, or a body starts at its equilibrium, the result includes
+/// the space that each solid encloses.
 pub(super) fn placed_solids<const D: usize>(
     scene: &Scene,
     ctx: &Context,
@@ -43,11 +50,14 @@ pub(super) fn placed_solids<const D: usize>(
 ) -> Result<PlacedSolids<D>> {
     let pool = StillWater::of(water);
     let configs = scene.solid.iter().enumerate();
-    let specs = configs.map(|(i, solid)| solid.build(ctx, &format!("solid.{i}"), &pool)).collect::<Result<_>>()?;
-    let mut placed = PlacedSolids { specs, enclosures: Vec::new() };
+    let specs: Vec<SolidSpec<D>> =
+        configs.map(|(i, solid)| solid.build(ctx, &format!("solid.{i}"), &pool)).collect::<Result<_>>()?;
+    let levels = specs.iter().map(|spec| pool.level_at(&world_bounds(&spec.shape, &spec.pose))).collect();
+    let floats = scene.solid.iter().any(SolidConfig::is_afloat);
+    let mut placed = PlacedSolids { specs, enclosures: Vec::new(), levels, highest: pool.still.level };
     for (i, (config, spec)) in scene.solid.iter().zip(&placed.specs).enumerate() {
         let named = water.iter().any(|body| body.inside == Some(i));
-        let found = if all || config.is_afloat() { enclosure(spec, named, &pool, scene.dp) } else { None };
+        let found = if all || floats { enclosure(spec, named, &pool, scene.dp) } else { None };
         if all && found.is_none() && (config.dry == Some(true) || named) {
             let key = if named { "water" } else { &format!("solid.{i}.dry") };
             let what = format!("\"{}\" encloses no space that could be dry or hold water", spec.name);
@@ -56,12 +66,9 @@ pub(super) fn placed_solids<const D: usize>(
         }
         placed.enclosures.push(found);
     }
-    if scene.solid.iter().any(|config| config.is_afloat()) {
+    if floats {
         note_gravity(ctx);
         float_bodies(scene, ctx, &mut placed, water, &pool)?;
-    }
-    if all {
-        note_other_levels(scene, ctx, &placed.specs, water, &pool);
     }
     Ok(placed)
 }
@@ -83,40 +90,9 @@ fn note_gravity(ctx: &Context) {
     ));
 }
 
-/// Adds a warning for each free body whose draft is measured from the highest level, and whose own basin has a lower one.
-fn note_other_levels<const D: usize>(
-    scene: &Scene,
-    ctx: &Context,
-    specs: &[SolidSpec<D>],
-    water: &[WaterBody<D>],
-    pool: &StillWater<D>,
-) {
-    for (config, spec) in scene.solid.iter().zip(specs) {
-        if config.free.is_none() || config.at.as_ref().is_none_or(|at| at.draft.is_none()) {
-            continue;
-        }
-        let own = world_bounds(&spec.shape, &spec.pose);
-        let around = |body: &&WaterBody<D>| {
-            let bounds = body.bounds();
-            (0..D - 1).all(|axis| bounds.min[axis] < own.max[axis] && bounds.max[axis] > own.min[axis])
-        };
-        let open = water.iter().filter(|body| body.inside.is_none());
-        let level = open.filter(around).map(|body| body.level).reduce(f64::max);
-        if let Some(level) = level.filter(|level| *level < pool.still.level - 0.5 * scene.dp) {
-            ctx.add_note(FileNote::warning(
-                "other_level",
-                format!(
-                    "the draft of \"{}\" is measured from the highest water, at {} m, and its own water stands at {level} m",
-                    spec.name, pool.still.level
-                ),
-                "give its height instead of a draft, as in  at = { x = 1.5, bottom = 0.2 }".into(),
-            ));
-        }
-    }
-}
-
 /// Lifts the bodies that start at their equilibrium. They carry their constraints in the state at the start: springs, steady
-/// forces, and bodies at given heights that are joined to them or hang on taut ropes.
+/// forces, and bodies at given heights that are joined to them or hang on taut ropes. What lies in a dry hollow of another body
+/// displaces no water; the hollow is known in its place only, so the places are found again with it.
 fn float_bodies<const D: usize>(
     scene: &Scene,
     ctx: &Context,
@@ -124,8 +100,33 @@ fn float_bodies<const D: usize>(
     water: &[WaterBody<D>],
     pool: &StillWater<D>,
 ) -> Result<()> {
+    let mut sheltered = vec![false; placed.specs.len()];
+    let mut rises = equilibrium_rises(scene, ctx, placed, water, pool, &sheltered)?;
+    for _ in 0..SHELTER_PASSES {
+        let found: Vec<bool> = (0..rises.len()).map(|i| placed.is_sheltered(i, &rises, water)).collect();
+        if found == sheltered {
+            break;
+        }
+        sheltered = found;
+        rises = equilibrium_rises(scene, ctx, placed, water, pool, &sheltered)?;
+    }
+    for (spec, rise) in placed.specs.iter_mut().zip(rises) {
+        spec.pose.position[D - 1] += rise;
+    }
+    Ok(())
+}
+
+/// Returns the rise (m) of each body to its equilibrium; 0 for one at a given height. `sheltered` tells which lie in dry hollows.
+fn equilibrium_rises<const D: usize>(
+    scene: &Scene,
+    ctx: &Context,
+    placed: &PlacedSolids<D>,
+    water: &[WaterBody<D>],
+    pool: &StillWater<D>,
+    sheltered: &[bool],
+) -> Result<Vec<f64>> {
     let (rho0, level) = (ctx.rho0.unwrap_or_default(), pool.still.level);
-    let constraints = build_constraints(scene, ctx, &placed.specs, pool.still.level)?.at_start();
+    let constraints = build_constraints(scene, ctx, &placed.specs, &placed.levels)?.at_start();
     let specs: Vec<&SolidSpec<D>> = placed.specs.iter().collect();
     let afloat: Vec<bool> = scene.solid.iter().map(SolidConfig::is_afloat).collect();
     let bottom = level - pool.still.depth;
@@ -140,7 +141,7 @@ fn float_bodies<const D: usize>(
     let state = StartState {
         specs: &specs,
         afloat: &afloat,
-        displaced: &|i| placed.displaced_mass(i, rho0, level, water),
+        displaced: &|i| if sheltered[i] { 0.0 } else { placed.displaced_mass(i, rho0, water) },
         above_bottom: &|i| world_bounds(&specs[i].shape, &specs[i].pose).min[D - 1] - bottom - 0.5 * scene.dp,
         moored: &|i| pulls[i],
         g,
@@ -157,7 +158,7 @@ fn float_bodies<const D: usize>(
             None => e,
         };
         placed
-            .rise_to_equilibrium(i, mass, rho0, level, water)
+            .rise_to_equilibrium(i, mass, rho0, water)
             .map_err(|e| ctx.with_location(alone(loads.explain(i, e)), &format!("solid.{i}.at.draft")))
     };
     let mut rises = vec![0.0; specs.len()];
@@ -171,7 +172,7 @@ fn float_bodies<const D: usize>(
         }
         let left = own.first().map_or(0.0, |i| loads.of_group(*i));
         if own.len() > 1 && left != 0.0 {
-            let more = placed.common_rise(&own, &rises, left, rho0, level, water);
+            let more = placed.common_rise(&own, &rises, left, rho0, water);
             let error = || {
                 let what =
                     format!("the bodies that are tied to \"{}\" are too heavy for it to float", specs[own[0]].name);
@@ -181,9 +182,7 @@ fn float_bodies<const D: usize>(
             own.iter().for_each(|i| rises[*i] += more);
         }
     }
-    let floats = (0..afloat.len()).filter(|i| afloat[*i]);
-    floats.for_each(|i| placed.specs[i].pose.position[D - 1] += rises[i]);
-    Ok(())
+    Ok(rises)
 }
 
 /// Returns the space that a solid encloses, if it can matter; `named`: whether a body of water names the solid.
@@ -192,16 +191,28 @@ fn enclosure<const D: usize>(spec: &SolidSpec<D>, named: bool, pool: &StillWater
     may_enclose(&spec.shape, open).then(|| Enclosure::of(&spec.shape, &spec.initial_kinematics().pose.rotation, dp))?
 }
 
-/// Returns whether `spec` keeps water that surrounds it out of a hollow.
-fn keeps_out<const D: usize>(spec: &SolidSpec<D>, hollow: &Hollow<D>) -> bool {
-    spec.dry.unwrap_or(hollow.is_closed())
+/// Returns whether the region of `body` reaches below its level into a hollow of a solid at `pose`.
+fn enters<const D: usize>(hollow: &Hollow<D>, pose: &Pose<D>, body: &WaterBody<D>) -> bool {
+    hollow.middles_below(pose, body.level).any(|x| body.contains(&x))
 }
 
 impl<const D: usize> PlacedSolids<D> {
-    /// Returns the rise (m) of solid number `i` to its equilibrium as a body of `mass` (kg), in water of density `rho0` (kg/m³)
-    /// at `level` (m). A hollow is dry if it stays dry in that place and no body of water fills it.
-    fn rise_to_equilibrium(&self, i: usize, mass: f64, rho0: f64, level: f64, water: &[WaterBody<D>]) -> Result<f64> {
-        let spec = &self.specs[i];
+    /// Returns the level (m) from which the draft of solid number `i` is measured.
+    fn level(&self, i: usize) -> f64 {
+        self.levels[i].unwrap_or(self.highest)
+    }
+
+    /// Returns whether solid number `i` at `pose` keeps water that surrounds it out of a hollow. So it does, if the scene does not say,
+    /// for a closed hollow and for one with water of its own.
+    fn keeps_out(&self, i: usize, hollow: &Hollow<D>, pose: &Pose<D>, water: &[WaterBody<D>]) -> bool {
+        let own = |body: &WaterBody<D>| body.inside == Some(i) && enters(hollow, pose, body);
+        self.specs[i].dry.unwrap_or_else(|| hollow.is_closed() || water.iter().any(own))
+    }
+
+    /// Returns the rise (m) of solid number `i` to its equilibrium as a body of `mass` (kg), in water of density `rho0` (kg/m³).
+    /// A hollow is dry if it stays dry in that place and no body of water fills it.
+    fn rise_to_equilibrium(&self, i: usize, mass: f64, rho0: f64, water: &[WaterBody<D>]) -> Result<f64> {
+        let (spec, level) = (&self.specs[i], self.level(i));
         let hollows = self.enclosures[i].as_ref().map_or(&[][..], |enclosure| &enclosure.hollows);
         let mut hull = Hull { dry: hollows.iter().collect(), ..Hull::new(&spec.shape) };
         // Each pass returns, or takes a hollow out of the dry ones.
@@ -223,7 +234,9 @@ impl<const D: usize> PlacedSolids<D> {
                 // Without the hollow that floods first.
                 Err(_) => {
                     let (rim, before) = (hull.rim_height(&spec.pose), hull.dry.len());
-                    hull.dry.retain(|hollow| keeps_out(spec, hollow) || hollow.rim_height(&spec.pose) > rim);
+                    hull.dry.retain(|hollow| {
+                        self.keeps_out(i, hollow, &spec.pose, water) || hollow.rim_height(&spec.pose) > rim
+                    });
                     if hull.dry.len() == before {
                         return rise;
                     }
@@ -247,8 +260,8 @@ impl<const D: usize> PlacedSolids<D> {
     }
 
     /// Returns the mass (kg) of the water that solid number `i` displaces where it is.
-    fn displaced_mass(&self, i: usize, rho0: f64, level: f64, water: &[WaterBody<D>]) -> f64 {
-        let pose = &self.specs[i].pose;
+    fn displaced_mass(&self, i: usize, rho0: f64, water: &[WaterBody<D>]) -> f64 {
+        let (pose, level) = (&self.specs[i].pose, self.level(i));
         rho0 * self.hull_at(i, pose, level, water).submerged_volume(pose, level).0
     }
 
@@ -260,13 +273,12 @@ impl<const D: usize> PlacedSolids<D> {
         rises: &[f64],
         more: f64,
         rho0: f64,
-        level: f64,
         water: &[WaterBody<D>],
     ) -> Option<f64> {
         let size = bodies.iter().map(|i| self.specs[*i].shape.bounds().size().norm()).fold(0.0, f64::max);
         let displaced = |rise: f64| -> f64 {
             let one = |i: &usize| {
-                let mut pose = self.specs[*i].pose;
+                let (mut pose, level) = (self.specs[*i].pose, self.level(*i));
                 pose.position[D - 1] += rises[*i] + rise;
                 self.hull_at(*i, &pose, level, water).submerged_volume(&pose, level).0
             };
@@ -284,28 +296,47 @@ impl<const D: usize> PlacedSolids<D> {
         Some(0.5 * (under + over))
     }
 
+    /// Returns whether solid number `i` lies between the sides of another one with its middle in a hollow that is dry, if the solids
+    /// have risen by `rises` (m).
+    fn is_sheltered(&self, i: usize, rises: &[f64], water: &[WaterBody<D>]) -> bool {
+        let placed = |j: usize| {
+            let mut pose = self.specs[j].initial_kinematics().pose;
+            pose.position[D - 1] += rises[j];
+            pose
+        };
+        let own = self.specs[i].shape.bounds_at(&placed(i));
+        (0..self.specs.len()).filter(|j| *j != i).any(|j| {
+            let (shape, pose) = (&self.specs[j].shape, placed(j));
+            let Some(around) = &self.enclosures[j] else { return false };
+            let Some(number) = around.number_around(shape, &pose, &own) else { return false };
+            let (hollow, hull) = (&around.hollows[number], self.hull_at(j, &pose, self.level(j), water));
+            hollow.rim_height(&pose) > self.level(j) && hull.dry.iter().any(|dry| std::ptr::eq(*dry, hollow))
+        })
+    }
+
     /// Returns the level (m) of the water that fills a hollow of solid number `i` at `pose`; `None` if it is dry.
     fn level_in(&self, i: usize, hollow: &Hollow<D>, pose: &Pose<D>, water: &[WaterBody<D>]) -> Option<f64> {
         let spec = &self.specs[i];
         let fills = |body: &&WaterBody<D>| {
-            let enters = match body.inside {
+            let may_enter = match body.inside {
                 Some(solid) => solid == i,
                 None => {
                     let (own, other) = (spec.shape.bounds_at(pose), body.bounds());
-                    !keeps_out(spec, hollow) || (own.contains(&other.min) && own.contains(&other.max))
+                    !self.keeps_out(i, hollow, pose, water) || (own.contains(&other.min) && own.contains(&other.max))
                 }
             };
-            enters && hollow.middles_below(pose, body.level).any(|x| body.contains(&x))
+            may_enter && enters(hollow, pose, body)
         };
         water.iter().filter(fills).map(|body| body.level).reduce(f64::max)
     }
 
     /// Returns the enclosed spaces for a filling around the solids at `poses`.
-    pub(super) fn spaces<'a>(&'a self, poses: &'a [Pose<D>]) -> Vec<EnclosedSpace<'a, D>> {
+    pub(super) fn spaces<'a>(&'a self, poses: &'a [Pose<D>], water: &[WaterBody<D>]) -> Vec<EnclosedSpace<'a, D>> {
         let all = self.specs.iter().zip(poses).zip(&self.enclosures).enumerate();
         let space = |(solid, ((spec, pose), enclosure)): (usize, ((&'a SolidSpec<D>, &'a Pose<D>), &'a Option<_>))| {
             let enclosure: &Enclosure<D> = enclosure.as_ref()?;
-            let keeps_out = enclosure.hollows.iter().map(|hollow| keeps_out(spec, hollow)).collect();
+            let keeps_out = |hollow| self.keeps_out(solid, hollow, pose, water);
+            let keeps_out = enclosure.hollows.iter().map(keeps_out).collect();
             Some(EnclosedSpace { solid, shape: &spec.shape, pose, enclosure, keeps_out })
         };
         all.filter_map(space).collect()

@@ -13,7 +13,7 @@ use super::{
         open_boundary::FaceFlow,
         shape::{vector, world_bounds},
         solid::require_solid,
-        water::{StillWaterLevel, WaterBody, WaterConfig, require_near_origin},
+        water::{StillWaterLevel, WaterBody, WaterConfig, open_boxes, require_near_origin},
     },
 };
 use crate::{
@@ -169,7 +169,7 @@ impl Scene {
         let placed = placed_solids::<D>(&scene, ctx, &water, true)?;
         let solids = &placed.specs;
         require_plausible_units(ctx, &self.solid, &water, solids)?;
-        let constraints = build_constraints(&scene, ctx, solids, still.level)?;
+        let constraints = build_constraints(&scene, ctx, solids, &placed.levels)?;
         let domain = scene.domain.as_ref().map(|d| Bounds { min: vector(&d.min), max: vector(&d.max) });
         if let Some(domain) = &domain {
             require_inside_domain(ctx, domain, &water, solids)?;
@@ -373,14 +373,7 @@ impl<const D: usize> SceneParts<D> {
             towed: scene.towed.as_ref().map(|towed| towed.build(ctx)).transpose()?,
         };
         let own_levels = water.iter().filter_map(|body| Some((body.inside?, body.level))).collect();
-        let open = water.iter().filter(|body| body.inside.is_none());
-        let boxes: Vec<Bounds<D>> = open
-            .map(|body| {
-                let mut own = body.bounds();
-                own.max[D - 1] = body.level;
-                own
-            })
-            .collect();
+        let boxes = open_boxes(&water);
         let first_buffer = water.len();
         let (open_boundaries, buffers) = scene.open_boundaries(ctx, &water, &model)?;
         water.extend(buffers);
@@ -391,7 +384,7 @@ impl<const D: usize> SceneParts<D> {
         let rests = |s: &SolidSpec<D>| !matches!(s.role, Role::Free(_));
         let solid_shapes: Vec<(&Shape<D>, &Pose<D>, bool)> =
             solids.iter().zip(&starts).map(|(s, start)| (&s.shape, start, rests(s))).collect();
-        let spaces = placed.spaces(&starts);
+        let spaces = placed.spaces(&starts, &water);
         let inside = water.iter().map(|body| body.inside).collect();
         let symmetry = scene.symmetry.clone().unwrap_or_default().build();
         let is_shared = allow_division(&model, &driving)
@@ -411,6 +404,9 @@ impl<const D: usize> SceneParts<D> {
         let part = owners.part(filled.r.len());
         if part.count == 0 {
             return Err(no_water_error(ctx, &water, solids));
+        }
+        if let Some(i) = (0..first_buffer).find(|i| home.iter().all(|own| *own as usize != *i)) {
+            return Err(empty_water_error(ctx, i, water[i].inside.map(|solid| &solids[solid].name)));
         }
         let own_water: Vec<usize> =
             spaces.iter().zip(has_own_water).filter(|(_, own)| *own).map(|(space, _)| space.solid).collect();
@@ -545,6 +541,22 @@ fn no_water_error<const D: usize>(ctx: &Context, water: &[WaterBody<D>], solids:
     let (name, size, room) = (&solids[i].name, size[axis], room[axis]);
     let what = format!("no water is left: \"{name}\" is {size:.4} m {way} and the water {room:.4} m");
     ctx.error_with_help(&format!("solid.{i}.shape"), what, "make it smaller, or the tank and its water larger")
+}
+
+/// Returns the error that body of water number `i`, inside the solid of this name, has no particle.
+fn empty_water_error(ctx: &Context, i: usize, inside: Option<&String>) -> Error {
+    let (what, help) = match inside {
+        Some(name) => (
+            format!("no particle of this water is left: it meets no hollow of \"{name}\" below its level"),
+            "let its region and its level reach into the hollow as the solid is placed",
+        ),
+        None => (
+            "no particle of this water is left: solids, hollows that stay dry or an earlier [[water]] take its place"
+                .into(),
+            "move it, or remove it: its level and its bottom count for the depth and for the speed of sound",
+        ),
+    };
+    ctx.error_with_help(&format!("water.{i}.fill"), what, help)
 }
 
 /// Returns the approximate numbers of water particles and boundary particles.

@@ -14,13 +14,13 @@ use crate::{
     },
 };
 
-/// Returns the joints, force elements and contact rules of `solids`, which must be in the order of the scene, over still water at
-/// the height `level` (m).
+/// Returns the joints, force elements and contact rules of `solids`, which must be in the order of the scene, over still water
+/// with the level (m) at the place of each, if water is there.
 pub(super) fn build_constraints<const D: usize>(
     scene: &Scene,
     ctx: &Context,
     solids: &[SolidSpec<D>],
-    level: f64,
+    levels: &[Option<f64>],
 ) -> Result<Constraints<D>> {
     let number = |name: &String| scene.solid.iter().position(|solid| solid.name == *name);
     let mut constraints = Constraints::default();
@@ -60,7 +60,7 @@ pub(super) fn build_constraints<const D: usize>(
         constraints.forces.push(force);
     }
     for (i, wind) in scene.wind.iter().enumerate() {
-        constraints.winds.push(wind.build(ctx, &format!("wind.{i}"), &scene.solid, solids, level)?);
+        constraints.winds.push(wind.build(ctx, &format!("wind.{i}"), &scene.solid, solids, levels)?);
     }
     constraints.contacts = scene.contact.iter().flat_map(|contact| contact.build(&scene.solid)).collect();
     let hold = |(solid, body): (usize, &SolidConfig)| Some(InitialHold { solid, until: body.free.as_ref()?.release? });

@@ -81,7 +81,7 @@ impl<const D: usize> ForceSpec<D> {
     }
 
     /// Its force (N) and torque (N m), if they do not change with time.
-    pub(super) fn steady_load(&self) -> Option<(Vector<D>, Bivector<D>)> {
+    pub(crate) fn steady_load(&self) -> Option<(Vector<D>, Bivector<D>)> {
         let steady = |laws: &[TimeFunction]| laws.iter().map(TimeFunction::steady_value).collect::<Option<Vec<f64>>>();
         let (force, turns) = (steady(&self.force)?, steady(&self.torque)?);
         Some((Vector::from_fn(|i, _| force.get(i).copied().unwrap_or(0.0)), Bivector::from_axial(&turns)))

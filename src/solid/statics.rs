@@ -12,7 +12,7 @@ mod ties;
 use nalgebra::{DMatrix, DVector};
 
 use super::{
-    Constraints, FreeBody, JointSpec, LineEnd, SolidSpec,
+    Constraints, FreeBody, JointKind, JointSpec, LineEnd, SolidSpec,
     constraint::lines::start_length,
     hydrostatics::Hull,
     joint_groups::{JointGroups, merge},
@@ -32,6 +32,9 @@ const ITERATIONS: usize = 200;
 /// Half of the angle (rad) of the difference that gives a metacentric height.
 const TILT: f64 = 1e-4;
 
+/// Height (m) of the surface around a body without water: far below all bodies.
+pub(crate) const NO_WATER: f64 = -1e30;
+
 /// The still water.
 #[derive(Clone, Copy)]
 pub(crate) struct WaterAtRest {
@@ -39,7 +42,7 @@ pub(crate) struct WaterAtRest {
     pub(crate) rho0: f64,
     /// Gravity, m/s².
     pub(crate) g: f64,
-    /// Height of the surface, m.
+    /// Height of the highest surface, m.
     pub(crate) level: f64,
 }
 
@@ -53,6 +56,8 @@ pub(crate) struct StaticBody<'a, const D: usize> {
     pub(crate) pose: Pose<D>,
     /// Height (m) below which its lowest point cannot sink.
     pub(crate) bottom: f64,
+    /// Height (m) of the still surface around it; [`NO_WATER`] if there is none.
+    pub(crate) level: f64,
 }
 
 /// Free bodies with their ties.
@@ -204,13 +209,13 @@ impl<'a, const D: usize> StaticSystem<'a, D> {
         let n = groups.len();
         let (mut force, mut slope) = (vec![0.0; n], vec![vec![0.0; n]; n]);
         let place = |body: usize| groups.iter().position(|g| *g == self.group[body]);
-        let WaterAtRest { rho0, g, level } = self.water;
+        let WaterAtRest { rho0, g, .. } = self.water;
         for (i, body) in self.bodies.iter().enumerate() {
             let Some(k) = place(i) else { continue };
             let pose = self.pose(i);
             let area = plan_area(&body.hull, &pose);
             let step = 1e-6 * self.size(i);
-            let volume = |rise: f64| body.hull.volume_if_dry(&lifted(&pose, rise), level);
+            let volume = |rise: f64| body.hull.volume_if_dry(&lifted(&pose, rise), body.level);
             force[k] += g * (rho0 * volume(0.0) - body.body.mass);
             slope[k][k] += rho0 * g * (volume(step) - volume(-step)) / (2.0 * step);
             let sunk = body.bottom - body.hull.extent(&pose)[0];
@@ -287,10 +292,8 @@ impl<'a, const D: usize> StaticSystem<'a, D> {
             if sinks >= 0.0 && self.is_in_air(i) {
                 return;
             }
-            self.rise[group] = body
-                .hull
-                .equilibrium_height(&body.pose, body.body.mass, self.water.rho0, self.water.level)
-                .unwrap_or(sinks);
+            self.rise[group] =
+                body.hull.equilibrium_height(&body.pose, body.body.mass, self.water.rho0, body.level).unwrap_or(sinks);
             return;
         }
         let members = || (0..self.bodies.len()).filter(|i| groups.contains(&self.group[*i]));
@@ -374,6 +377,15 @@ impl<'a, const D: usize> StaticSystem<'a, D> {
         grounded || self.assembly_of(i).any(locked)
     }
 
+    /// Returns the names of the joints in the assembly of body `i` that leave a motion of its bodies free.
+    pub(crate) fn loose_joints(&self, i: usize) -> Vec<&str> {
+        let member = |end: Option<usize>| {
+            end.and_then(|solid| self.number(solid)).is_some_and(|j| self.assembly[j] == self.assembly[i])
+        };
+        let loose = |joint: &&JointSpec<D>| joint.kind != JointKind::Fixed && joint.between.into_iter().all(member);
+        self.joints.iter().filter(loose).map(|joint| &joint.name[..]).collect()
+    }
+
     /// Returns whether two bodies rise together.
     pub(crate) fn rise_together(&self, i: usize, j: usize) -> bool {
         self.group[i] == self.group[j]
@@ -409,7 +421,7 @@ impl<'a, const D: usize> StaticSystem<'a, D> {
 
     /// Returns the mass (kg) of the water that body `i` displaces at rest.
     fn displaced(&self, i: usize) -> f64 {
-        self.water.rho0 * self.bodies[i].hull.volume_if_dry(&self.pose(i), self.water.level)
+        self.water.rho0 * self.bodies[i].hull.volume_if_dry(&self.pose(i), self.bodies[i].level)
     }
 
     /// Returns whether body `i` lies on the bottom, or on a solid.
@@ -423,8 +435,8 @@ impl<'a, const D: usize> StaticSystem<'a, D> {
             let pose = self.pose(j);
             let [low, high] = self.bodies[j].hull.extent(&pose);
             let step = 1e-4 * (high - low);
-            let volume = |level: f64| self.bodies[j].hull.volume_if_dry(&pose, level);
-            (volume(self.water.level + step) - volume(self.water.level - step)) / (2.0 * step)
+            let (level, volume) = (self.bodies[j].level, |level: f64| self.bodies[j].hull.volume_if_dry(&pose, level));
+            (volume(level + step) - volume(level - step)) / (2.0 * step)
         };
         self.group_of(i).map(area).sum()
     }
@@ -466,7 +478,7 @@ impl<'a, const D: usize> StaticSystem<'a, D> {
     /// Returns the righting lever (m, axial components) of the assembly of body `i`, turned from rest by `angle` (rad)
     /// about the horizontal `axis` and afloat again. Water inside adds to the weight, and flows to the lower side.
     pub(crate) fn lever(&self, i: usize, axis: &[f64], angle: f64) -> Vec<f64> {
-        let WaterAtRest { rho0, g, level } = self.water;
+        let WaterAtRest { rho0, g, .. } = self.water;
         let members: Vec<usize> = self.assembly_of(i).collect();
         let rest: Vec<Pose<D>> = members.iter().map(|j| self.pose(*j)).collect();
         let mass: f64 = members.iter().map(|j| self.bodies[*j].body.mass).sum();
@@ -480,12 +492,13 @@ impl<'a, const D: usize> StaticSystem<'a, D> {
         let displaced = |rise: f64| -> (f64, Vector<D>) {
             members.iter().zip(&rest).fold((0.0, Vector::zeros()), |sum, (j, pose)| {
                 let pose = Pose { position: turned(&pose.position, rise), rotation: turn * pose.rotation };
-                let (volume, centroid) = self.bodies[*j].hull.submerged_volume(&pose, level);
+                let (volume, centroid) = self.bodies[*j].hull.submerged_volume(&pose, self.bodies[*j].level);
                 (sum.0 + volume, sum.1 + centroid * volume)
             })
         };
-        let whole: f64 =
-            members.iter().zip(&rest).map(|(j, pose)| self.bodies[*j].hull.submerged_volume(pose, level).0).sum();
+        let below =
+            |(j, pose): (&usize, &Pose<D>)| self.bodies[*j].hull.submerged_volume(pose, self.bodies[*j].level).0;
+        let whole: f64 = members.iter().zip(&rest).map(below).sum();
         let size = members.iter().map(|j| self.size(*j)).fold(0.0, f64::max);
         let step = 1e-6 * size;
         let mut rise = 0.0;
@@ -556,7 +569,7 @@ impl<'a, const D: usize> StaticSystem<'a, D> {
                 2 => body.inertia[(0, 0)] + body.mass * arm.norm_squared(),
                 _ => local.dot(&(body.inertia * local)) + body.mass * (arm.norm_squared() - arm.dot(&axis).powi(2)),
             };
-            displaced += self.water.rho0 * self.bodies[own.0].hull.submerged_volume(&own.1, self.water.level).0;
+            displaced += self.water.rho0 * self.bodies[own.0].hull.submerged_volume(&own.1, self.bodies[own.0].level).0;
             displaced += self.enclosed_water(own.0);
         }
         (inertia, displaced)

@@ -24,7 +24,7 @@ pub(crate) const AIR_DENSITY: f64 = 1.225;
 pub struct WindSpec<const D: usize> {
     /// Components of its velocity, m/s.
     pub velocity: Vec<TimeFunction>,
-    /// Height of the still water, m.
+    /// Height of the still water, m, for the solids that are added; −∞ without water.
     pub level: f64,
     /// Drag coefficient C_d, –.
     pub drag: f64,
@@ -38,6 +38,8 @@ pub struct WindSpec<const D: usize> {
 pub(crate) struct WindTarget<const D: usize> {
     pub(crate) solid: usize,
     silhouette: Silhouette<D>,
+    /// Height of the still water at its place, m; −∞ without water.
+    level: f64,
     pub(crate) lifetime: Lifetime,
 }
 
@@ -61,7 +63,7 @@ impl<const D: usize> WindSpec<D> {
 
     /// The same wind, on a solid during a lifetime.
     pub(crate) fn during(mut self, solid: usize, shape: &Shape<D>, lifetime: Lifetime) -> Self {
-        self.targets.push(WindTarget { solid, silhouette: Silhouette::new(shape), lifetime });
+        self.targets.push(WindTarget { solid, silhouette: Silhouette::new(shape), level: self.level, lifetime });
         self
     }
 
@@ -76,7 +78,7 @@ impl<const D: usize> WindSpec<D> {
             if speed == 0.0 {
                 return (target.solid, Load::zero());
             }
-            let (area, at) = target.silhouette.projected_area(&now.pose, self.level, &(relative / speed));
+            let (area, at) = target.silhouette.projected_area(&now.pose, target.level, &(relative / speed));
             let force = relative * (0.5 * self.density * self.drag * area * speed);
             (target.solid, Load { force, torque: Bivector::torque(&(at - now.centre), &force) })
         })

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::{
     ballast::BallastConfig,
     motion::DrivenConfig,
-    shape::{PlacementConfig, ShapeConfig, vector},
+    shape::{PlacementConfig, ShapeConfig, vector, world_bounds},
     water::StillWater,
     wavemaker,
 };
@@ -206,6 +206,15 @@ impl SolidConfig {
         }
         self.verify_role(ctx, key)?;
         ctx.require_positive(&format!("{key}.until"), self.until)?;
+        let release = self.free.as_ref().and_then(|free| free.release);
+        if let (Some(release), Some(until)) = (release, self.until.filter(|until| release.is_some_and(|t| t > *until)))
+        {
+            let what = format!("\"{}\" is released at {release} s, after its removal at {until} s", self.name);
+            let help = "release it before its time  until";
+            return Err(ctx
+                .error_with_help(&format!("{key}.free.release"), what, help)
+                .with_code(ErrorCode::OutOfRange));
+        }
         ctx.require_range(&format!("{key}.friction"), self.friction, 10.0)?;
         ctx.require_range(&format!("{key}.restitution"), self.restitution, 1.0)
     }
@@ -269,17 +278,18 @@ impl SolidConfig {
         self.at.as_ref().is_some_and(|at| at.draft == Some(DraftChoice::Equilibrium))
     }
 
-    /// The solid in the water `pool`, from whose level drafts are measured. One that starts at its equilibrium is placed
-    /// with its lowest point at the level.
+    /// The solid in the water `pool`. Drafts are measured from the level of the water at its place. One that starts at its equilibrium
+    /// is placed with its lowest point at the level.
     pub(crate) fn build<const D: usize>(&self, ctx: &Context, key: &str, pool: &StillWater<D>) -> Result<SolidSpec<D>> {
-        let level = pool.still.level;
         let place = |part: &str| {
             let key = format!("{key}.{part}");
             move |e: Error| ctx.with_location(e, &key)
         };
         let shape: Shape<D> = self.shape.build(ctx).map_err(place("shape"))?;
         let (name, at) = (&self.name, self.at.clone().unwrap_or_default());
-        let pose = at.build(&shape, level);
+        let place_at = |level: f64| at.build(&shape, level);
+        let own_level = pool.level_at(&world_bounds(&shape, &place_at(pool.still.level)));
+        let pose = place_at(own_level.unwrap_or(pool.still.level));
         let role = match (&self.driven, &self.free) {
             (Some(config), _) => {
                 let key = format!("{key}.driven");

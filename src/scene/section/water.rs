@@ -196,7 +196,7 @@ impl<const D: usize> WaterBody<D> {
 /// The water at rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StillWaterLevel {
-    /// The highest level, from which drafts are measured, m.
+    /// The highest level, m.
     pub level: f64,
     /// From the lowest point of the water to there, m.
     pub depth: f64,
@@ -217,10 +217,28 @@ fn outside_solids<const D: usize>(water: &[WaterBody<D>]) -> impl Iterator<Item 
     water.iter().filter(move |body| all || body.inside.is_none())
 }
 
-/// The water at rest and the box around it.
+/// Returns the boxes around the bodies of water that no solid encloses, up to their levels.
+pub(crate) fn open_boxes<const D: usize>(water: &[WaterBody<D>]) -> Vec<Bounds<D>> {
+    let up_to_level = |body: &WaterBody<D>| {
+        let mut own = body.bounds();
+        own.max[D - 1] = body.level;
+        own
+    };
+    water.iter().filter(|body| body.inside.is_none()).map(up_to_level).collect()
+}
+
+/// Returns the highest level (m) of the water in `boxes` that reaches over or under a solid in the box `own`; `None` if none does.
+pub(crate) fn level_at<const D: usize>(boxes: &[Bounds<D>], own: &Bounds<D>) -> Option<f64> {
+    let overlaps =
+        |water: &&Bounds<D>| (0..D - 1).all(|axis| water.min[axis] < own.max[axis] && water.max[axis] > own.min[axis]);
+    boxes.iter().filter(overlaps).map(|water| water.max[D - 1]).reduce(f64::max)
+}
+
+/// The water at rest and the boxes around it.
 pub(crate) struct StillWater<const D: usize> {
     pub(crate) still: StillWaterLevel,
     pub(crate) bounds: Bounds<D>,
+    boxes: Vec<Bounds<D>>,
 }
 
 impl<const D: usize> StillWater<D> {
@@ -232,7 +250,13 @@ impl<const D: usize> StillWater<D> {
             let own = body.bounds();
             bounds = Bounds { min: bounds.min.inf(&own.min), max: bounds.max.sup(&own.max) };
         }
-        Self { still: StillWaterLevel::of(water), bounds }
+        Self { still: StillWaterLevel::of(water), bounds, boxes: open_boxes(water) }
+    }
+
+    /// The level (m) of the open water at the place of a solid in the box `own`; `None` if none is there.
+    pub(crate) fn level_at(&self, own: &Bounds<D>) -> Option<f64> {
+        // Without open water the highest level is that of all.
+        if self.boxes.is_empty() { Some(self.still.level) } else { level_at(&self.boxes, own) }
     }
 }
 

@@ -67,22 +67,24 @@ impl WindConfig {
         ctx.require_positive(&format!("{key}.density"), self.density)
     }
 
-    /// The wind on the `solids`, of which `specs` are the specifications, over still water at the height `level` (m).
+    /// The wind on the `solids`, of which `specs` are the specifications, over still water with the level (m) at the place of each,
+    /// if water is there.
     pub(crate) fn build<const D: usize>(
         &self,
         ctx: &Context,
         key: &str,
         solids: &[SolidConfig],
         specs: &[SolidSpec<D>],
-        level: f64,
+        levels: &[Option<f64>],
     ) -> Result<WindSpec<D>> {
         let law = |value: &TimeValueConfig| value.0.build(ctx, &format!("{key}.velocity"), CoordinateUnit::Si("m/s"));
         let velocity = self.velocity.components().iter().map(law).collect::<Result<Vec<_>>>()?;
-        let mut wind = WindSpec::new(velocity, level).drag(self.drag.unwrap_or(1.0));
+        let mut wind = WindSpec::new(velocity, f64::NEG_INFINITY).drag(self.drag.unwrap_or(1.0));
         wind.density = self.density.unwrap_or(AIR_DENSITY);
-        for (number, (solid, spec)) in solids.iter().zip(specs).enumerate() {
+        for (number, ((solid, spec), level)) in solids.iter().zip(specs).zip(levels).enumerate() {
             if self.on.contains(&solid.name) {
                 let lifetime = Lifetime::default().until(solid.until.unwrap_or(f64::INFINITY));
+                wind.level = level.unwrap_or(f64::NEG_INFINITY);
                 wind = wind.during(number, &spec.shape, lifetime);
             }
         }

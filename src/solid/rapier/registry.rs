@@ -57,6 +57,7 @@ impl RapierWorld {
         self.bodies.push(body);
         self.locks.push(self.world.bodies[body].locked_axes());
         self.restitution.push(solid.restitution);
+        self.bounces |= solid.restitution > 0.0;
         self.gone.push(false);
         self.when_near = iterations_in_contact(&self.world);
         Ok(())

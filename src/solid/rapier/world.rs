@@ -66,6 +66,8 @@ pub(in crate::solid) struct RapierWorld {
     world: PhysicsWorld,
     bodies: Vec<RigidBodyHandle>,
     restitution: Vec<f64>,
+    /// Whether any pair of solids can have a restitution.
+    bounces: bool,
     /// Iterations of a step in which bodies may touch.
     when_near: usize,
     /// Iterations of the last step.
@@ -123,12 +125,16 @@ impl RapierWorld {
         let ties = RapierJoints::new(&mut world, &bodies, links, start);
         let locks = bodies.iter().map(|&body| world.bodies[body].locked_axes()).collect();
         let restitution = solids.iter().map(|solid| solid.restitution).collect();
+        let rebounds = |a, b| links.contacts.find(a, b).and_then(|pair| pair.restitution).is_some_and(|e| e > 0.0);
+        let bounces = solids.iter().any(|solid| solid.restitution > 0.0)
+            || (0..solids.len()).any(|b| (0..b).any(|a| rebounds(a, b)));
         let (when_near, met, pushes) = (registry::iterations_in_contact(&world), Vec::new(), Vec::new());
         let gone = vec![false; bodies.len()];
         Ok(Self {
             world,
             bodies,
             restitution,
+            bounces,
             when_near,
             iterations: 1,
             met,
@@ -171,7 +177,8 @@ impl RapierWorld {
         let fastest = self.world.bodies.iter().map(|(_, body)| body.linvel().length()).fold(0.0, f64::max);
         let parameters = &mut self.world.integration_parameters;
         parameters.dt = dt;
-        parameters.normalized_prediction_distance = self.reach.max(2.0 * fastest * dt);
+        let ahead = if self.bounces { restitution::SEARCH } else { 2.0 };
+        parameters.normalized_prediction_distance = self.reach.max(ahead * fastest * dt);
         let iterations = parameters.num_solver_iterations as f64;
         if !(0.5..=2.0).contains(&(dt / iterations / self.tuned_for)) {
             let softness = SpringCoefficients::new((0.05 / dt).min(1000.0) * iterations, CONTACT_DAMPING);

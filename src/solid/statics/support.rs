@@ -24,7 +24,6 @@ pub(crate) enum Support {
 impl<const D: usize> StaticSystem<'_, D> {
     /// Returns the effect that carries body `i` at rest.
     pub(crate) fn support(&self, i: usize) -> Support {
-        let level = self.water.level;
         if self.held[self.group[i]] {
             return Support::Held;
         }
@@ -37,7 +36,8 @@ impl<const D: usize> StaticSystem<'_, D> {
             let open = self.bodies[i].hull.rim_height(&self.bodies[i].pose).is_finite();
             return if open { Support::Floods } else { Support::Bottom };
         }
-        let floods = |j: usize| self.bodies[j].hull.rim_height(&self.pose(j)) < level - 1e-6 * self.size(j);
+        let floods =
+            |j: usize| self.bodies[j].hull.rim_height(&self.pose(j)) < self.bodies[j].level - 1e-6 * self.size(j);
         if self.group_of(i).any(floods) {
             return Support::Floods;
         }
@@ -50,7 +50,7 @@ impl<const D: usize> StaticSystem<'_, D> {
 
     /// Returns whether body `i` is in the air, at the rise found so far.
     pub(super) fn is_in_air(&self, i: usize) -> bool {
-        self.bodies[i].hull.shape.submerged_volume(&self.pose(i), self.water.level).0 <= 0.0
+        self.bodies[i].hull.shape.submerged_volume(&self.pose(i), self.bodies[i].level).0 <= 0.0
     }
 
     /// Returns whether body `i`, without ties, displaces just its mass when it is submerged.

@@ -9,3 +9,4 @@ mod records;
 mod reference;
 mod schema;
 mod silent_errors;
+mod surroundings;

@@ -201,7 +201,7 @@ fn ballast_far_out_is_told_to_come_nearer() {
 }
 
 #[test]
-fn a_body_that_carries_another_or_floats_in_a_hull_is_told() {
+fn a_body_that_carries_another_is_told() {
     let raft = body("raft", [0.6, 0.2], 300.0, "x = 1.0, draft = 0.1");
     let crate_on_it = body("crate", [0.2, 0.2], 600.0, "x = 1.0, bottom = 0.7");
     let found = report(&format!("{WATER}{TANK}{raft}{crate_on_it}"));
@@ -211,17 +211,6 @@ fn a_body_that_carries_another_or_floats_in_a_hull_is_told() {
     // A stone that falls into the water sinks.
     let stone = report(&format!("{WATER}{TANK}{}", body("stone", [0.2, 0.2], 2000.0, "x = 1.0, bottom = 0.7")));
     assert_eq!(stone.bodies[0].support, "bottom");
-    let dock = "[[water]]\ninside = \"dock\"\nfill = { box = { min = [0.5, 0.0], max = [1.5, 0.7] } }\n\
-         [[solid]]\nname = \"dock\"\nshape = { tank = { size = [1.0, 0.5], thickness = 0.1 } }\nat = { x = 0.5, y = 0.45 }\n\
-         dry = true\nfree = { density = 400.0 }\n";
-    let boat = body("boat", [0.4, 0.2], 500.0, "x = 1.0, y = 0.65");
-    let water = WATER.replace("water = [", "[[water]]\n").replace("{ fill", "fill").replace("} }]", "}");
-    let found = finding(&format!("{water}{TANK}{dock}{boat}"), "other_level");
-    assert!(
-        found.what.contains("\"boat\" starts in the water inside \"dock\", which stands to 0.7 m"),
-        "{}",
-        found.what
-    );
 }
 
 #[test]

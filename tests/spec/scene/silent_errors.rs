@@ -308,14 +308,7 @@ fn a_period_of_another_length_than_the_water_is_found() {
 }
 
 #[test]
-fn a_draft_from_another_level_or_under_another_gravity_is_found() {
-    let lock =
-        "min = [0.0, 0.0], max = [0.5, 0.8] } }\n[[water]]\nfill = { box = { min = [0.6, 0.0], max = [2.0, 0.5] } }";
-    let wall = "[[solid]]\nname = \"lock\"\nfixed = true\nshape = { box = { size = [0.1, 1.0] } }\nat = { x = 0.55, bottom = 0.0 }\n";
-    let scene = changed(&[(REGION, lock)]) + wall;
-    assert_found("lock", &scene, &[], &["draft of \"box\"", "0.8 m", "stands at 0.5 m"]);
-    let given = scene.replace("x = 1.0, draft = \"equilibrium\"", "x = 1.4, bottom = 0.35");
-    assert_not_found("given", &given, &[], "is measured from");
+fn a_draft_under_another_gravity_is_found() {
     for (gravity, name) in [("[9.81, 0.0]", "sideways"), ("[0.0, 9.81]", "upwards")] {
         let turned = changed(&[("frames = \"off\"", &format!("frames = \"off\"\ngravity = {gravity}"))]);
         assert_found(name, &turned, &[], &["gravity is", "downwards"]);

@@ -31,9 +31,9 @@ where
 {
     for e in [0.2, 0.5, 1.0] {
         let (x, velocity, spin) = bounced::<D>(e);
-        // Newton's law to round-off; the cube rebounds up to a step and a half before the wall, 0.1 m away.
+        // Newton's law to round-off; the cube rebounds up to two steps before the wall, 0.1 m away.
         assert!((velocity[0] + e).abs() < 1e-9 && spin.0.norm() < 1e-7, "{e}: {velocity} {spin:?}");
-        assert!((x - (0.1 - 0.1 * e)).abs() < 3.1e-3, "{e}: at {x} m");
+        assert!((x - (0.1 - 0.1 * e)).abs() < 2e-3 * (1.0 + e) + 1e-4, "{e}: at {x} m");
     }
 }
 
@@ -41,6 +41,40 @@ where
 fn a_cube_rebounds_with_its_restitution_and_without_spin() {
     bounces::<2>();
     bounces::<3>();
+}
+
+/// Largest relative error of the rebound speed of cubes that fall from 25 heights on a floor in steps of `dt` (s), all with the
+/// restitution `e`. The places of the last step before the floor are spread evenly over the way of a step.
+fn worst_rebound<const D: usize>(e: f64, edge: f64, dt: f64) -> f64
+where
+    Dim<D>: HasEngine<D>,
+{
+    let mut worst: f64 = 0.0;
+    for drop in 0..25 {
+        let height = 0.378 + 1e-4 * f64::from(drop);
+        let mut solids = [floor(), solid("cube", cube(edge), at_height(height + 0.5 * edge), Role::Free(light::<D>()))];
+        solids.iter_mut().for_each(|solid| solid.restitution = e);
+        let mut engine = engine(&solids, down()).unwrap();
+        let mut rising = 0.0;
+        while rising <= 0.0 {
+            engine.step(dt, &idle(2), &[None, None]).unwrap();
+            rising = engine.kinematics(1).velocity[D - 1];
+        }
+        worst = worst.max((rising / (e * (2.0 * G * height).sqrt()) - 1.0).abs());
+    }
+    worst
+}
+
+/// Newton's law: the speed after is e √(2 g h). The cube rebounds up to two steps and a half before the floor, where its speed is
+/// lower by 2.5 g Δt, and has lost g Δt after its first step up: 0.9 % of 2.72 m/s at e = 1, and 1.2 % at e = 0.5. A thin cube needs a
+/// search far ahead.
+#[test]
+fn the_rebound_has_the_restitution_from_any_height() {
+    for (e, edge) in [(0.5, 0.1), (1.0, 0.1), (0.5, 0.01)] {
+        for worst in [worst_rebound::<2>(e, edge, 7e-4), worst_rebound::<3>(e, edge, 7e-4)] {
+            assert!(worst < 0.015, "e = {e}, {edge} m: {worst}");
+        }
+    }
 }
 
 fn collides<const D: usize>()

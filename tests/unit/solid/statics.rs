@@ -25,6 +25,7 @@ fn at_rest(solids: &[SolidSpec<2>], constraints: &Constraints<2>, judge: impl Fn
         },
         pose: spec.pose,
         bottom: -5.0,
+        level: WATER.level,
     };
     let specs: Vec<&SolidSpec<2>> = solids.iter().collect();
     judge(&StaticSystem::new(solids.iter().enumerate().map(body).collect(), &specs, constraints, WATER));

@@ -1,9 +1,12 @@
 //! Wind on bodies without water: speed, lever arm and the dry part.
 
+use std::path::Path;
+
 use crate::{
     math::{Vector, expression::Formula},
+    scene::Scene,
     solid::{
-        Constraints, Dim, HasEngine, TimeFunction, WindSpec,
+        AIR_DENSITY, Constraints, Dim, HasEngine, SolidSpec, TimeFunction, WindSpec,
         constraint::assembly::tests::{DrySystem, bar, body, point},
     },
 };
@@ -65,4 +68,25 @@ fn a_gust_follows_its_law() {
     let expected = 0.5 * 1.225 * 0.2 * 100.0 / 3.0 / mass;
     let speed: Vector<2> = air.now()[0].velocity;
     assert!(speed[0] < expected && speed[0] > 0.96 * expected, "{} of {expected}", speed[0]);
+}
+
+/// The load ½ ρ v² A of a wind of 10 m/s on a box of 0.3 m × 0.1 m in the lower of two basins, and on a dry bed beside the water: A is
+/// 0.05 m over the water at its draft, and 0.1 m on the bed.
+#[test]
+fn wind_loads_bodies_below_the_highest_level() {
+    let lower = "[[water]]\nfill = { box = { min = [0.84, 0.0], max = [1.6, 0.2] } }\n";
+    for (water, bottom, area) in [(lower, 0.15, 0.05), ("", 0.0, 0.1)] {
+        let text = format!(
+            "dimension = 2\ndp = 0.02\nuntil = 1.0\n[[water]]\nfill = {{ box = {{ min = [0.0, 0.0], max = [0.76, 0.4] }} }}\n{water}\
+             [[solid]]\nname = \"tank\"\nfixed = true\nshape = {{ tank = {{ size = [1.6, 0.9] }} }}\n\
+             [[solid]]\nname = \"wall\"\nfixed = true\nshape = {{ box = {{ size = [0.08, 0.8] }} }}\nat = {{ x = 0.8, bottom = 0.0 }}\n\
+             [[solid]]\nname = \"b\"\nshape = {{ box = {{ size = [0.3, 0.1] }} }}\nat = {{ x = 1.2, bottom = {bottom} }}\n\
+             free = {{ density = 500.0 }}\n[[wind]]\nvelocity = [10.0, 0.0]\non = [\"b\"]\n"
+        );
+        let built = Scene::parse(&text, Path::new(""), &[]).unwrap().build::<2>().unwrap().setup;
+        let start: Vec<_> = built.solids.iter().map(SolidSpec::initial_kinematics).collect();
+        let (_, load) = built.constraints.winds[0].loads_at(&start, 0.0).next().unwrap();
+        let right = 0.5 * AIR_DENSITY * 100.0 * area;
+        assert!((load.force[0] / right - 1.0).abs() < 1e-9, "{} N for {right} N", load.force[0]);
+    }
 }

@@ -1,0 +1,233 @@
+//! Preflight: bodies beside several waters and in dry hollows have the draft, the support and the wind of their own surroundings.
+
+use std::path::Path;
+
+use pontoon::{
+    preflight::{BodySummary, Finding, Preflight},
+    scene::Scene,
+};
+
+use crate::common::preflight_report;
+
+/// A tank of 1.6 m at dp = 0.02 m.
+const TANK: &str = "dimension = 2\ndp = 0.02\nuntil = 1.0\nframes = \"off\"\n\
+    [[solid]]\nname = \"tank\"\nfixed = true\nshape = { tank = { size = [1.6, 0.9] } }\n";
+
+/// Water over the whole tank to 0.4 m.
+const SEA: &str = "[[water]]\nfill = { box = { min = [0.0, 0.0], max = [1.6, 0.4] } }\n";
+
+/// A bulkhead between water to 0.4 m and water to 0.2 m.
+const BASINS: &str = "[[solid]]\nname = \"bulkhead\"\nfixed = true\nshape = { box = { size = [0.08, 0.8] } }\n\
+    at = { x = 0.8, bottom = 0.0 }\n\
+    [[water]]\nfill = { box = { min = [0.0, 0.0], max = [0.76, 0.4] } }\n\
+    [[water]]\nfill = { box = { min = [0.84, 0.0], max = [1.6, 0.2] } }\n";
+
+fn scene(text: &str) -> Scene {
+    Scene::parse(text, Path::new(""), &[]).unwrap()
+}
+
+fn report(text: &str) -> Preflight {
+    preflight_report(&scene(text))
+}
+
+fn find<'a>(of: &'a Preflight, topic: &str) -> Option<&'a Finding> {
+    of.findings.iter().find(|finding| finding.topic == topic)
+}
+
+fn summary<'a>(of: &'a Preflight, name: &str) -> &'a BodySummary {
+    of.bodies.iter().find(|body| body.name == name).unwrap()
+}
+
+/// A dry barge of the inner size 0.6 m × 0.4 m with walls of 0.08 m, which is 0.76 m wide.
+fn barge(role: &str, at: &str) -> String {
+    format!(
+        "[[solid]]\nname = \"barge\"\nshape = {{ tank = {{ size = [0.6, 0.4], thickness = 0.08 }} }}\nat = {{ {at} }}\n{role}\n\
+         dry = true\n"
+    )
+}
+
+fn block(name: &str, [wide, high]: [f64; 2], at: &str, free: &str) -> String {
+    format!(
+        "[[solid]]\nname = \"{name}\"\nshape = {{ box = {{ size = [{wide}, {high}] }} }}\nat = {{ {at} }}\nfree = {{ {free} }}\n"
+    )
+}
+
+/// The barge of 100 kg/m and its cargo of 30 kg/m displace 130 kg/m over 0.76 m: a draft of 0.17105 m. The cargo in the hold displaces
+/// nothing, although it lies below the sea.
+#[test]
+fn cargo_that_is_fixed_in_a_dry_hold_displaces_no_water() {
+    let joint = "[[joint]]\nname = \"j\"\nkind = \"fixed\"\nbetween = [\"barge\", \"b\"]\nat = [0.8, 0.34]\n";
+    for wide in [0.2, 0.4] {
+        let cargo = block("b", [wide, 0.1], "x = 0.8, bottom = 0.34", "mass = 30.0");
+        let barge = barge("free = { mass = 100.0 }", "x = 0.5, draft = \"equilibrium\"");
+        let found = report(&format!("{TANK}{SEA}{barge}{cargo}{joint}"));
+        let own = summary(&found, "barge");
+        // The bisection stops at 1e-14 of the height.
+        assert!((own.draft_m - 130.0 / 760.0).abs() < 1e-9, "placed at {} m", own.draft_m);
+        assert!((own.afloat.as_ref().unwrap().draft_m - 130.0 / 760.0).abs() < 1e-9, "{own:?}");
+        assert_eq!(summary(&found, "b").displaced_kg, 0.0);
+        // BM = B³/(12 V) with B = 0.76 m, V = 0.13 m²; KB is half the draft. Above the keel the barge has its centre at that of its
+        // walls and floor, and the cargo, 0.1 m high, starts 0.34 m over the tank's floor with the keel at 0.4 m − draft.
+        let draft = 130.0 / 760.0;
+        let [floor, walls] = [0.76 * 0.08, 2.0 * 0.08 * 0.4];
+        let barge_centre = (floor * 0.04 + walls * 0.28) / (floor + walls);
+        let cargo_centre = 0.39 - (0.4 - draft);
+        let gm = 0.76f64.powi(3) / (12.0 * 0.13) + 0.5 * draft - (100.0 * barge_centre + 30.0 * cargo_centre) / 130.0;
+        let told = own.afloat.as_ref().unwrap().tilts[0].gm_m;
+        assert!((told / gm - 1.0).abs() < 1e-6, "{told} m for {gm} m");
+    }
+}
+
+#[test]
+fn loose_cargo_in_a_dry_hold_stands_there_and_is_noted() {
+    let keel = 0.4 - 100.0 / 760.0;
+    let cargo = block("b", [0.2, 0.1], &format!("x = 0.8, bottom = {}", keel + 0.08), "mass = 30.0");
+    let barge = barge("free = { mass = 100.0 }", "x = 0.5, draft = \"equilibrium\"");
+    let found = report(&format!("{TANK}{SEA}{barge}{cargo}"));
+    let own = summary(&found, "b");
+    assert!(own.support == "solid" && own.displaced_kg == 0.0 && own.afloat.is_none(), "{own:?}");
+    assert!(find(&found, "carried_body").unwrap().what.contains("\"b\" stands on \"barge\""));
+    // A light body on the floor of a dock below the level of the sea.
+    let dock = |bottom: &str| {
+        let light = block("b", [0.2, 0.1], &format!("x = 0.8, {bottom}"), "density = 500.0");
+        report(&format!("{TANK}{SEA}{}{light}", self::barge("fixed = true", "x = 0.5, y = 0.3")))
+    };
+    let on_floor = dock("bottom = 0.3");
+    assert!(summary(&on_floor, "b").support == "solid" && find(&on_floor, "beside_water").is_none());
+    let falls = dock("draft = \"equilibrium\"");
+    assert!(find(&falls, "beside_water").unwrap().what.contains("\"b\" starts where no water is"), "{falls:#?}");
+}
+
+/// A box of half the density of water and 0.1 m high floats 0.05 m deep in its own basin, with its bottom at 0.15 m.
+#[test]
+fn a_body_in_the_lower_of_two_basins_has_its_draft_there() {
+    for at in ["x = 1.2, bottom = 0.15", "x = 1.2, draft = \"equilibrium\"", "x = 1.2, draft = 0.05"] {
+        let text = format!("{TANK}{BASINS}{}", block("b", [0.3, 0.1], at, "density = 500.0"));
+        let found = report(&text);
+        let own = summary(&found, "b");
+        assert!((own.draft_m - 0.05).abs() < 1e-9 && (own.displaced_kg - 15.0).abs() < 1e-6, "{at}: {own:?}");
+        assert!((own.afloat.as_ref().unwrap().draft_m - 0.05).abs() < 1e-9, "{at}: {own:?}");
+        assert!(find(&found, "off_draft").is_none(), "{at}: {:#?}", found.findings);
+        let bottom = scene(&text).build::<2>().unwrap().setup.solids[2].pose.position[1] - 0.05;
+        assert!((bottom - 0.15).abs() < 1e-9, "{at}: {bottom} m");
+    }
+    let high =
+        report(&format!("{TANK}{BASINS}{}", block("b", [0.3, 0.1], "x = 1.2, bottom = 0.35", "density = 500.0")));
+    assert!(find(&high, "off_draft").unwrap().what.contains("starts 0.2 m, 10 dp, above its draft of 0.05 m"));
+}
+
+#[test]
+fn a_body_in_the_water_of_a_hull_has_its_draft_there() {
+    let dock = "[[water]]\ninside = \"barge\"\nfill = { box = { min = [0.5, 0.08], max = [1.1, 0.24] } }\n";
+    let found = |bottom: f64| {
+        let boat = block("b", [0.3, 0.1], &format!("x = 0.8, bottom = {bottom}"), "density = 500.0");
+        report(&format!("{TANK}{SEA}{dock}{}{boat}", barge("fixed = true", "x = 0.5, y = 0.08")))
+    };
+    let rests = found(0.19);
+    let own = summary(&rests, "b");
+    assert!((own.draft_m - 0.05).abs() < 1e-9 && (own.displaced_kg - 15.0).abs() < 1e-6, "{own:?}");
+    assert!(find(&rests, "off_draft").is_none() && find(&rests, "other_level").is_none(), "{:#?}", rests.findings);
+    let high = found(0.25);
+    let note = find(&high, "off_draft").unwrap();
+    assert!(note.what.contains("above its draft of 0.05 m") && note.mend.contains("bottom = 0.19"), "{note:?}");
+}
+
+#[test]
+fn water_without_a_particle_is_refused() {
+    let refused = |more: &str, words: &[&str]| {
+        let error = scene(&format!("{TANK}{SEA}{more}")).build::<2>().map(drop).expect_err("refused").to_string();
+        words.iter().for_each(|word| assert!(error.contains(word), "{word} is not in\n{error}"));
+    };
+    let block = "[[solid]]\nname = \"k\"\nfixed = true\nshape = { box = { size = [0.4, 0.2] } }\nat = { x = 0.8, bottom = 0.1 }\n";
+    // In a block, below the floor, and inside an earlier water.
+    for [min, max] in [["0.7, 0.12", "0.9, 0.28"], ["0.3, -0.06", "0.9, -0.02"], ["0.1, 0.1", "0.3, 0.3"]] {
+        let water = format!("[[water]]\nfill = {{ box = {{ min = [{min}], max = [{max}] }} }}\n");
+        refused(&format!("{block}{water}"), &["water.1.fill", "no particle of this water is left"]);
+    }
+    // Beside the hull that it names.
+    let dry = barge("fixed = true", "x = 0.5, y = 0.3");
+    let inside = "[[water]]\ninside = \"barge\"\nfill = { box = { min = [1.3, 0.3], max = [1.5, 0.36] } }\n";
+    refused(&format!("{dry}{inside}"), &["water.1.fill", "meets no hollow of \"barge\""]);
+}
+
+/// The dock holds 0.6 m × 0.16 m of its own water, 240 particles, and none of the sea around it.
+#[test]
+fn a_hull_with_water_of_its_own_keeps_the_sea_out() {
+    let dock = barge("fixed = true", "x = 0.5, y = 0.08").replace("dry = true\n", "");
+    let own = "[[water]]\ninside = \"barge\"\nlevel = 0.24\nfill = { box = { min = [0.5, 0.08], max = [1.1, 0.4] } }\n";
+    let built = scene(&format!("{TANK}{SEA}{own}{dock}")).build::<2>().unwrap();
+    let within = built.setup.water.iter().filter(|x| x[0] > 0.5 && x[0] < 1.1 && x[1] > 0.08);
+    let (count, top) = within.fold((0, 0.0f64), |(count, top), x| (count + 1, top.max(x[1])));
+    assert!(count == 240 && top < 0.24, "{count} particles to {top} m");
+}
+
+#[test]
+fn a_probe_beyond_a_symmetry_plane_is_told_with_its_mirror_image() {
+    let probes = "[[probe]]\nname = \"p\"\npressure = [0.3, 0.1]\n[[probe]]\nname = \"e\"\nelevation = { x = 1.3 }\n\
+                  [[probe]]\nname = \"s\"\nflow = { from = [0.3, 0.0], to = [0.3, 0.5] }\n";
+    let found = report(&format!("symmetry = {{ x = 0.8 }}\n{TANK}{SEA}{probes}"));
+    let told: Vec<_> = found.findings.iter().filter(|finding| finding.topic == "probe_outside").collect();
+    assert_eq!(told.len(), 2, "{told:#?}");
+    for (finding, name) in told.iter().zip(["\"p\"", "\"s\""]) {
+        assert!(finding.what.contains(name) && finding.mend.contains("x = 1.3"), "{finding:?}");
+    }
+}
+
+#[test]
+fn joints_that_are_not_rigid_are_named_beside_gm() {
+    let joined = |kind: &str| {
+        let raft = block("b", [0.4, 0.2], "x = 0.8, draft = \"equilibrium\"", "density = 400.0");
+        let mast = block("m", [0.08, 0.3], "x = 0.8, bottom = 0.55", "density = 200.0");
+        let joint = format!("[[joint]]\nname = \"j\"\nkind = \"{kind}\"\nbetween = [\"b\", \"m\"]\nat = [0.8, 0.55]\n");
+        report(&format!("{TANK}{SEA}{raft}{mast}{joint}"))
+    };
+    assert!(find(&joined("hinge"), "loose_joint").unwrap().what.contains("\"b\" with \"m\" take joint \"j\" as rigid"));
+    assert!(find(&joined("fixed"), "loose_joint").is_none());
+}
+
+/// A box of 0.4 m × 0.2 m, half as dense as water, hinged 0.4 m beside its middle at the still level. About the hinge the waterplane
+/// gives the stiffness ρ g (0.6³ − 0.2³)/3 N m, less that of the buoyancy of 40 kg, 0.05 m below the hinge. With its mass 0.1 m off the
+/// middle the moment is −40 g · 0.1 N m. With a motor of 10 N m it is 10 N m.
+#[test]
+fn a_body_on_a_hinge_out_of_balance_is_told_with_its_turn() {
+    let hinged = |free: &str, motor: &str| {
+        let joint = format!("[[joint]]\nname = \"j\"\nkind = \"hinge\"\nbetween = [\"b\"]\nat = [0.4, 0.4]\n{motor}\n");
+        report(&format!("{TANK}{SEA}{}{joint}", block("b", [0.4, 0.2], "x = 0.8, draft = \"equilibrium\"", free)))
+    };
+    let stiffness = 9.81 * (1000.0 * (0.6f64.powi(3) - 0.2f64.powi(3)) / 3.0 - 40.0 * 0.05);
+    let off_centre = ("density = 500.0, centre_offset = [0.1, 0.0]", "", -40.0 * 9.81 * 0.1);
+    for (free, motor, moment) in [off_centre, ("density = 500.0", "motor = { torque = 10.0 }", 10.0)] {
+        let found = hinged(free, motor);
+        let note = find(&found, "lists").unwrap_or_else(|| panic!("{:#?}", found.findings));
+        let words: Vec<f64> = note.what.split([' ', '°']).filter_map(|word| word.parse().ok()).collect();
+        // Three digits are printed.
+        assert!((words[0] / moment - 1.0).abs() < 5e-3, "{}", note.what);
+        let degrees = (moment / stiffness).abs().to_degrees();
+        assert!((words[1] / degrees - 1.0).abs() < 5e-3, "{} for {degrees}", note.what);
+    }
+    assert!(find(&hinged("density = 500.0", ""), "lists").is_none());
+}
+
+/// A floor of a quarter of dp carries the water on it; without a floor the water falls.
+#[test]
+fn a_thin_floor_carries_the_water() {
+    let tank = |points: &str| {
+        format!(
+            "dimension = 2\ndp = 0.02\nuntil = 1.0\nframes = \"off\"\n[[water]]\n\
+             fill = {{ box = {{ min = [0.0, 0.0], max = [1.0, 0.4] }} }}\n[[solid]]\nname = \"wall\"\nfixed = true\n\
+             shape = {{ polyline = {{ points = [{points}], thickness = 0.005 }} }}\n"
+        )
+    };
+    let with_floor = report(&tank("[0.0, 0.7], [0.0, 0.0], [1.0, 0.0], [1.0, 0.7]"));
+    assert!(find(&with_floor, "water_in_air").is_none(), "{:#?}", with_floor.findings);
+    assert!(find(&report(&tank("[0.0, 0.7], [0.0, -0.2]")), "water_in_air").is_some());
+}
+
+#[test]
+fn a_release_after_the_removal_is_refused_at_its_key() {
+    let body = block("b", [0.4, 0.2], "x = 0.8, draft = \"equilibrium\"", "density = 500.0, release = 0.8");
+    let refused = |until: &str| Scene::parse(&format!("{TANK}{SEA}{body}until = {until}\n"), Path::new(""), &[]);
+    let error = refused("0.5").expect_err("refused").to_string();
+    assert!(error.contains("free.release") && error.contains("after its removal at 0.5 s"), "{error}");
+    assert!(refused("0.9").is_ok());
+}
