@@ -86,6 +86,29 @@ fn a_formula_without_a_value_during_the_run_is_refused_with_its_time() {
     }
 }
 
+/// Between its samples such a law gave a body a speed without a meaning. The message gives the place of the pole, and a peak of the same
+/// height is accepted.
+#[test]
+fn a_law_that_grows_without_bound_during_the_run_is_refused_with_its_time() {
+    let slider =
+        "[[joint]]\nname = \"j\"\nkind = \"slider\"\nbetween = [\"box\"]\nalong = [0.0, 1.0]\nat = [1.0, 0.5]\n";
+    let force = "[[force]]\nname = \"f\"\non = \"box\"\nforce = [\"LAW\", 0.0]\n";
+    let motor = format!("{slider}motor = {{ force = \"LAW\" }}\n");
+    let wind = "[[wind]]\non = [\"box\"]\nvelocity = [\"LAW\", 0.0]\n";
+    for (name, more, key) in
+        [("force", force, "force.0.force"), ("wind", wind, "wind.0.velocity"), ("joint", &motor, "joint.0.motor.force")]
+    {
+        for (law, t) in [("1/(t-0.5)", "0.5"), ("1/(t-0.50037)", "0.5004"), ("tan(pi*t/4)", "2")] {
+            let words = [key, "grows without bound", &format!("t = {t} s")];
+            assert_refused(&format!("pole-{name}"), &scene(REST, &more.replace("LAW", law)), &[], &words);
+        }
+        let peak = scene(REST, &more.replace("LAW", "20/(1+(1e3*(t-0.5))^2)"));
+        assert_not_found(&format!("peak-{name}"), &peak, &[], "without bound");
+    }
+    let gravity = scene(REST, "").replace("until", "gravity = [\"1/(t-0.5)\", -9.81]\nuntil");
+    assert_refused("pole-gravity", &gravity, &[], &["scene.toml:3", "gravity", "grows without bound at t = 0.5 s"]);
+}
+
 /// A line of less than a hundredth of its length is not computed: the winch would stop there without a word.
 #[test]
 fn a_winch_that_takes_in_the_whole_line_is_refused_with_the_time() {
