@@ -479,6 +479,38 @@ fn a_statistic_after_the_run_is_found_and_a_crate_on_a_raft_does_not_capsize() {
     assert_found("afloat", &scene(REST, &afloat), &[], &["\"crate\" will turn over"]);
 }
 
+/// The pressure is that of a plane sound wave, ρ c₀ V with c₀ = 10 √(9.81 × 0.5) = 22.1 m/s. Water that moves along feels nothing, and
+/// neither does the air.
+#[test]
+fn a_driven_solid_that_sets_out_with_a_speed_in_water_is_a_finding() {
+    let plate = |law: &str| {
+        let plate =
+            "[[solid]]\nname = \"plate\"\nshape = { box = { size = [0.2, 0.2] } }\nat = { x = 0.4, y = 0.25 }\n";
+        scene(REST, &format!("{plate}driven = {{ along = [1.0, 0.0], distance = {{ formula = \"{law}\" }} }}\n"))
+    };
+    let sudden = plate("0.3*t");
+    assert_found("sudden", &sudden, &[], &["\"plate\" sets out at 0.3 m/s", "6644 Pa", "rate 0 at the start"]);
+    let along = sudden.replace("[2.0, 0.5] } }", "[2.0, 0.5] } }\nvelocity = [0.3, 0.0]");
+    assert_not_found("along", &along, &[], "sets out");
+    assert_not_found("smooth", &plate("0.05*(1-cos(2*pi*t))"), &[], "sets out");
+    assert_not_found("in-air", &scene("{ formula = \"0.3*t\" }", ""), &[], "sets out");
+}
+
+/// A current of 1.2 m²/s in water 0.3 m deep goes at 4 m/s, whatever the water does at the start; c₀ from the depth is 17 m/s.
+#[test]
+fn the_target_of_a_current_counts_as_a_speed() {
+    let channel = |discharge: f64| {
+        format!(
+            "dimension = 2\ndp = 0.05\nuntil = 2.0\nframes = \"off\"\nperiodic = {{ x = [0.0, 2.0] }}\n\
+             current = {{ along = \"x\", discharge = {discharge} }}\n\
+             [[water]]\nfill = {{ box = {{ min = [0.0, 0.0], max = [2.0, 0.3] }} }}\nvelocity = [0.4, 0.0]\n\
+             [[solid]]\nname = \"bed\"\nfixed = true\nshape = {{ box = {{ size = [5.0, 0.3] }} }}\nat = {{ x = 1.0, y = -0.15 }}\n"
+        )
+    };
+    assert_found("current", &channel(1.2), &[], &["that of the current, 4 m/s", "c0 = 40"]);
+    assert_not_found("slow-current", &channel(0.12), &[], "speed of sound");
+}
+
 #[test]
 fn a_law_that_takes_a_solid_out_of_the_scene_is_a_finding() {
     // The gate is 0.7 m above the water. The tank has walls of 4 dp: with the gate the scene is about 2.4 × 1.6 m.
@@ -495,6 +527,9 @@ fn a_law_that_takes_a_solid_out_of_the_scene_is_a_finding() {
         &[],
         &["\"gate\"", "30 m/s", "sound goes at 22.1 m/s"],
     );
+    // 0.1 m in 1 µs, between two of the times at which the law is looked at.
+    let jump = law("{ formula = \"0.1*max(0,min(1,(t-0.50003)*1e6))\" }");
+    assert_found("jump-in-formula", &jump, &[], &["\"gate\"", "100000 m/s at 0.5 s", "sound goes at 22.1 m/s"]);
     let slow = inspected("slow", &law("{ formula = \"0.1*sin(30*t)\" }"), &[]).unwrap();
     assert!(!slow.iter().any(|(_, text)| text.contains("the law of")), "{slow:?}");
     // Values of the same size are values.
