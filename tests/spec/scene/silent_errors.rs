@@ -511,6 +511,17 @@ fn the_target_of_a_current_counts_as_a_speed() {
     assert_not_found("slow-current", &channel(0.12), &[], "speed of sound");
 }
 
+/// A triangle of 0.4 ms has an impulse that a step of some ms does not meet; with four steps it does.
+#[test]
+fn a_pulse_of_a_force_that_is_shorter_than_the_steps_is_a_finding() {
+    let force = |half: &str| {
+        let law = format!("2e4*max(0,1-abs(t-0.5003)/{half})");
+        scene(REST, &format!("[[force]]\nname = \"f\"\non = \"box\"\nforce = [\"{law}\", 0.0]\n"))
+    };
+    assert_found("pulse", &force("2e-4"), &[], &["force \"f\"", "at t = 0.5 s", "dt_max"]);
+    assert_not_found("long-pulse", &force("0.02"), &[], "has a pulse");
+}
+
 #[test]
 fn a_law_that_takes_a_solid_out_of_the_scene_is_a_finding() {
     // The gate is 0.7 m above the water. The tank has walls of 4 dp: with the gate the scene is about 2.4 × 1.6 m.
