@@ -511,6 +511,36 @@ fn the_target_of_a_current_counts_as_a_speed() {
     assert_not_found("slow-current", &channel(0.12), &[], "speed of sound");
 }
 
+/// A damping zone that begins behind a paddle damps its waves, and one in a current brings the current to rest.
+#[test]
+fn damping_zones_over_a_paddle_or_in_a_current_are_findings() {
+    let flume = |zone: &str| {
+        format!(
+            "dimension = 2\ndp = 0.02\nuntil = 4.0\nframes = \"off\"\n\
+             [[water]]\nfill = {{ box = {{ min = [0.0, 0.0], max = [6.0, 0.3] }} }}\n\
+             [[solid]]\nname = \"tank\"\nfixed = true\nshape = {{ tank = {{ size = [6.4, 0.6] }} }}\nat = {{ x = -0.4 }}\n\
+             [[solid]]\nname = \"p\"\nshape = {{ box = {{ size = [0.1, 0.6] }} }}\nat = {{ x = -0.05, bottom = 0.0 }}\n\
+             driven = {{ along = [1, 0], wave = {{ regular = {{ height = 0.1, period = 1.3 }} }} }}\n[[damping]]\n{zone}\n"
+        )
+    };
+    // 0.2/1.2 of the zone, squared.
+    let behind = flume("from = [-0.2, 0]\nto = [1.0, 0]");
+    assert_found("behind", &behind, &[], &["0.0278 of its strength at \"p\"", "ahead of the paddle"]);
+    let across = flume("from = [1.0, 0]\nto = [-0.2, 0]");
+    assert_found("across", &across, &[], &["0.694 of its strength at \"p\"", "ahead of the paddle"]);
+    assert_not_found("far-zone", &flume("from = [3.0, 0]\nto = [6.0, 0]"), &[], "which makes waves");
+    let channel = |from: f64| {
+        format!(
+            "dimension = 2\ndp = 0.05\nuntil = 2.0\nframes = \"off\"\n\
+             [[water]]\nfill = {{ box = {{ min = [0.0, 0.0], max = [2.0, 0.3] }} }}\nvelocity = [0.4, 0.0]\n\
+             [[solid]]\nname = \"bed\"\nfixed = true\nshape = {{ box = {{ size = [5.0, 0.3] }} }}\nat = {{ x = 1.0, y = -0.15 }}\n\
+             [[inflow]]\nx = 0.0\nvelocity = 0.4\n[[outflow]]\nx = 2.0\nvelocity = 0.4\n[[damping]]\nfrom = [{from}, 0]\nto = [5.0, 0]\n"
+        )
+    };
+    assert_found("outflow", &channel(1.0), &[], &["takes the current of 0.4 m/s"]);
+    assert_not_found("beyond", &channel(4.0), &[], "takes the current");
+}
+
 /// A triangle of 0.4 ms has an impulse that a step of some ms does not meet; with four steps it does.
 #[test]
 fn a_pulse_of_a_force_that_is_shorter_than_the_steps_is_a_finding() {
