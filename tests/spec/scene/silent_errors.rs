@@ -541,6 +541,20 @@ fn damping_zones_over_a_paddle_or_in_a_current_are_findings() {
     assert_not_found("beyond", &channel(4.0), &[], "takes the current");
 }
 
+/// A reflection in water ten times as deep as that of the scene had a wave number that says nothing of its waves.
+#[test]
+fn a_reflection_for_another_depth_is_a_finding() {
+    let scene = |depth: f64| {
+        let statistic = format!("[[statistic]]\nreflection = [\"row\"]\nperiod = 1.3\ndepth = {depth}\n");
+        scene(
+            REST,
+            &format!("[[probe]]\nname = \"row\"\nelevation = {{ from = 0.2, to = 0.6, count = 3 }}\n{statistic}"),
+        )
+    };
+    assert_found("deep", &scene(5.0), &[], &["statistic.0", "5 m deep", "0.5 m deep"]);
+    assert_not_found("own-depth", &scene(0.5), &[], "m deep, and that of the scene");
+}
+
 /// A triangle of 0.4 ms has an impulse that a step of some ms does not meet; with four steps it does.
 #[test]
 fn a_pulse_of_a_force_that_is_shorter_than_the_steps_is_a_finding() {
