@@ -541,6 +541,21 @@ fn damping_zones_over_a_paddle_or_in_a_current_are_findings() {
     assert_not_found("beyond", &channel(4.0), &[], "takes the current");
 }
 
+/// The same as in gravity that changes: the water is not at rest, and theory has no waves for it.
+#[test]
+fn waves_in_a_carriage_of_changing_velocity_are_refused() {
+    let flume = |velocity: &str| {
+        format!(
+            "dimension = 2\ndp = 0.05\nuntil = 4.0\nframes = \"off\"\ntowed = {{ along = \"x\", velocity = {velocity} }}\n\
+             [[water]]\nfill = {{ box = {{ min = [0.0, 0.0], max = [6.0, 0.5] }} }}\n\
+             [[solid]]\nname = \"p\"\nshape = {{ box = {{ size = [0.2, 1.0] }} }}\nat = {{ x = -0.1, bottom = 0.0 }}\n\
+             driven = {{ along = [1, 0], wave = {{ regular = {{ height = 0.1, period = 1.3 }} }} }}\n"
+        )
+    };
+    assert_refused("towed-waves", &flume("\"0.3*sin(t)\""), &[], &["towed.velocity", "constant velocity"]);
+    assert_not_found("steady-tow", &flume("0.3"), &[], "constant velocity");
+}
+
 /// A reflection in water ten times as deep as that of the scene had a wave number that says nothing of its waves.
 #[test]
 fn a_reflection_for_another_depth_is_a_finding() {
