@@ -83,6 +83,8 @@ impl<const D: usize> PreflightContext<'_, D> {
         if let Paddle::Flap { arm } = law.paddle() {
             findings.extend(self.open_below(solid, &site, under));
             findings.extend(hinge_aside(name, motion, &site, arm));
+            let hinge = motion.hinge_height().unwrap_or(f64::NEG_INFINITY);
+            findings.extend(self.reaches_below_hinge(name, hinge - bottom.max(level - depth), hinge));
         }
         if law.depth() > depth * (1.0 + DEEPER) || law.depth() < depth * (1.0 - SHALLOWER) - self.dp() {
             let what = format!(
@@ -95,6 +97,20 @@ impl<const D: usize> PreflightContext<'_, D> {
     }
 
     /// A finding about a flap whose lower edge is `under` (m) above the bed, if more than a dp of this height is open: no solid
+    /// A finding about a flap that reaches by `below` (m), more than a dp, below its hinge at the height `hinge` (m): that part moves
+    /// against the upper one, and takes from its waves.
+    fn reaches_below_hinge(&self, name: &str, below: f64, hinge: f64) -> Option<Finding> {
+        (below > self.dp() * (1.0 + 1e-6)).then(|| {
+            let what = format!(
+                "the flap \"{name}\" reaches {} m below its hinge: that part moves back, the waves become lower, and theory is for a \
+                 fixed wall there",
+                three_digits(below)
+            );
+            let mend = format!("bottom = {}, with a fixed solid of its thickness below", three_digits(hinge));
+            Finding::warning("lifted_paddle", what, mend)
+        })
+    }
+
     /// is there.
     fn open_below(&self, flap: &Solid<D>, site: &WavemakerSite<D>, under: f64) -> Option<Finding> {
         if under <= self.dp() {

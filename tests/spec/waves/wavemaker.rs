@@ -220,6 +220,16 @@ fn a_reversed_damping_zone_and_one_without_water_are_findings() {
     assert!(absent.iter().all(|(text, topic)| finding(text, topic).is_none()));
 }
 
+/// The part below the hinge takes from the wave. A flap that ends at its hinge, on a fixed wall, is that of theory.
+#[test]
+fn a_flap_that_reaches_below_its_hinge_is_a_finding() {
+    let flap = flume("hinge = [0.0, 0.1], wave = { regular = { height = 0.03, period = 1.2 } }");
+    let found = finding(&flap, "lifted_paddle").expect("the hinge is 0.1 m above the lower edge");
+    assert!(found.what.contains("reaches 0.1 m below its hinge") && found.mend.contains("bottom = 0.1"), "{found:?}");
+    let wall = "\n[[solid]]\nname = \"sill\"\nfixed = true\nshape = { box = { size = [0.1, 0.1] } }\nat = { x = -0.05, y = 0.05 }\n";
+    assert_eq!(finding(&(flap.replacen("bottom = 0.0", "bottom = 0.1", 1) + wall), "lifted_paddle"), None);
+}
+
 #[test]
 fn a_paddle_placed_or_sized_against_wavemaker_theory_is_a_finding() {
     let sized = |height: f64, bottom: f64| {
