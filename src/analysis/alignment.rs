@@ -66,8 +66,8 @@ pub(crate) fn align(
     (aligned, arrival)
 }
 
-/// Returns the delay (s) of `sim` within ±0.3 s for which N against `reference` is least, or `None` if no such delay
-/// exists, for example where the reference is zero.
+/// Returns the delay (s) of `sim` within ±0.3 s for which N against `reference` is least. Returns `None` if no such delay
+/// exists, for example where the reference is zero, or if it is the first or last that can be tried: N then goes on falling.
 ///
 /// The function tries every 2 ms, in order of magnitude, and refines the best delay by golden-section search to a
 /// microsecond.
@@ -93,7 +93,11 @@ pub fn best_delay(sim: &TimeSeries, reference: &TimeSeries) -> Option<f64> {
         }
     }
     let (middle, least) = best?;
-    let around = [(middle - STEP).max(-MAX_DELAY), (middle + STEP).min(MAX_DELAY)];
+    let around = [middle - STEP, middle + STEP];
+    let is_tried = |delay: f64| delay.abs() <= MAX_DELAY + 0.5 * STEP && n(delay).is_some();
+    if !around.into_iter().all(is_tried) {
+        return None;
+    }
     let fine = least_by_golden_section(around, 1e-6, |delay| n(delay).unwrap_or(f64::INFINITY));
     Some(if n(fine).is_some_and(|n| n < least) { fine } else { middle })
 }

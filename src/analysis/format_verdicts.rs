@@ -39,10 +39,15 @@ pub(crate) fn format_bound(bound: Option<Score>) -> String {
 pub(crate) fn format_outcome(verdict: &Verdict) -> String {
     match (verdict.passed, &verdict.note) {
         (Some(true), _) => "kept".into(),
-        (Some(false), _) => "MISSED".into(),
-        (None, Some(note)) => note.lines().next().unwrap_or("").to_string(),
+        (Some(false), Some(note)) => format!("MISSED: {}", first_line(note)),
+        (Some(false), None) => "MISSED".into(),
+        (None, Some(note)) => first_line(note).into(),
         (None, None) => String::new(),
     }
+}
+
+fn first_line(text: &str) -> &str {
+    text.lines().next().unwrap_or_default()
 }
 
 /// A column of the table: its head, and the function that returns its text for a verdict. The text is empty if the

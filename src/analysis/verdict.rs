@@ -189,6 +189,8 @@ impl ReferenceCheck {
                 Align::Start(_) => (None, Some(ArrivalTimes { run: Some(start), reference: Some(0.0) })),
                 how => align(shown, &reference, how, window(&self.plan, start)),
             };
+            let is_without = verdict.aligned.is_none() && verdict.note.is_none();
+            verdict.note = if is_without { why_unaligned(how, verdict.arrival) } else { verdict.note };
         }
         verdict.judged()
     }
@@ -317,6 +319,23 @@ impl Verdict {
             && within(bound.aligned_relative_l2, self.aligned.map(|a| a.relative_l2))
             && within(bound.delay, self.aligned.map(|a| a.delay.abs()))
             && within(bound.period, self.metrics.period)
+    }
+}
+
+/// Returns the reason why `how` gives no delay; `None` if it is not meant to.
+fn why_unaligned(how: Align, arrival: Option<ArrivalTimes>) -> Option<String> {
+    match (how, arrival) {
+        (Align::Start(_), _) => None,
+        (Align::Crossing(threshold), Some(ArrivalTimes { run: None, .. })) => {
+            Some(format!("the run never passes {threshold}: not aligned"))
+        }
+        (Align::Crossing(threshold), Some(ArrivalTimes { reference: None, .. })) => {
+            Some(format!("the reference never passes {threshold}: not aligned"))
+        }
+        (Align::Crossing(_), _) => Some("moved by the delay, the reference leaves the run: not aligned".into()),
+        (Align::Best, _) => Some(
+            "the best delay is beyond those that can be tried, 0.3 s and a tenth of the reference: not aligned".into(),
+        ),
     }
 }
 

@@ -5,6 +5,7 @@ mod dimension;
 pub mod expression;
 #[doc(hidden)]
 pub mod format;
+mod poles;
 #[doc(hidden)]
 pub mod simd;
 #[doc(hidden)]
@@ -14,5 +15,6 @@ mod vector;
 
 pub use config::{BoxConfig, NumberOrArray};
 pub(crate) use dimension::in_dimension;
+pub(crate) use poles::find_pole;
 pub(crate) use vector::rotated_tensor;
 pub use vector::{Bivector, Bounds, Matrix, Pose, Vector};

@@ -129,6 +129,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         }
         self.dry_zones(findings);
         self.check_statistic_periods(&waves, findings);
+        self.check_reading_intervals(&waves, findings);
         waves
     }
 

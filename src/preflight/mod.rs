@@ -23,6 +23,7 @@ mod wavemaker_checks;
 mod probe_positions;
 mod reynolds;
 mod run_size;
+mod short_pulses;
 mod sound_speed;
 mod wavemaker_site;
 mod driven_motion;
@@ -244,6 +245,7 @@ pub fn preflight<const D: usize>(
     lifetimes::check(&look, &mut findings);
     lifetimes::check_strength(&look, &mut findings);
     driven_paths::check(&look, &mut findings);
+    short_pulses::check(&look, &step, &mut findings);
     let (waves, absorbers) = (look.generated_waves(&mut findings), look.absorbers());
     let face_waves = face_waves::face_waves(&look, &mut findings);
     let flows = reynolds::body_flows(&look, &waves, &mut findings);

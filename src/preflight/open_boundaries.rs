@@ -1,6 +1,6 @@
 //! Faces whose inflow and outflow differ or do not fit the water at the start, and currents too slow to take the surface under a body.
 
-use super::{Finding, PreflightContext};
+use super::{Finding, PreflightContext, wavemaker_site::zone_extent};
 use crate::{
     math::{
         Vector,
@@ -22,6 +22,35 @@ pub(super) fn check<const D: usize>(context: &PreflightContext<D>, findings: &mu
     check_discharges(context, findings);
     check_start(context, findings);
     check_surface(context, findings);
+    check_damping(context, findings);
+}
+
+/// Adds a warning for each damping zone in a current that is held, in water that passes a towed frame, or at a face with a velocity. A
+/// zone brings water to rest over the ground of the scene.
+fn check_damping<const D: usize>(context: &PreflightContext<D>, findings: &mut Vec<Finding>) {
+    let (system, dp) = (context.system, context.dp());
+    let times = || [0.0].into_iter().chain(SAMPLE_TIMES).map(|part| part * context.end_time());
+    let driven = times().flat_map(|t| driven_speeds(system, t)).fold(0.0, f64::max);
+    for zone in system.sponge_layers() {
+        let damped = || system.fluid().r.iter().filter(|x| zone.rate(x) > 0.0);
+        let speed_at = |face: &OpenBoundary<D>, x: &Vector<D>| {
+            times().filter_map(|t| face.outward_velocity(x, t)).map(f64::abs).fold(0.0, f64::max)
+        };
+        let at_faces = system.open_boundaries().iter().flat_map(|face| {
+            damped().filter(|x| face.beyond(x) > -dp).map(move |x| speed_at(face, x)).collect::<Vec<_>>()
+        });
+        let passing = damped().next().map_or(0.0, |_| driven);
+        let fastest = at_faces.fold(passing, f64::max);
+        if fastest > 0.0 {
+            let what = format!(
+                "{} takes the current of {} m/s as it takes waves: it brings all water to rest",
+                zone_extent(zone),
+                three_digits(fastest)
+            );
+            let mend = "leave it out; a face with  absorb = true  lets waves leave with the current".into();
+            findings.push(Finding::warning("damped_current", what, mend));
+        }
+    }
 }
 
 /// Adds a note if, in 2-D, a current with U² < g dp meets a body in the surface. The stagnation head U²/(2 g) then does not take

@@ -4,10 +4,14 @@ use serde::Serialize;
 
 use super::{Finding, PreflightContext, surface_samples};
 use crate::{
-    math::format::{three_digits, two_digits_down, two_digits_up},
+    math::{
+        Vector,
+        format::{three_digits, two_digits_down, two_digits_up},
+    },
     model::TimeScheme,
     solid::{Role, Solid},
     sph::boundary::Slip,
+    system::driven_speeds,
 };
 
 /// Least ratio of the speed of sound to the largest speed. Densities vary by the inverse square of this ratio,
@@ -71,12 +75,14 @@ pub struct StepSizeLimits {
 }
 
 impl<const D: usize> PreflightContext<'_, D> {
-    /// Returns the speeds that are known in advance: of long waves, driven faces, falling bodies, and water and bodies at the
-    /// start.
+    /// Returns the speeds that are known in advance: of long waves, the current, driven faces, falling bodies, and water and bodies
+    /// at the start.
     pub(super) fn sound_speed(&self, findings: &mut Vec<Finding>) -> SoundSpeed {
         let long = (self.g * self.still_water.depth).sqrt();
         let water = self.system.fluid().v.iter().map(|v| v.norm()).fold(0.0, f64::max);
         let mut expected = vec![("long waves, √(g·depth)".to_string(), long), ("the water at the start".into(), water)];
+        let driven = (0..=TIMES_SEEN).flat_map(|k| driven_speeds(self.system, self.time_seen(k)));
+        expected.push(("the current".into(), driven.fold(0.0, f64::max)));
         for (i, solid) in self.solids().iter().enumerate() {
             let name = &solid.spec.name;
             match &solid.spec.role {
@@ -110,17 +116,27 @@ impl<const D: usize> PreflightContext<'_, D> {
     /// The largest speed (m/s) with which a face of driven solid `i` pushes water below the still level. With free slip, only its
     /// component along the outward normal counts: a receding face pushes no water.
     pub(super) fn driven_speed(&self, i: usize) -> f64 {
+        let speed = |k: usize| self.pushing_speed(i, self.time_seen(k), &Vector::zeros());
+        (0..=TIMES_SEEN).map(speed).fold(0.0, f64::max)
+    }
+
+    /// Time number `k` (s) at which motions are sampled.
+    fn time_seen(&self, k: usize) -> f64 {
+        self.end_time() * k as f64 / TIMES_SEEN as f64
+    }
+
+    /// The largest speed (m/s) at time `t` (s) with which a face of driven solid `i` pushes water of the velocity `water` (m/s) below
+    /// the still level.
+    pub(super) fn pushing_speed(&self, i: usize, t: f64, water: &Vector<D>) -> f64 {
         let Role::Driven(motion) = &self.solids()[i].spec.role else { return 0.0 };
         let slips = self.system.model().slip == Slip::Free;
+        let now = motion.kinematics(&self.solids()[i].spec.pose, t);
         let mut fastest: f64 = 0.0;
-        for k in 0..=TIMES_SEEN {
-            let now = motion.kinematics(&self.solids()[i].spec.pose, self.end_time() * k as f64 / TIMES_SEEN as f64);
-            for face in surface_samples::thinned(&self.surface_samples[i], PLACES_SEEN) {
-                let x = now.pose.point(&face.x);
-                if x[D - 1] <= self.still_water.level {
-                    let v = now.velocity + now.spin.velocity_at(&(x - now.centre));
-                    fastest = fastest.max(if slips { (now.pose.rotation * face.n).dot(&v) } else { v.norm() });
-                }
+        for face in surface_samples::thinned(&self.surface_samples[i], PLACES_SEEN) {
+            let x = now.pose.point(&face.x);
+            if x[D - 1] <= self.still_water.level {
+                let v = now.velocity + now.spin.velocity_at(&(x - now.centre)) - water;
+                fastest = fastest.max(if slips { (now.pose.rotation * face.n).dot(&v) } else { v.norm() });
             }
         }
         fastest

@@ -13,6 +13,7 @@ use crate::{
         format::{coordinates, three_digits, two_digits_down, two_digits_up},
     },
     plan::StatisticKind,
+    probe::ProbePlan,
     scene::world_bounds,
     solid::{PrescribedMotion, Solid},
     wavemaker::{self, LINEAR_SPEED_RATIO_MAX, LinearWave, Paddle, TheoryRegion, WaveProperties},
@@ -82,6 +83,8 @@ impl<const D: usize> PreflightContext<'_, D> {
         }
         if let Paddle::Flap { arm } = law.paddle() {
             findings.extend(self.open_below(solid, &site, under));
+            let hinge = motion.hinge_height().unwrap_or(f64::NEG_INFINITY);
+            findings.extend(self.reaches_below_hinge(name, hinge - bottom.max(level - depth), hinge));
             findings.extend(hinge_aside(name, motion, &site, arm));
         }
         if law.depth() > depth * (1.0 + DEEPER) || law.depth() < depth * (1.0 - SHALLOWER) - self.dp() {
@@ -92,6 +95,20 @@ impl<const D: usize> PreflightContext<'_, D> {
             );
             findings.push(Finding::warning("wrong_depth", what, format!("wave.depth = {}", three_digits(depth))));
         }
+    }
+
+    /// A finding about a flap that reaches by `below` (m), more than a dp, below its hinge at the height `hinge` (m): that part moves
+    /// against the upper one, and takes from its waves.
+    fn reaches_below_hinge(&self, name: &str, below: f64, hinge: f64) -> Option<Finding> {
+        (below > self.dp() * (1.0 + 1e-6)).then(|| {
+            let what = format!(
+                "the flap \"{name}\" reaches {} m below its hinge: that part moves back, the waves become lower, and theory is for a \
+                 fixed wall there",
+                three_digits(below)
+            );
+            let mend = format!("bottom = {}, with a fixed solid of its thickness below", three_digits(hinge));
+            Finding::warning("lifted_paddle", what, mend)
+        })
     }
 
     /// A finding about a flap whose lower edge is `under` (m) above the bed, if more than a dp of this height is open: no solid
@@ -218,6 +235,24 @@ impl<const D: usize> PreflightContext<'_, D> {
                 three_digits(*own)
             );
             findings.push(Finding::warning("stale_period", what, format!("period = {own:.4}")));
+        }
+    }
+
+    /// Adds a note for each gauge, and each probe of a motion, that reads less often than twice in the shortest period of a paddle: its
+    /// waves are then those of another period.
+    pub(super) fn check_reading_intervals(&self, waves: &[GeneratedWave], findings: &mut Vec<Finding>) {
+        let periods = waves.iter().filter_map(|wave| Some((wave.period_s?, &wave.solid)));
+        let Some((period, solid)) = periods.min_by(|a, b| a.0.total_cmp(&b.0)) else { return };
+        let swings = |probe: &&ProbePlan| matches!(probe.kind.key(), "elevation" | "motion");
+        for probe in self.plan.probes.iter().filter(swings).filter(|probe| probe.every > 0.5 * period) {
+            let what = format!(
+                "probe \"{}\" reads every {} s, and the waves of \"{solid}\" have {} s",
+                probe.name,
+                three_digits(probe.every),
+                three_digits(period)
+            );
+            let mend = format!("every = {} or less", two_digits_down(0.05 * period));
+            findings.push(Finding::note("slow_probe", what, mend));
         }
     }
 

@@ -16,6 +16,9 @@ use crate::{
 /// ends.
 const FACING: f64 = 0.05;
 
+/// Largest share of its height that a wave may lose on its first length to a damping zone at its paddle.
+const LARGEST_LOSS: f64 = 0.02;
+
 /// A paddle at rest, and the direction of its waves.
 pub(super) struct WavemakerSite<const D: usize> {
     /// The box around it, m.
@@ -136,7 +139,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         }
     }
 
-    /// Adds findings about damping zones that are shorter than half a wavelength, or at full strength at the paddle.
+    /// Adds findings about damping zones that are shorter than half a wavelength, or damp waves at the paddle.
     pub(super) fn misplaced_zones(&self, wave: &GeneratedWave, stand: &WavemakerSite<D>, findings: &mut Vec<Finding>) {
         let (zones, least) = (self.system.sponge_layers(), 0.5 * wave.length_m);
         if let Some(zone) = zones.iter().find(|zone| zone.length() < least * (1.0 - 1e-9)) {
@@ -149,19 +152,29 @@ impl<const D: usize> PreflightContext<'_, D> {
             let mend = format!("half a wave length, {} m, is the least, a whole one is better", two_digits_up(least));
             findings.push(Finding::warning("short_damping", what, mend));
         }
-        for zone in zones.iter().filter(|zone| zone.rate(&stand.face) >= zone.strength * (1.0 - 1e-9)) {
-            let what =
-                format!("{} is at its full strength at \"{}\", which makes waves", zone_extent(zone), wave.solid);
-            let mend = format!(
-                "`from` is where waves come from: from = {}, to = {}",
-                coordinates(&zone.to),
-                coordinates(&zone.from)
-            );
+        // The waves lose this share of their height, or more, on their first length.
+        let takes = |zone: &SpongeLayer<D>| 1.0 - (-zone.rate(&stand.face) * wave.length_m / wave.celerity_mps).exp();
+        for zone in zones.iter().filter(|zone| takes(zone) > LARGEST_LOSS) {
+            let share = zone.rate(&stand.face) / zone.strength;
+            let ends = [&zone.to, &zone.from].map(coordinates);
+            let (strength, mend) = match share > 1.0 - 1e-9 {
+                true => (
+                    "its full".into(),
+                    format!("`from` is where waves come from: from = {}, to = {}", ends[0], ends[1]),
+                ),
+                false => (
+                    format!("{} of its", three_digits(share)),
+                    "let it begin ahead of the paddle, beyond the place that the waves are to reach".into(),
+                ),
+            };
+            let (zone_m, name) = (zone_extent(zone), &wave.solid);
+            let what = format!("{zone_m} is at {strength} strength at \"{name}\", which makes waves");
             findings.push(Finding::warning("reversed_damping", what, mend));
         }
     }
 }
 
-fn zone_extent<const D: usize>(zone: &SpongeLayer<D>) -> String {
+/// The name of a damping zone.
+pub(super) fn zone_extent<const D: usize>(zone: &SpongeLayer<D>) -> String {
     format!("the damping zone from {} to {}", coordinates(&zone.from), coordinates(&zone.to))
 }

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Probe, ProbeDefinition, ProbeScope, axes, find_solid};
+use super::{Probe, ProbeDefinition, ProbeScope, axes, empty_row, find_solid};
 use crate::{
     coupling::LoadBreakdown,
     error::{Error, Result},
@@ -113,8 +113,9 @@ impl<const D: usize> Probe<D> for LoadBalanceProbe {
     }
 
     fn sample(&self, sim: &Simulation<D>) -> Vec<f64> {
-        let Some(shares) = sim.load_breakdown(self.solid) else {
-            return vec![f64::NAN; Probe::<D>::columns(self).len()];
+        let is_removed = sim.system().solids()[self.solid].is_removed();
+        let Some(shares) = sim.load_breakdown(self.solid).filter(|_| !is_removed) else {
+            return empty_row::<D>(self);
         };
         let kinds = shares.kinds().into_iter().filter(|(kind, _)| self.kinds.contains(kind)).map(|(_, load)| load);
         kinds.chain([shares.sum(), shares.change, shares.residual()]).flat_map(|load| load_components(&load)).collect()

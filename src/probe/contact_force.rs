@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Probe, ProbeConfig, ProbeDefinition, ProbeReads, ProbeScope, axes, find_solid, require_true};
+use super::{Probe, ProbeConfig, ProbeDefinition, ProbeReads, ProbeScope, axes, empty_row, find_solid, require_true};
 use crate::{error::Result, math::Vector, simulation::Simulation, solid::ContactForce, system::System};
 
 /// Example of a section with a list of contacts.
@@ -87,6 +87,9 @@ impl<const D: usize> Probe<D> for ContactForceProbe {
     }
 
     fn sample(&self, sim: &Simulation<D>) -> Vec<f64> {
+        if self.solids.iter().any(|&solid| sim.system().solids()[solid].is_removed()) {
+            return empty_row::<D>(self);
+        }
         let [first, second] = self.solids;
         let pair = [first.min(second), first.max(second)];
         match sim.contacts().iter().find(|contact| contact.between == pair) {

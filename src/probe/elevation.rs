@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    PointRowConfig, Probe, ProbeDefinition, ProbeLocation, ProbeRow, ProbeScope, column_at_place,
+    PointRowConfig, Probe, ProbeDefinition, ProbeLocation, ProbeRow, ProbeScope, column_at_place, empty_row,
     mounting::MountedPoint,
 };
 use crate::{
@@ -231,6 +231,9 @@ impl<const D: usize> Probe<D> for ElevationProbe<D> {
     }
 
     fn sample(&self, sim: &Simulation<D>) -> Vec<f64> {
+        if self.at.is_removed(sim.system()) {
+            return empty_row(self);
+        }
         let mut row = self.surface_heights(sim.system());
         let height = self.height(sim.system());
         row.iter_mut().for_each(|surface| *surface -= height);

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Probe, ProbeDefinition, ProbeReads, ProbeScope, axes, find_solid};
+use super::{Probe, ProbeDefinition, ProbeReads, ProbeScope, axes, empty_row, find_solid};
 use crate::{error::Result, simulation::Simulation, system::System};
 
 /// Plan of a probe of the force and torque of the water on a solid.
@@ -65,7 +65,11 @@ impl<const D: usize> Probe<D> for ForceProbe {
     }
 
     fn sample(&self, sim: &Simulation<D>) -> Vec<f64> {
-        let load = &sim.system().solids()[self.solid].load;
+        let solid = &sim.system().solids()[self.solid];
+        if solid.is_removed() {
+            return empty_row::<D>(self);
+        }
+        let load = &solid.load;
         load.force.iter().copied().chain(load.torque.axial()).collect()
     }
 }

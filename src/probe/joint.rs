@@ -44,7 +44,7 @@ impl ProbeDefinition for JointPlan {
 /// Measures the force (N) and torque (N m) that a joint exerts on its second solid by its locks and end stops. For a hinge or a
 /// slider it also measures the angle (deg) or position (m), its rate, the force of the motor, the power absorbed (W)
 /// and the energy absorbed (J). For a generic joint it also measures the positions (m) and rotations (deg) in the free
-/// modes.
+/// modes. Angles, positions and rates are NaN while the joint does not act.
 pub struct JointProbe {
     joint: usize,
     kind: JointKind,
@@ -109,17 +109,26 @@ impl<const D: usize> Probe<D> for JointProbe {
     fn sample(&self, sim: &Simulation<D>) -> Vec<f64> {
         let now = sim.joint_reading(self.joint);
         let mut row: Vec<f64> = now.force.iter().copied().chain(now.torque.axial()).collect();
+        // While the joint does not act, its solids are not in its frame.
+        let acts = sim.joint_acts(self.joint);
+        let if_acting = |x: f64| if acts { x } else { f64::NAN };
         let position = match self.kind {
             JointKind::Hinge => now.position.to_degrees(),
             JointKind::Slider => now.position,
             JointKind::Generic => {
-                let turned = |(x, &mode): (f64, &usize)| if mode < D { x } else { x.to_degrees() };
+                let turned = |(x, &mode): (f64, &usize)| if_acting(if mode < D { x } else { x.to_degrees() });
                 row.extend(sim.joint_coordinates(self.joint).into_iter().zip(&self.free).map(turned));
                 return row;
             }
             JointKind::Fixed | JointKind::Ball | JointKind::Tow => return row,
         };
-        row.extend([position, now.rate, now.motor_force, now.absorbed_power(), now.absorbed_energy]);
+        row.extend([
+            if_acting(position),
+            if_acting(now.rate),
+            now.motor_force,
+            now.absorbed_power(),
+            now.absorbed_energy,
+        ]);
         row
     }
 

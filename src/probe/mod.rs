@@ -92,7 +92,8 @@ pub trait Probe<const D: usize>: Send {
     /// Returns the name of each column. A name ends in the unit, as in `fx_N`.
     fn columns(&self) -> Vec<String>;
 
-    /// Returns the present value of each column. A value is NaN if the probe has nothing to measure, as at a dry place.
+    /// Returns the present value of each column. A value is NaN if the probe has nothing to measure, as at a dry place or on a
+    /// removed solid.
     fn sample(&self, sim: &Simulation<D>) -> Vec<f64>;
 
     /// Adjusts the reading `now` to continue the reading `before`, for an angle that passes 180° or a volume that
@@ -477,6 +478,11 @@ fn point<const D: usize>(at: &[f64], count: usize) -> Result<Vector<D>> {
         *xi = a;
     }
     Ok(x)
+}
+
+/// Returns the row of a probe of a solid that was removed.
+fn empty_row<const D: usize>(probe: &impl Probe<D>) -> Vec<f64> {
+    vec![f64::NAN; probe.columns().len()]
 }
 
 /// Returns the mean of a quantity of the water at the point `x` (m), weighted by V_b W and normalised (Shepard). The

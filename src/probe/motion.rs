@@ -7,7 +7,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Probe, ProbeDefinition, ProbeReads, ProbeScope, axes, find_solid};
+use super::{Probe, ProbeDefinition, ProbeReads, ProbeScope, axes, empty_row, find_solid};
 use crate::{
     error::Result,
     math::{Matrix, Vector},
@@ -104,7 +104,11 @@ impl<const D: usize> Probe<D> for MotionProbe<D> {
     }
 
     fn sample(&self, sim: &Simulation<D>) -> Vec<f64> {
-        let now = &sim.system().solids()[self.solid].kinematics;
+        let solid = &sim.system().solids()[self.solid];
+        if solid.is_removed() {
+            return empty_row(self);
+        }
+        let now = &solid.kinematics;
         let (centre, velocity) = match &self.point {
             Some(point) => {
                 let centre = now.pose.point(point);
@@ -127,9 +131,9 @@ impl<const D: usize> Probe<D> for MotionProbe<D> {
     }
 }
 
-/// Returns the angle (deg) nearest to `before` that differs from `now` by whole turns.
+/// Returns the angle (deg) nearest to `before` that differs from `now` by whole turns; `now` if `before` is NaN.
 pub(super) fn unwrapped(before: f64, now: f64) -> f64 {
-    now - 360.0 * ((now - before) / 360.0).round()
+    if before.is_nan() { now } else { now - 360.0 * ((now - before) / 360.0).round() }
 }
 
 /// Returns the angles (rad) of a rotation: one angle in 2-D; roll, pitch and yaw in 3-D.
@@ -163,5 +167,6 @@ mod tests {
     fn an_angle_goes_on_past_half_a_turn() {
         assert_eq!(unwrapped(179.0, -179.0), 181.0);
         assert_eq!(unwrapped(-725.0, -10.0), -730.0);
+        assert_eq!(unwrapped(f64::NAN, -10.0), -10.0, "the first angle of a joint that begins during the run");
     }
 }

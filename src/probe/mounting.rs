@@ -37,6 +37,11 @@ impl<const D: usize> MountedPoint<D> {
         self.solid.is_some()
     }
 
+    /// Whether it was a point of a solid that is removed.
+    pub(super) fn is_removed(&self, system: &System<D>) -> bool {
+        self.solid.is_some_and(|solid| system.solids()[solid].is_removed())
+    }
+
     /// Its place in the world, between periodic sides, m.
     pub(super) fn position(&self, system: &System<D>) -> Vector<D> {
         let on_solid = |solid: usize| system.wrapped(&system.solids()[solid].kinematics.pose.point(&self.at));

@@ -6,7 +6,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Probe, ProbeDefinition, ProbeReads, ProbeScope, axes, find_solid, pressure::pressure};
+use super::{Probe, ProbeDefinition, ProbeReads, ProbeScope, axes, empty_row, find_solid, pressure::pressure};
 use crate::{
     error::{Error, Result},
     math::{Bounds, BoxConfig, Vector},
@@ -118,6 +118,9 @@ impl<const D: usize> Probe<D> for PatchProbe<D> {
     fn sample(&self, sim: &Simulation<D>) -> Vec<f64> {
         let system = sim.system();
         let solid = &system.solids()[self.solid];
+        if solid.is_removed() {
+            return empty_row(self);
+        }
         let mut force = Vector::<D>::zeros();
         system.visit_boundary_forces(self.solid, &mut |i, f| {
             if self.behind[i - solid.boundary.start] {

@@ -4,7 +4,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::{
-    PointsConfig, Probe, ProbeDefinition, ProbeLocation, ProbeRow, ProbeScope, interpolate, mounting::MountedPoint,
+    PointsConfig, Probe, ProbeDefinition, ProbeLocation, ProbeRow, ProbeScope, empty_row, interpolate,
+    mounting::MountedPoint,
 };
 use crate::{
     error::Result,
@@ -87,6 +88,9 @@ impl<const D: usize> Probe<D> for PressureProbe<D> {
     }
 
     fn sample(&self, sim: &Simulation<D>) -> Vec<f64> {
+        if self.at.is_removed(sim.system()) {
+            return empty_row(self);
+        }
         vec![pressure(sim.system(), &self.at.position(sim.system()))]
     }
 }

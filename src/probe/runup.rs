@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Probe, ProbeDefinition, ProbeScope, find_solid};
+use super::{Probe, ProbeDefinition, ProbeScope, empty_row, find_solid};
 use crate::{error::Result, math::Vector, simulation::Simulation, system::System};
 
 /// Plan of a probe of the highest waterline on a solid.
@@ -66,6 +66,9 @@ impl<const D: usize> Probe<D> for RunupProbe<D> {
     }
 
     fn sample(&self, sim: &Simulation<D>) -> Vec<f64> {
+        if sim.system().solids()[self.solid].is_removed() {
+            return empty_row(self);
+        }
         let tip = highest_waterline(sim.system(), self.solid);
         tip.iter().copied().chain([tip[D - 1] - self.start]).collect()
     }

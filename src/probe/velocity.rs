@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{
-    PointsConfig, Probe, ProbeDefinition, ProbeLocation, ProbeRow, ProbeScope, axes, interpolate,
+    PointsConfig, Probe, ProbeDefinition, ProbeLocation, ProbeRow, ProbeScope, axes, empty_row, interpolate,
     mounting::MountedPoint,
 };
 use crate::{
@@ -89,6 +89,9 @@ impl<const D: usize> Probe<D> for VelocityProbe<D> {
 
     fn sample(&self, sim: &Simulation<D>) -> Vec<f64> {
         let system = sim.system();
+        if self.at.is_removed(system) {
+            return empty_row(self);
+        }
         let seen = |b: usize, r: &Vector<D>| -> [f64; D] { system.velocity_seen_at(b, r).into() };
         let mean = interpolate(system, &self.at.position(system), seen);
         if !self.at.is_mounted() {

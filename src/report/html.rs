@@ -9,7 +9,7 @@ pub(crate) fn escape(text: &str) -> String {
 pub(crate) fn table(rows: &[Vec<String>]) -> String {
     let row = |cells: &Vec<String>, tag: &str| {
         let cells = cells.iter().map(|cell| {
-            let class = if cell == "MISSED" || cell == "failed" { " class=\"missed\"" } else { "" };
+            let class = if cell.starts_with("MISSED") || cell == "failed" { " class=\"missed\"" } else { "" };
             format!("<{tag}{class}>{}</{tag}>", escape(cell))
         });
         format!("<tr>{}</tr>\n", cells.collect::<String>())

@@ -11,8 +11,10 @@ use super::{outputs::series_folder, run_folder::scene_file};
 use crate::{
     analysis::{self, RaoPoint, moments, rao, rao_over_frequency, reflection, spectrum},
     error::{Error, ErrorKind, Result, suggestion},
-    math::format::unit,
-    math::time_series::TimeSeries,
+    math::{
+        format::{three_digits, unit},
+        time_series::TimeSeries,
+    },
     output::{Manifest, SeriesTable, write_atomically},
     plan::{Plan, StatisticKind, StatisticPlan},
     scene::Scene,
@@ -23,6 +25,12 @@ pub use spectra_table::SPECTRA_FILE;
 
 /// Name of the statistics file in the run's folder.
 pub(crate) const STATISTICS_FILE: &str = "statistics.csv";
+
+/// Least span of the readings for a harmonic over its period: the last reading may be a part of it before the end.
+const SHORTEST_SPAN: f64 = 0.9;
+
+/// Largest height of reflected waves over that of incident ones; a full reflection measures 1 within some per cent.
+const LARGEST_REFLECTION: f64 = 1.1;
 
 /// A statistic of one or several series.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -202,6 +210,17 @@ fn series_in_window(tables: &ProbeTables, name: &str, (from, until): (f64, f64))
     tables.get(probe)?.series(column, from, until)
 }
 
+/// Returns the remark that a series of the statistic is shorter than its period.
+fn too_short(words: &StatisticPlan, found: &[TimeSeries]) -> Option<String> {
+    let (StatisticKind::Reflection { period, .. } | StatisticKind::Rao { period, .. }) = words.what else {
+        return None;
+    };
+    let lasts = found.iter().map(|series| series.span().1 - series.span().0).fold(f64::INFINITY, f64::min);
+    let period = period.filter(|period| lasts < SHORTEST_SPAN * period)?;
+    let (name, lasts) = (&words.name, three_digits(lasts));
+    Some(format!("statistic {name}: its readings span {lasts} s, less than a period of {period} s: nothing is told"))
+}
+
 impl RunStatistics {
     fn push(&mut self, name: &str, series: &str, span: (f64, f64), figures: &[(&'static str, f64, &str)]) {
         self.rows.extend(figures.iter().filter(|figure| figure.1.is_finite()).map(|&(quantity, value, unit)| {
@@ -269,6 +288,10 @@ impl RunStatistics {
             self.remarks.push(format!("statistic {}: a series has no two readings in its time", words.name));
             return;
         };
+        if let Some(remark) = too_short(words, &found) {
+            self.remarks.push(remark);
+            return;
+        }
         let all = || words.what.series().into_iter().zip(&found);
         let before = self.rows.len();
         match &words.what {
@@ -283,6 +306,14 @@ impl RunStatistics {
                         ("H_reflected", r.reflected, own),
                     ];
                     self.push(&words.name, of, found[0].span(), &figures);
+                    if r.coefficient() > LARGEST_REFLECTION {
+                        self.remarks.push(format!(
+                            "statistic {}: the reflected waves are {} times as high as the incident ones: name the gauges in the \
+                             order in which the incident waves pass them",
+                            words.name,
+                            three_digits(r.coefficient())
+                        ));
+                    }
                 }
             }
             StatisticKind::Rao { motions, wave, period } => {

@@ -23,7 +23,7 @@ use crate::{
         fill::{Filled, Filling, WaterRegion},
         hollow::Enclosure,
     },
-    math::{Bounds, Pose, Vector, in_dimension},
+    math::{Bounds, Pose, Vector, format::three_digits, in_dimension},
     model::{Model, TimeScheme},
     plan::{ControlPlan, FramesPlan, Plan},
     ranks::{RankPart, Ranks},
@@ -490,13 +490,13 @@ fn note_start_of_tow<const D: usize>(ctx: &Context, towed: &TowedFrame, velocity
     let speed = towed.velocity.value_and_rate(0.0).0;
     let mean = velocity.iter().map(|v| v[towed.axis]).sum::<f64>() / velocity.len().max(1) as f64;
     if (mean + speed).abs() > 0.01 * speed.abs() {
+        // Without the sign of a zero.
+        let [carriage, water, ground, still] = [speed, mean, mean + speed, 0.0 - speed].map(three_digits);
         let what = format!(
-            "the carriage starts at {speed} m/s and the water at {mean} m/s in its frame, which is {} m/s over the ground",
-            mean + speed
+            "the carriage starts at {carriage} m/s and the water at {water} m/s in its frame, which is {ground} m/s over the ground"
         );
         let mend = format!(
-            "water at rest over the ground has a [[water]] velocity of {} along the way, or let the carriage start from rest",
-            -speed
+            "water at rest over the ground has a [[water]] velocity of {still} along the way, or let the carriage start from rest"
         );
         ctx.add_note(FileNote::note("towed_start", what, mend));
     }

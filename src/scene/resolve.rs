@@ -95,7 +95,7 @@ impl Scene {
         each(&self.outflow, "outflow", |face, key| face.verify(ctx, key, FaceFlow::Out))?;
         open_boundary::verify_names(ctx, &self.inflow, &self.outflow)?;
         self.current.iter().try_for_each(|current| current.verify(ctx, self.periodic.as_ref()))?;
-        self.towed.iter().try_for_each(|towed| towed.verify(ctx))?;
+        self.towed.iter().try_for_each(|towed| towed.verify(ctx, self.makes_waves()))?;
         solid::verify(ctx, &self.solid)?;
         let solids = &self.solid;
         verify_names(ctx, "joint", &names!(self.joint))?;
@@ -125,15 +125,19 @@ impl Scene {
         each(&self.statistic, "statistic", |statistic, key| statistic.verify(ctx, key, &series))
     }
 
+    /// Whether a paddle or a face makes waves by name.
+    fn makes_waves(&self) -> bool {
+        let mut driven = self.solid.iter().filter_map(|solid| solid.driven.as_ref());
+        driven.any(DrivenConfig::makes_waves) || self.inflow.iter().chain(&self.outflow).any(|face| face.wave.is_some())
+    }
+
     /// Returns the values of water that the scene does not name.
     fn usual_model(&self) -> Model {
         // Lengths are in dp: h over dp is exact.
         let usual = Model::water(self.dimension, 1.0, 1.0);
         let weightless = self.context().gravity.is_some_and(|gravity| gravity.strongest == 0.0);
         let free = self.solid.iter().any(|solid| solid.free.is_some());
-        let waves = self.solid.iter().any(|solid| solid.driven.as_ref().is_some_and(DrivenConfig::makes_waves))
-            || self.inflow.iter().chain(&self.outflow).any(|face| face.wave.is_some());
-        let mut usual = match (waves && !weightless, free) {
+        let mut usual = match (self.makes_waves() && !weightless, free) {
             (true, _) => usual.for_waves(),
             (false, true) => usual.for_free_bodies(),
             (false, false) => usual,

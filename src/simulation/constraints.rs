@@ -50,6 +50,11 @@ impl<const D: usize> Simulation<D> {
         self.bodies.constraints().joint_reading(joint)
     }
 
+    /// Whether joint number `joint` acted in the last step.
+    pub(crate) fn joint_acts(&self, joint: usize) -> bool {
+        self.bodies.constraints().joint_acts(joint)
+    }
+
     /// A message for each joint that is violated now: its ends are more than 0.1 dp or one degree apart.
     pub fn violated_joints(&self) -> Vec<String> {
         let solids: Vec<_> = self.system.solids().iter().map(|solid| solid.kinematics).collect();

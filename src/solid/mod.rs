@@ -195,6 +195,11 @@ pub struct Solid<const D: usize> {
 const ACCELERATION_FILTER: f64 = 0.2;
 
 impl<const D: usize> Solid<D> {
+    /// Whether it was removed: it has no boundary particles then.
+    pub(crate) fn is_removed(&self) -> bool {
+        self.boundary.is_empty()
+    }
+
     /// Whether forces move it.
     pub(crate) fn is_free(&self) -> bool {
         matches!(self.spec.role, Role::Free(_))

@@ -138,7 +138,7 @@ impl IncidentWaves {
         let most = train.in_water.breaking_height();
         if height > most {
             let what = format!("a wave {height} m high breaks on this current");
-            let mut help = format!("the highest that does not is {most:.3} m (Miche, McCowan)");
+            let mut help = format!("the highest that does not is {} m (Miche, McCowan)", two_digits_down(most));
             if let Some(shortest) = shortest_unbroken(height, depth, current, g) {
                 help += &format!(", the shortest of this height has {} s", two_digits_up(shortest));
             }

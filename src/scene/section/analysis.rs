@@ -10,6 +10,7 @@ use crate::{
     error::{Error, ErrorCode, Result, suggestion},
     math::{
         expression::Formula,
+        format::three_digits,
         table::{self, ColumnName},
         time_series::TimeSeries,
     },
@@ -21,6 +22,9 @@ use crate::{
         record::{self, Record},
     },
 };
+
+/// Largest difference between the depth of a reflection and that of the scene, over the latter and besides one dp, without a note, –.
+const OTHER_DEPTH: f64 = 0.05;
 
 /// A section `[[check]]`: compares a column of a probe with a column of a reference table, or with a formula.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -443,6 +447,12 @@ impl StatisticConfig {
         still: &StillWaterLevel,
     ) -> Result<StatisticPlan> {
         let depth = self.depth.unwrap_or(still.depth);
+        if (depth - still.depth).abs() > OTHER_DEPTH * still.depth + ctx.dp {
+            let [given, deep] = [depth, still.depth].map(three_digits);
+            let what = format!("{key} is for water {given} m deep, and that of the scene is {deep} m deep");
+            let mend = "leave depth out, unless the bed below the gauges is at another height";
+            ctx.add_note(FileNote::note("other_depth", what, mend.into()));
+        }
         Ok(StatisticPlan {
             name: self.name.clone().unwrap_or_default(),
             what: self.kind(ctx, series, key, depth, ctx.gravity_norm())?,

@@ -84,13 +84,20 @@ pub struct TowedConfig {
 }
 
 impl TowedConfig {
-    /// Refuses a velocity that cannot be read.
-    pub(crate) fn verify(&self, ctx: &Context) -> Result<()> {
+    /// Refuses a velocity that cannot be read, and one that changes while something makes waves: their water is not at rest then.
+    pub(crate) fn verify(&self, ctx: &Context, makes_waves: bool) -> Result<()> {
         if self.along as usize + 1 >= ctx.dimension {
             let what = "a carriage moves along a horizontal axis";
             return Err(ctx.error_with_help("towed.along", what, "write  along = \"x\""));
         }
-        self.velocity.verify(ctx, "towed.velocity")
+        self.velocity.verify(ctx, "towed.velocity")?;
+        let law = self.velocity.0.read(ctx, "towed.velocity", CoordinateUnit::Si("m/s"))?;
+        if makes_waves && law.steady_value().is_none() {
+            let what = "waves need a carriage of constant velocity: a change of it sets all water in motion";
+            let help = "write  velocity = 0.5,  or leave [towed] or the waves out";
+            return Err(ctx.error_with_help("towed.velocity", what, help).with_code(ErrorCode::ConflictingKeys));
+        }
+        Ok(())
     }
 
     /// The moving frame.

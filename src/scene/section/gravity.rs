@@ -44,7 +44,8 @@ impl GravityValues {
         let laws: Vec<TimeFunction> = components.iter().map(law).collect();
         let at = |t: f64| laws.iter().map(move |law| law.value_and_rate(t).0);
         let times = (0..=SAMPLES).map(|i| ctx.until * f64::from(i) / f64::from(SAMPLES));
-        let strongest = times.map(|t| norm(at(t))).fold(0.0, f64::max);
+        // A law without bound is refused where it is built.
+        let strongest = times.map(|t| norm(at(t))).filter(|g| g.is_finite()).fold(0.0, f64::max);
         Self { initial: at(0.0).collect(), strongest, varies: true }
     }
 }

@@ -436,6 +436,11 @@ impl<const D: usize> Assembly<D> {
         self.state.joints[i].1
     }
 
+    /// Whether joint number `i` acted in the last step.
+    pub(crate) fn joint_acts(&self, i: usize) -> bool {
+        self.state.phases.joints[i] == Phase::Acting
+    }
+
     /// The coordinates of the free modes of generic joint number `i`, m or rad (−π to π), with the solids at `solids`.
     pub(crate) fn joint_coordinates(&self, i: usize, solids: &[Kinematics<D>]) -> Vec<f64> {
         let joint = &self.joints[i];
@@ -445,7 +450,7 @@ impl<const D: usize> Assembly<D> {
 
     /// Distance (m) and angle (rad) by which joint number `i` is violated; 0 where it does not act.
     pub(crate) fn joint_gap(&self, i: usize, solids: &[Kinematics<D>]) -> [f64; 2] {
-        if self.state.phases.joints[i] != Phase::Acting {
+        if !self.joint_acts(i) {
             return [0.0; 2];
         }
         self.joints[i].gap(&self.joints[i].end_kinematics(solids))

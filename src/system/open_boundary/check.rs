@@ -6,7 +6,7 @@ use super::{MOST_FACES, OpenBoundary};
 use crate::{
     error::{Error, ErrorCode, Result},
     math::{
-        Bounds, Vector,
+        Bounds, Vector, find_pole,
         format::{three_digits, two_digits_down, two_digits_up},
     },
     solid::{Role, SolidSpec},
@@ -31,6 +31,9 @@ const LEVEL_SAMPLES: u32 = 2000;
 
 /// Number of parts of a run at whose ends the speed through a face is compared with that of sound.
 const SPEED_SAMPLES: u32 = 100;
+
+/// Time at which poles along a face are sought, over the duration of the run: no period of a usual law.
+const POLE_TIME: f64 = 0.618;
 
 /// Refuses open boundary number `i` of a setup if it is invalid in a run until the time `until` (s).
 ///
@@ -103,7 +106,11 @@ pub(crate) fn check<const D: usize>(setup: &Setup<D>, i: usize, until: f64) -> R
     let orbital = face.waves.as_ref().map_or(0.0, IncidentWaves::orbital_speed);
     let most = FASTEST * setup.model.c0;
     let in_buffer: Vec<_> = setup.water.iter().zip(&beyond).filter(|(_, beyond)| **beyond > 0.0).collect();
-    let samples = if face.steady_current().is_some() { 0 } else { SPEED_SAMPLES };
+    let is_steady = face.steady_current().is_some();
+    if !is_steady {
+        check_poles(face, &in_buffer.iter().map(|(r, _)| **r).collect::<Vec<_>>(), until, setup.model.dp)?;
+    }
+    let samples = if is_steady { 0 } else { SPEED_SAMPLES };
     for t in (0..=samples).map(|k| until * f64::from(k) / f64::from(SPEED_SAMPLES)) {
         let speeds = in_buffer.iter().filter_map(|(r, _)| face.outward_velocity(r, t)).map(f64::abs);
         let fastest = speeds.fold(0.0, nan_max) + orbital;
@@ -133,6 +140,30 @@ pub(crate) fn check<const D: usize>(setup: &Setup<D>, i: usize, until: f64) -> R
         }
         _ => Ok(()),
     }
+}
+
+/// Refuses a velocity of `face` that grows without bound at the places `water` (m) until the time `until` (s). No speed of sound helps
+/// then. It is looked at over time in the middle of the water, and along each axis at one time.
+fn check_poles<const D: usize>(face: &OpenBoundary<D>, water: &[Vector<D>], until: f64, dp: f64) -> Result<()> {
+    let Some(middle) = water.get(water.len() / 2) else { return Ok(()) };
+    let speed = |r: &Vector<D>, t: f64| face.outward_velocity(r, t).unwrap_or_default();
+    let in_time = find_pole(|t| speed(middle, t), [0.0, until]).map(|t| format!("t = {} s", three_digits(t)));
+    let bounds = Bounds::around(water).grown(0.5 * dp);
+    let along = |axis: &usize| {
+        let moved = |x: f64| {
+            let mut r = *middle;
+            r[*axis] = x;
+            speed(&r, POLE_TIME * until)
+        };
+        let at = find_pole(moved, [bounds.min[*axis], bounds.max[*axis]])?;
+        Some(format!("{} = {} m", ["x", "y", "z"][*axis], three_digits(at)))
+    };
+    let Some(place) = in_time.or_else(|| (0..D).filter(|axis| *axis != face.axis).find_map(|axis| along(&axis))) else {
+        return Ok(());
+    };
+    let what = format!("the velocity of open boundary {:?} grows without bound at {place}", face.name);
+    let help = "write a formula that is finite on the whole face at all times, as with max(0.1, ..) below a division";
+    Err(Error::scene(what).with_code(ErrorCode::OutOfRange).help(help))
 }
 
 /// The solid under the lowest water beside `face` that does not go on under the buffer.

@@ -4,7 +4,7 @@ use std::{f64::consts::TAU, fs, path::Path};
 
 use pontoon::{
     analysis::{
-        Align, CheckPlan, Reference, ReferenceCheck, ResponseReference, Score, Verdict, amplitude_ratio,
+        Align, CheckPlan, Reference, ReferenceCheck, ResponseReference, Score, Verdict, amplitude_ratio, best_delay,
         first_peak_error, format_verdicts, max_abs, relative_l2,
     },
     error::{ErrorKind, Result},
@@ -411,6 +411,33 @@ fn invalid_check_keys_are_refused_with_a_remedy() {
         let message = error_message(keys);
         assert!(parts.iter().all(|part| message.contains(part)), "{keys}: {message}");
     }
+}
+
+/// A run that is 0.1 s late, compared over its whole 0.5 s: beyond 0.05 s less than nine tenths of the reference are left, and N still
+/// falls there. Such a delay is none. With a reference that leaves room, the delay is found.
+#[test]
+fn a_delay_at_the_edge_of_what_can_be_tried_is_none() -> Result<()> {
+    let t: Vec<f64> = (0..=500).map(|i| 0.001 * f64::from(i)).collect();
+    let late = |delay: f64| t.iter().map(|t| 0.1 * (t - delay).powi(2)).collect::<Vec<_>>();
+    let (sim, reference) = (TimeSeries::new(t.clone(), late(0.1))?, TimeSeries::new(t.clone(), late(0.0))?);
+    assert_eq!(best_delay(&sim, &reference), None);
+    let found = best_delay(&sim, &reference.window(0.1, 0.35)?).expect("a delay");
+    // The golden section ends within a microsecond.
+    assert!((found - 0.1).abs() < 1e-5, "{found}");
+    Ok(())
+}
+
+#[test]
+fn a_crossing_that_is_never_reached_is_told() -> std::io::Result<()> {
+    let home = folder("crossing", "t_s,x_m\n0,0\n1,1\n2,4\n", "t_s,x_m\n0,0\n1,1\n2,4\n")?;
+    let verdict = |threshold: f64| {
+        let mut plan = by_table("box.x_m", ["t_s", "x_m"], 0.0, None);
+        plan.align = Some(Align::Crossing(threshold));
+        ReferenceCheck::new(&plan, &home).unwrap().verdict(&home)
+    };
+    assert_eq!((verdict(2.0).note, verdict(2.0).aligned.map(|a| a.delay)), (None, Some(0.0)));
+    assert_eq!(verdict(10.0).note.as_deref(), Some("the run never passes 10: not aligned"));
+    Ok(())
 }
 
 #[test]

@@ -47,9 +47,9 @@ waves = "gauge"
 from = 5.0
 "#;
 
-/// A finished run with the tables of waves 0.1 m high and a reflection coefficient of a quarter.
-fn run_of_waves(name: &str) -> Result<TestFolder> {
-    let home = TestFolder::with_scene(&format!("statistics-{name}"), SCENE);
+/// A finished run with the tables of waves 0.1 m high and a reflection coefficient of a quarter. `more` are further sections.
+fn run_of_waves(name: &str, more: &str) -> Result<TestFolder> {
+    let home = TestFolder::with_scene(&format!("statistics-{name}"), &format!("{SCENE}{more}"));
     let out = home.join("run");
     let options = RunOptions { out: Some(out.clone()), threads: Some(1), ..RunOptions::default() };
     run::run(&home.join("scene.toml"), &options, &mut |_: &Progress| true)?;
@@ -90,7 +90,7 @@ fn value(rows: &[Statistic], name: &str, series: &str, quantity: &str) -> f64 {
 
 #[test]
 fn the_statistics_of_a_run_contain_exact_heights_periods_reflection_and_raos() -> Result<()> {
-    let home = run_of_waves("all")?;
+    let home = run_of_waves("all", "")?;
     let statistics = run::statistics(&home.join("run"), &StatisticsFilter::default())?;
     assert_eq!(statistics.remarks, Vec::<String>::new());
     let of = |name: &str, series: &str, quantity: &str| value(&statistics.rows, name, series, quantity);
@@ -114,7 +114,7 @@ fn the_statistics_of_a_run_contain_exact_heights_periods_reflection_and_raos() -
 
 #[test]
 fn statistics_of_a_selected_series_and_time_are_computed_and_an_unknown_series_is_refused() -> Result<()> {
-    let home = run_of_waves("part")?;
+    let home = run_of_waves("part", "")?;
     let ask = |series: &str| StatisticsFilter { series: Some(series.into()), from: Some(3.0), until: Some(9.0) };
     let statistics = run::statistics(&home.join("run"), &ask("buoy"))?;
     assert!(
@@ -126,6 +126,35 @@ fn statistics_of_a_selected_series_and_time_are_computed_and_an_unknown_series_i
     );
     let refused = run::statistics(&home.join("run"), &ask("booy")).err().and_then(|e| e.help);
     assert_eq!(refused.as_deref(), Some("the probes are: row, gauge, buoy"));
+    Ok(())
+}
+
+/// Gauges in the reverse order measure the inverse of the reflection, 4. A harmonic needs its period: 0.5 s of 1.25 s tell nothing.
+#[test]
+fn gauges_in_the_wrong_order_and_spans_below_a_period_are_remarked() -> Result<()> {
+    let gauge = "[[probe]]\nname = \"far\"\nelevation = { x = 1.25 }\n";
+    let late = "period = 1.25\nfrom = 6.0\n";
+    let home = run_of_waves(
+        "order",
+        &format!(
+            "{gauge}[[statistic]]\nname = \"back\"\nreflection = [\"far\", \"gauge\"]\n{late}\
+             [[statistic]]\nname = \"short\"\nreflection = [\"row\"]\n{late}until = 6.5\n\
+             [[statistic]]\nname = \"part\"\nrao = {{ motion = \"buoy\", wave = \"gauge\" }}\n{late}until = 6.5\n"
+        ),
+    )?;
+    let (series, row) = (home.join("run/series"), 4);
+    let all = fs::read_to_string(series.join("row.csv")).unwrap();
+    let far = all.lines().skip(1).map(|line| line.split(',').collect::<Vec<_>>());
+    let far: String = far.map(|x| format!("{},{},{}\n", x[0], x[row - 1], x[row])).collect();
+    fs::write(series.join("far.csv"), format!("t_s,level_m,eta_m\n{far}")).unwrap();
+    let statistics = run::statistics(&home.join("run"), &StatisticsFilter::default())?;
+    assert!((value(&statistics.rows, "back", "far.eta_m", "reflection") - 4.0).abs() < 1e-4);
+    let remark = |words: &str| statistics.remarks.iter().any(|remark| remark.contains(words));
+    assert!(remark("back: the reflected waves are 4 times as high"), "{:?}", statistics.remarks);
+    for short in ["short", "part"] {
+        assert!(statistics.rows.iter().all(|row| row.name != short), "{short}");
+        assert!(remark(&format!("{short}: its readings span 0.5 s")), "{:?}", statistics.remarks);
+    }
     Ok(())
 }
 

@@ -86,6 +86,29 @@ fn a_formula_without_a_value_during_the_run_is_refused_with_its_time() {
     }
 }
 
+/// Between its samples such a law gave a body a speed without a meaning. The message gives the place of the pole, and a peak of the same
+/// height is accepted.
+#[test]
+fn a_law_that_grows_without_bound_during_the_run_is_refused_with_its_time() {
+    let slider =
+        "[[joint]]\nname = \"j\"\nkind = \"slider\"\nbetween = [\"box\"]\nalong = [0.0, 1.0]\nat = [1.0, 0.5]\n";
+    let force = "[[force]]\nname = \"f\"\non = \"box\"\nforce = [\"LAW\", 0.0]\n";
+    let motor = format!("{slider}motor = {{ force = \"LAW\" }}\n");
+    let wind = "[[wind]]\non = [\"box\"]\nvelocity = [\"LAW\", 0.0]\n";
+    for (name, more, key) in
+        [("force", force, "force.0.force"), ("wind", wind, "wind.0.velocity"), ("joint", &motor, "joint.0.motor.force")]
+    {
+        for (law, t) in [("1/(t-0.5)", "0.5"), ("1/(t-0.50037)", "0.5004"), ("tan(pi*t/4)", "2")] {
+            let words = [key, "grows without bound", &format!("t = {t} s")];
+            assert_refused(&format!("pole-{name}"), &scene(REST, &more.replace("LAW", law)), &[], &words);
+        }
+        let peak = scene(REST, &more.replace("LAW", "20/(1+(1e3*(t-0.5))^2)"));
+        assert_not_found(&format!("peak-{name}"), &peak, &[], "without bound");
+    }
+    let gravity = scene(REST, "").replace("until", "gravity = [\"1/(t-0.5)\", -9.81]\nuntil");
+    assert_refused("pole-gravity", &gravity, &[], &["scene.toml:3", "gravity", "grows without bound at t = 0.5 s"]);
+}
+
 /// A line of less than a hundredth of its length is not computed: the winch would stop there without a word.
 #[test]
 fn a_winch_that_takes_in_the_whole_line_is_refused_with_the_time() {
@@ -449,6 +472,108 @@ fn a_statistic_after_the_run_is_found_and_a_crate_on_a_raft_does_not_capsize() {
     assert_found("afloat", &scene(REST, &afloat), &[], &["\"crate\" will turn over"]);
 }
 
+/// The pressure is that of a plane sound wave, ρ c₀ V with c₀ = 10 √(9.81 × 0.5) = 22.1 m/s. Water that moves along feels nothing, and
+/// neither does the air.
+#[test]
+fn a_driven_solid_that_sets_out_with_a_speed_in_water_is_a_finding() {
+    let plate = |law: &str| {
+        let plate =
+            "[[solid]]\nname = \"plate\"\nshape = { box = { size = [0.2, 0.2] } }\nat = { x = 0.4, y = 0.25 }\n";
+        scene(REST, &format!("{plate}driven = {{ along = [1.0, 0.0], distance = {{ formula = \"{law}\" }} }}\n"))
+    };
+    let sudden = plate("0.3*t");
+    assert_found("sudden", &sudden, &[], &["\"plate\" sets out at 0.3 m/s", "6644 Pa", "rate 0 at the start"]);
+    let along = sudden.replace("[2.0, 0.5] } }", "[2.0, 0.5] } }\nvelocity = [0.3, 0.0]");
+    assert_not_found("along", &along, &[], "sets out");
+    assert_not_found("smooth", &plate("0.05*(1-cos(2*pi*t))"), &[], "sets out");
+    assert_not_found("in-air", &scene("{ formula = \"0.3*t\" }", ""), &[], "sets out");
+}
+
+/// A current of 1.2 m²/s in water 0.3 m deep goes at 4 m/s, whatever the water does at the start; c₀ from the depth is 17 m/s.
+#[test]
+fn the_target_of_a_current_counts_as_a_speed() {
+    let channel = |discharge: f64| {
+        format!(
+            "dimension = 2\ndp = 0.05\nuntil = 2.0\nframes = \"off\"\nperiodic = {{ x = [0.0, 2.0] }}\n\
+             current = {{ along = \"x\", discharge = {discharge} }}\n\
+             [[water]]\nfill = {{ box = {{ min = [0.0, 0.0], max = [2.0, 0.3] }} }}\nvelocity = [0.4, 0.0]\n\
+             [[solid]]\nname = \"bed\"\nfixed = true\nshape = {{ box = {{ size = [5.0, 0.3] }} }}\nat = {{ x = 1.0, y = -0.15 }}\n"
+        )
+    };
+    assert_found("current", &channel(1.2), &[], &["that of the current, 4 m/s", "c0 = 40"]);
+    assert_not_found("slow-current", &channel(0.12), &[], "speed of sound");
+}
+
+/// A damping zone that begins behind a paddle damps its waves, and one in a current brings the current to rest.
+#[test]
+fn damping_zones_over_a_paddle_or_in_a_current_are_findings() {
+    let flume = |zone: &str| {
+        format!(
+            "dimension = 2\ndp = 0.02\nuntil = 4.0\nframes = \"off\"\n\
+             [[water]]\nfill = {{ box = {{ min = [0.0, 0.0], max = [6.0, 0.3] }} }}\n\
+             [[solid]]\nname = \"tank\"\nfixed = true\nshape = {{ tank = {{ size = [6.4, 0.6] }} }}\nat = {{ x = -0.4 }}\n\
+             [[solid]]\nname = \"p\"\nshape = {{ box = {{ size = [0.1, 0.6] }} }}\nat = {{ x = -0.05, bottom = 0.0 }}\n\
+             driven = {{ along = [1, 0], wave = {{ regular = {{ height = 0.1, period = 1.3 }} }} }}\n[[damping]]\n{zone}\n"
+        )
+    };
+    // 0.2/1.2 of the zone, squared.
+    let behind = flume("from = [-0.2, 0]\nto = [1.0, 0]");
+    assert_found("behind", &behind, &[], &["0.0278 of its strength at \"p\"", "ahead of the paddle"]);
+    let across = flume("from = [1.0, 0]\nto = [-0.2, 0]");
+    assert_found("across", &across, &[], &["0.694 of its strength at \"p\"", "ahead of the paddle"]);
+    assert_not_found("far-zone", &flume("from = [3.0, 0]\nto = [6.0, 0]"), &[], "which makes waves");
+    let channel = |from: f64| {
+        format!(
+            "dimension = 2\ndp = 0.05\nuntil = 2.0\nframes = \"off\"\n\
+             [[water]]\nfill = {{ box = {{ min = [0.0, 0.0], max = [2.0, 0.3] }} }}\nvelocity = [0.4, 0.0]\n\
+             [[solid]]\nname = \"bed\"\nfixed = true\nshape = {{ box = {{ size = [5.0, 0.3] }} }}\nat = {{ x = 1.0, y = -0.15 }}\n\
+             [[inflow]]\nx = 0.0\nvelocity = 0.4\n[[outflow]]\nx = 2.0\nvelocity = 0.4\n[[damping]]\nfrom = [{from}, 0]\nto = [5.0, 0]\n"
+        )
+    };
+    assert_found("outflow", &channel(1.0), &[], &["takes the current of 0.4 m/s"]);
+    assert_not_found("beyond", &channel(4.0), &[], "takes the current");
+}
+
+/// The same as in gravity that changes: the water is not at rest, and theory has no waves for it.
+#[test]
+fn waves_in_a_carriage_of_changing_velocity_are_refused() {
+    let flume = |velocity: &str| {
+        format!(
+            "dimension = 2\ndp = 0.05\nuntil = 4.0\nframes = \"off\"\ntowed = {{ along = \"x\", velocity = {velocity} }}\n\
+             [[water]]\nfill = {{ box = {{ min = [0.0, 0.0], max = [6.0, 0.5] }} }}\n\
+             [[solid]]\nname = \"p\"\nshape = {{ box = {{ size = [0.2, 1.0] }} }}\nat = {{ x = -0.1, bottom = 0.0 }}\n\
+             driven = {{ along = [1, 0], wave = {{ regular = {{ height = 0.1, period = 1.3 }} }} }}\n"
+        )
+    };
+    assert_refused("towed-waves", &flume("\"0.3*sin(t)\""), &[], &["towed.velocity", "constant velocity"]);
+    assert_not_found("steady-tow", &flume("0.3"), &[], "constant velocity");
+}
+
+/// A reflection in water ten times as deep as that of the scene had a wave number that says nothing of its waves.
+#[test]
+fn a_reflection_for_another_depth_is_a_finding() {
+    let scene = |depth: f64| {
+        let statistic = format!("[[statistic]]\nreflection = [\"row\"]\nperiod = 1.3\ndepth = {depth}\n");
+        scene(
+            REST,
+            &format!("[[probe]]\nname = \"row\"\nelevation = {{ from = 0.2, to = 0.6, count = 3 }}\n{statistic}"),
+        )
+    };
+    assert_found("deep", &scene(5.0), &[], &["statistic.0", "5 m deep", "0.5 m deep"]);
+    assert_not_found("own-depth", &scene(0.5), &[], "m deep, and that of the scene");
+}
+
+/// A triangle of 0.4 ms has an impulse that a step of some ms does not meet; with four steps it does.
+#[test]
+fn a_pulse_of_a_force_that_is_shorter_than_the_steps_is_a_finding() {
+    let force = |half: &str| {
+        let law = format!("2e4*max(0,1-abs(t-0.5003)/{half})");
+        scene(REST, &format!("[[force]]\nname = \"f\"\non = \"box\"\nforce = [\"{law}\", 0.0]\n"))
+    };
+    assert_found("pulse", &force("2e-4"), &[], &["force \"f\"", "at t = 0.5 s", "dt_max"]);
+    assert_not_found("long-pulse", &force("0.02"), &[], "has a pulse");
+}
+
 #[test]
 fn a_law_that_takes_a_solid_out_of_the_scene_is_a_finding() {
     // The gate is 0.7 m above the water. The tank has walls of 4 dp: with the gate the scene is about 2.4 × 1.6 m.
@@ -465,6 +590,9 @@ fn a_law_that_takes_a_solid_out_of_the_scene_is_a_finding() {
         &[],
         &["\"gate\"", "30 m/s", "sound goes at 22.1 m/s"],
     );
+    // 0.1 m in 1 µs, between two of the times at which the law is looked at.
+    let jump = law("{ formula = \"0.1*max(0,min(1,(t-0.50003)*1e6))\" }");
+    assert_found("jump-in-formula", &jump, &[], &["\"gate\"", "100000 m/s at 0.5 s", "sound goes at 22.1 m/s"]);
     let slow = inspected("slow", &law("{ formula = \"0.1*sin(30*t)\" }"), &[]).unwrap();
     assert!(!slow.iter().any(|(_, text)| text.contains("the law of")), "{slow:?}");
     // Values of the same size are values.

@@ -50,6 +50,21 @@ fn two_faces_at_one_place_are_refused() {
     assert!(text.contains("\"inflow\" and \"inflow_2\" are at one place, x = 0"), "{text}");
 }
 
+/// No speed of sound helps where the velocity grows without bound; the message gives the place of that.
+#[test]
+fn a_velocity_that_grows_without_bound_is_refused_with_its_place() {
+    for (velocity, place) in [("0.3/(t-1)", "t = 1 s"), ("0.3/(y-0.1)", "y = 0.1 m"), ("0.1/(t-0.5037)", "t = 0.504 s")]
+    {
+        let faces =
+            format!("inflow = [{{ x = 0.0, velocity = \"{velocity}\" }}]\noutflow = [{{ x = 4.0, velocity = 0.3 }}]");
+        let text = refusal(&channel(&faces, false, 0.04));
+        assert!(
+            text.contains(&format!("grows without bound at {place}")) && !text.contains("c0"),
+            "{velocity}: {text}"
+        );
+    }
+}
+
 /// Nothing fixes the pressure of a duct with a velocity at one end and nothing at the other; the level that the message proposes does, and
 /// under a surface the same faces are sound.
 #[test]

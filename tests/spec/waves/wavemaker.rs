@@ -220,6 +220,25 @@ fn a_reversed_damping_zone_and_one_without_water_are_findings() {
     assert!(absent.iter().all(|(text, topic)| finding(text, topic).is_none()));
 }
 
+/// Two readings a period are the least: waves of 1.2 s that are read every 0.7 s look like waves of 1.68 s.
+#[test]
+fn a_gauge_that_reads_less_than_twice_a_period_is_a_finding() {
+    let read = |every: f64| format!("{FLUME}\n[[probe]]\nname = \"g\"\nelevation = {{ x = 2.0 }}\nevery = {every}\n");
+    let found = finding(&read(0.7), "slow_probe").expect("0.7 s are more than 0.6 s");
+    assert_eq!(finding(&read(number(&found.mend, "every = ")), "slow_probe"), None);
+    assert_eq!(finding(&read(0.59), "slow_probe"), None);
+}
+
+/// The part below the hinge takes from the wave. A flap that ends at its hinge, on a fixed wall, is that of theory.
+#[test]
+fn a_flap_that_reaches_below_its_hinge_is_a_finding() {
+    let flap = flume("hinge = [0.0, 0.1], wave = { regular = { height = 0.03, period = 1.2 } }");
+    let found = finding(&flap, "lifted_paddle").expect("the hinge is 0.1 m above the lower edge");
+    assert!(found.what.contains("reaches 0.1 m below its hinge") && found.mend.contains("bottom = 0.1"), "{found:?}");
+    let wall = "\n[[solid]]\nname = \"sill\"\nfixed = true\nshape = { box = { size = [0.1, 0.1] } }\nat = { x = -0.05, y = 0.05 }\n";
+    assert_eq!(finding(&(flap.replacen("bottom = 0.0", "bottom = 0.1", 1) + wall), "lifted_paddle"), None);
+}
+
 #[test]
 fn a_paddle_placed_or_sized_against_wavemaker_theory_is_a_finding() {
     let sized = |height: f64, bottom: f64| {
