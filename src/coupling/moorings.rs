@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use super::Interval;
 use crate::{
     error::{Error, Result},
-    math::{Bounds, Matrix, Vector},
+    math::{Bounds, Matrix, Pose, Vector},
     solid::{
         ConstraintChange, Kinematics, Load, Mobility, MooringReading, Role,
         mooring::{BedPlane, Junctions, LineState, LineStep, Mooring, MooringLine, NodeSurroundings, junctions},
@@ -28,6 +28,8 @@ pub(crate) struct Moorings<const D: usize> {
     junctions: Junctions,
     /// Fixed solids with the boxes (m) in which they are near.
     fixed: Vec<(usize, Bounds<D>)>,
+    /// Driven and free solids with the boxes (m), in their frames, in which they take room from the water around a node.
+    moving: Vec<(usize, Bounds<D>)>,
     /// Distance (m) within which a node finds a fixed solid. It is at least the length of the longest segment, so that both ends
     /// of a segment that leaves a bed find this bed.
     bed_reach: f64,
@@ -53,6 +55,7 @@ impl<const D: usize> Moorings<D> {
             lines: Vec::new(),
             junctions,
             fixed: Vec::new(),
+            moving: Vec::new(),
             bed_reach: system.model().support_radius(),
             loads: Vec::new(),
             on_water: Vec::new(),
@@ -68,6 +71,12 @@ impl<const D: usize> Moorings<D> {
             matches!(solid.spec.role, Role::Fixed).then(|| (i, bounds.grown(reach)))
         };
         made.fixed = system.solids().iter().enumerate().filter_map(near).collect();
+        let takes_room = |(i, solid): (usize, &crate::solid::Solid<D>)| {
+            let bounds = solid.spec.shape.bounds_at(&Pose::identity());
+            let reach = system.model().support_radius();
+            (!matches!(solid.spec.role, Role::Fixed)).then(|| (i, bounds.grown(reach)))
+        };
+        made.moving = system.solids().iter().enumerate().filter_map(takes_room).collect();
         let mut all: Vec<_> = lines.iter_mut().map(|mooring| &mut mooring.line).collect();
         made.junctions.attach(&mut all, &bodies);
         known_water::know_within(system, &all.iter().map(|line| range_around(line)).collect::<Vec<_>>());
@@ -295,10 +304,24 @@ impl<const D: usize> Moorings<D> {
             weight += share;
             flow += fluid.v[b] * share;
         });
-        let free = 1.0 - bed.map_or(0.0, |(_, distance)| share_behind(distance / reach));
+        let nearest = bed.map(|(_, distance)| distance).into_iter().chain(self.moving_solid_near(system, &at));
+        let free = 1.0 - nearest.reduce(f64::min).map_or(0.0, |distance| share_behind(distance / reach));
         let wet = (2.0 * weight / free.max(weight).max(0.05) - 0.5).clamp(0.0, 1.0);
         let water_velocity = if wet > 0.0 { flow / weight } else { Vector::zeros() };
         NodeSurroundings { water_velocity, wet, bed: bed.map(|(plane, _)| plane) }
+    }
+
+    /// The distance (m) from the world position `at` (m), between periodic sides, to the nearest driven or free solid within the
+    /// kernel's reach. A solid that `at` is inside of takes no room: its own water may be there. The rows of water end half a dp before a
+    /// face, so that less is no depth.
+    fn moving_solid_near(&self, system: &System<D>, at: &Vector<D>) -> Option<f64> {
+        let distance = |(i, bounds): &(usize, Bounds<D>)| {
+            let local = system.home_pose(*i).local(at);
+            let solid = &system.solids()[*i];
+            let is_near = bounds.contains(&local) && !solid.is_removed();
+            is_near.then(|| solid.spec.shape.signed_distance(&local)).filter(|d| *d > -0.5 * system.model().dp)
+        };
+        self.moving.iter().filter_map(distance).reduce(f64::min)
     }
 
     /// The states of all lines in a checkpoint.

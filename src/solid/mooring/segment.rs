@@ -81,7 +81,12 @@ pub(super) fn segment_pull<const D: usize>(
         }
     }
     let [tension, slope] = law;
-    let turned = if tension > 0.0 { share * l0.powi(3) * along / (12.0 * length * (tension + hold)) } else { 0.0 };
+    // The sag of a segment between ends at one place has no direction.
+    let turned = if tension > 0.0 && length > 0.0 {
+        share * l0.powi(3) * along / (12.0 * length * (tension + hold))
+    } else {
+        0.0
+    };
     let pull = q * tension + across * turned;
     SegmentPull {
         q,

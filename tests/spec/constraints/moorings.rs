@@ -83,6 +83,34 @@ fn the_fairlead_bears_clumps_and_floats() -> Result<()> {
     Ok(())
 }
 
+/// A loop of chain hangs in water along the side of a driven box, or of a free one that is held. The box takes half of the kernel around
+/// each node, as a wall does; the chain has its buoyancy all the same: (1.5 − 1000 π/4 0.03²) kg/m × 9.81 m/s² × 0.3 m on each end. The
+/// water's rows leave up to 2 % at such a place.
+#[test]
+fn a_line_along_a_moving_body_has_its_whole_buoyancy() -> Result<()> {
+    let hanging = (1.5 - 1000.0 * std::f64::consts::FRAC_PI_4 * 0.03 * 0.03) * 9.81 * 0.3;
+    for role in
+        ["driven = { along = [1, 0], distance = { formula = \"0\" } }", "free = { density = 900.0, release = 1.0 }"]
+    {
+        let text = format!(
+            "dimension = 2\ndp = 0.02\nuntil = 1.0\nwater = [{{ fill = {{ box = {{ min = [0.0, 0.0], max = [1.0, 0.5] }} }} }}]\n\
+             [[solid]]\nname = \"tank\"\nfixed = true\nshape = {{ tank = {{ size = [1.0, 0.8] }} }}\n\
+             [[solid]]\nname = \"b\"\nshape = {{ box = {{ size = [0.2, 0.6] }} }}\nat = {{ x = 0.5, bottom = 0.1 }}\n{role}\n\
+             [[line_type]]\nname = \"chain\"\ndiameter = 0.03\nmass_per_length = 1.5\nstiffness = 2e4\n\
+             [[mooring]]\nname = \"l\"\nbetween = [\"b\"]\nfrom = [0.4, 0.45]\nto = [0.4, 0.45]\nlength = 0.6\nline = \"chain\"\n"
+        );
+        // A single segment has no direction, and half of the weight at each end all the same.
+        for segments in ["", "segments = 1\n"] {
+            let sim = scene_simulation::<2>(&format!("{text}{segments}"))?;
+            let ends = MooringProbe::new(sim.system(), "l")?.sample(&sim);
+            for end in &ends[..2] {
+                assert!((end / hanging - 1.0).abs() < 0.02, "{role}, {segments}: {end} N/m of {hanging} N/m");
+            }
+        }
+    }
+    Ok(())
+}
+
 /// The momentum of the box changes by the sum of its loads, the lines among them, to round-off; and the energy budget has their work.
 #[test]
 fn momentum_and_energy_close_with_the_lines() -> Result<()> {
