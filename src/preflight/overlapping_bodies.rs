@@ -50,8 +50,10 @@ pub(super) fn check<const D: usize>(context: &PreflightContext<D>, findings: &mu
 fn common_volume<const D: usize>(context: &PreflightContext<D>, i: usize, j: usize) -> f64 {
     let solids = [i, j].map(|k| &context.solids()[k]);
     let [a, b] = solids.map(|solid| solid.spec.shape.bounds_at(&solid.kinematics.pose));
+    // A body without water around it, as in a dry hold, displaces none.
+    let [Some(level), Some(other)] = [i, j].map(|k| context.level_around(k)) else { return 0.0 };
     let (low, mut high) = (a.min.sup(&b.min), a.max.inf(&b.max));
-    high[D - 1] = high[D - 1].min(context.still_water.level);
+    high[D - 1] = high[D - 1].min(level).min(other);
     let (size, cells) = (high - low, CELLS[D - 2]);
     if size.min() <= 0.0 {
         return 0.0;
