@@ -382,7 +382,6 @@ impl<const D: usize> BodyStep<'_, D> {
             added_mass.update_contacts(self.system, dt, before, &self.solids[added_mass.solid]);
         }
         let contacts = if accounted { contact_sums(&engine.contacts(), start.len()) } else { Vec::new() };
-        let iterated = engine.solver_iterations() > 1;
         let body_loads = |i: usize, constraints: ConstraintLoads<D>| BodyLoads {
             water: self.loads[i],
             pushes: pushes[i],
@@ -393,7 +392,6 @@ impl<const D: usize> BodyStep<'_, D> {
             after: &self.solids[i],
             gyroscopic: engine.gyroscopic_rate(i),
             dt,
-            iterated,
         };
         let of = |i: usize| LoadBreakdown::of(self.system, i, &body_loads(i, constraints.loads_on(i)));
         let breakdowns: Vec<_> = (0..contacts.len()).map(of).collect();

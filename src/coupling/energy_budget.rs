@@ -278,13 +278,11 @@ impl<const D: usize> Accounting<D> {
         loads: &BodyLoads<'_, D>,
     ) {
         let Some(body) = &system.solids()[i].body else { return };
-        let BodyLoads { water, constraints, before, after, dt, iterated, .. } = *loads;
+        let BodyLoads { water, constraints, before, after, dt, .. } = *loads;
         (breakdown.viscous, breakdown.pressure) = (self.viscous[i], breakdown.pressure - self.viscous[i]);
         (breakdown.joints, breakdown.ropes) = (constraints.joints, constraints.ropes);
         breakdown.locks = locked(body, constraints.is_held, &breakdown.residual());
-        if iterated {
-            breakdown.assign_residual_to_constraints();
-        }
+        breakdown.assign_residual_to_constraints();
         let mean = Kinematics {
             velocity: 0.5 * (before.velocity + after.velocity),
             spin: (before.spin + after.spin) * 0.5,

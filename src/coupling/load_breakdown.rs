@@ -97,8 +97,8 @@ impl<const D: usize> LoadBreakdown<D> {
         self.change - self.sum()
     }
 
-    /// Assigns the residual to the joints or the ropes, whichever have the larger force. Joints and ropes rotate between the
-    /// iterations of a step, but the directions of their reported forces do not.
+    /// Assigns the residual to the joints or the ropes, whichever have the larger force. Joints and ropes rotate within a step, but the
+    /// directions of their reported forces do not.
     pub(super) fn assign_residual_to_constraints(&mut self) {
         let rest = self.residual();
         let constraints =
@@ -145,8 +145,6 @@ pub(super) struct BodyLoads<'a, const D: usize> {
     /// I₀ΔΩ/Δt minus the gyroscopic torque, if the engine integrates the angular velocity.
     pub(super) gyroscopic: Option<Bivector<D>>,
     pub(super) dt: f64,
-    /// Whether the engine took the step in several iterations.
-    pub(super) iterated: bool,
 }
 
 /// Returns the sum of all `contacts` on each of `solids` solids.

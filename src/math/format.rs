@@ -71,16 +71,21 @@ pub fn four_digits(x: f64) -> String {
 
 /// The largest number of two digits that is not above `x` > 0.
 pub fn two_digits_down(x: f64) -> String {
-    two_digits(x, f64::floor)
+    rounded(x, 2, f64::floor)
+}
+
+/// The largest number of three digits that is not above `x` > 0.
+pub fn three_digits_down(x: f64) -> String {
+    rounded(x, 3, f64::floor)
 }
 
 /// The smallest number of two digits that is not below `x` > 0.
 pub fn two_digits_up(x: f64) -> String {
-    two_digits(x, f64::ceil)
+    rounded(x, 2, f64::ceil)
 }
 
-fn two_digits(x: f64, round: fn(f64) -> f64) -> String {
-    let places = 1 - x.log10().floor() as i32;
+fn rounded(x: f64, digits: i32, round: fn(f64) -> f64) -> String {
+    let places = digits - 1 - x.log10().floor() as i32;
     let unit = 10f64.powi(-places);
     // For a number of two digits, `x / unit` may differ from a whole number by round-off.
     let near = (x / unit).round();

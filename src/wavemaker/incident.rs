@@ -13,7 +13,7 @@ use std::f64::consts::TAU;
 use super::{LinearWave, WaveComponent, WaveSpectrum, counted, irregular_components, smooth, wave_number};
 use crate::{
     error::{Error, ErrorCode, Result},
-    math::format::{two_digits_down, two_digits_up},
+    math::format::{three_digits_down, two_digits_down, two_digits_up},
 };
 
 /// Steps of the iteration for the place at rest: each reduces the error by the slope of the waves.
@@ -138,7 +138,7 @@ impl IncidentWaves {
         let most = train.in_water.breaking_height();
         if height > most {
             let what = format!("a wave {height} m high breaks on this current");
-            let mut help = format!("the highest that does not is {} m (Miche, McCowan)", two_digits_down(most));
+            let mut help = format!("the highest that does not is {} m (Miche, McCowan)", three_digits_down(most));
             if let Some(shortest) = shortest_unbroken(height, depth, current, g) {
                 help += &format!(", the shortest of this height has {} s", two_digits_up(shortest));
             }

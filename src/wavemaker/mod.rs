@@ -35,7 +35,7 @@ use std::f64::consts::FRAC_PI_2;
 
 use crate::{
     error::{Error, Result},
-    math::{format::two_digits_down, time_series::TimeSeries},
+    math::{format::three_digits_down, time_series::TimeSeries},
 };
 
 /// Largest number of components of a wave: the paddle motion sums all components at every step.
@@ -363,7 +363,7 @@ impl Wavemaker {
         let what =
             format!("{what}, {height:.3} m high, breaks: its period is {period:.3} s and the water {depth} m deep");
         Err(Error::scene(what)
-            .help(format!("the highest that does not is {} m (Miche, McCowan)", two_digits_down(most))))
+            .help(format!("the highest that does not is {} m (Miche, McCowan)", three_digits_down(most))))
     }
 
     /// Returns the tones of the paddle motion for these surface components. Refuses a flap whose displacement is too

@@ -91,10 +91,6 @@ pub trait Engine<const D: usize>: Send + Sync {
     /// Returns the present mobility of a solid.
     fn mobility(&self, solid: usize) -> Mobility<D>;
 
-    /// Returns the number of iterations of the last step. The engine stores the impulses of joints and ropes of the
-    /// last iteration only; this crate multiplies them by this number.
-    fn solver_iterations(&self) -> usize;
-
     /// Returns the impulses (N s, N m s) of joint number `joint` on its second solid in the last step. The impulses of
     /// its locks come first, rotations before translations, and then that of its end stop. Each impulse acts along the
     /// part of its row that is independent of the rows before: see `solid/constraint/jacobian.rs`.

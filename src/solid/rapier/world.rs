@@ -388,10 +388,6 @@ impl Engine<D> for RapierWorld {
         mobility_of(self.body(solid))
     }
 
-    fn solver_iterations(&self) -> usize {
-        self.iterations
-    }
-
     fn joint_impulses(&self, joint: usize) -> Vec<f64> {
         self.ties.joint_impulses(&self.world, joint, self.iterations)
     }
