@@ -66,8 +66,7 @@ where
     pub(crate) fn new(scene: &Scene, origin: RunOrigin, ranks: &Ranks) -> Result<Self> {
         let (begun, begun_cpu) = (Instant::now(), ProcessorTime::now());
         let built = scene.build_on::<D>(ranks).and_then(|built| device::check_ranks(scene, ranks).map(|()| built));
-        let digest = |built: &BuiltScene<D>| orders::setup_digest(&built);
-        let BuiltScene { setup, part, plan, initial_water, file_notes } = ranks.agree(built, digest)?;
+        let BuiltScene { setup, part, plan, initial_water, file_notes } = ranks.agree(built, orders::setup_digest)?;
         let leader = Leader::new(ranks.clone());
         let mut sim = Simulation::set_up(setup, WaterShare { ranks, part }).map_err(|e| scene.with_location(e))?;
         let probes = probe_factory::probes_from_plan(&plan, &mut sim)?;
