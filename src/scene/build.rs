@@ -405,7 +405,10 @@ impl<const D: usize> SceneParts<D> {
         if part.count == 0 {
             return Err(no_water_error(ctx, &water, solids));
         }
-        if let Some(i) = (0..first_buffer).find(|i| home.iter().all(|own| *own as usize != *i)) {
+        let mut counts = vec![0; water.len()];
+        home.iter().for_each(|own| counts[*own as usize] += 1);
+        owners.add_numbers(&mut counts);
+        if let Some(i) = counts[..first_buffer].iter().position(|count| *count == 0) {
             return Err(empty_water_error(ctx, i, water[i].inside.map(|solid| &solids[solid].name)));
         }
         let own_water: Vec<usize> =

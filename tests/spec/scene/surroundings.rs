@@ -74,7 +74,8 @@ fn cargo_that_is_fixed_in_a_dry_hold_displaces_no_water() {
         let cargo_centre = 0.39 - (0.4 - draft);
         let gm = 0.76f64.powi(3) / (12.0 * 0.13) + 0.5 * draft - (100.0 * barge_centre + 30.0 * cargo_centre) / 130.0;
         let told = own.afloat.as_ref().unwrap().tilts[0].gm_m;
-        assert!((told / gm - 1.0).abs() < 1e-6, "{told} m for {gm} m");
+        // The turn from which the restoring moment is taken changes it by 2e-4.
+        assert!((told / gm - 1.0).abs() < 1e-3, "{told} m for {gm} m");
     }
 }
 
@@ -226,7 +227,10 @@ fn a_thin_floor_carries_the_water() {
 #[test]
 fn a_release_after_the_removal_is_refused_at_its_key() {
     let body = block("b", [0.4, 0.2], "x = 0.8, draft = \"equilibrium\"", "density = 500.0, release = 0.8");
-    let refused = |until: &str| Scene::parse(&format!("{TANK}{SEA}{body}until = {until}\n"), Path::new(""), &[]);
+    let refused = |until: &str| {
+        let scene = Scene::parse(&format!("{TANK}{SEA}{body}until = {until}\n"), Path::new(""), &[])?;
+        scene.build::<2>().map(drop)
+    };
     let error = refused("0.5").expect_err("refused").to_string();
     assert!(error.contains("free.release") && error.contains("after its removal at 0.5 s"), "{error}");
     assert!(refused("0.9").is_ok());
