@@ -79,7 +79,7 @@ fn invalid_wave_keys_are_refused_with_file_line_key_and_remedy() {
     let flap =
         |height: f64| format!("hinge = [0.0, {height:?}], wave = {{ regular = {{ height = 0.1, period = 1.2 }} }}");
     let cases: [(String, &str, &str); 20] = [
-        (piston("regular = { height = 0.3, period = 1.2 }"), "wave.regular.height", "highest that does not is 0.198 m"),
+        (piston("regular = { height = 0.3, period = 1.2 }"), "wave.regular.height", "highest that does not is 0.197 m"),
         (piston("regular = { height = 0.1, period = 0.0 }"), "wave.regular.period", "positive"),
         (piston("regular = { height = -0.1, period = 1.0 }"), "wave.regular.height", "positive"),
         (piston("regular = { height = 0.1 }"), "wave.regular.period", "missing"),
