@@ -11,7 +11,7 @@ use crate::{
     error::{Error, Result},
     math::{Bounds, Matrix, Pose, Vector},
     solid::{
-        ConstraintChange, Kinematics, Load, Mobility, MooringReading, Role,
+        ConstraintChange, Kinematics, Load, Mobility, MooringReading, Role, Solid,
         mooring::{BedPlane, Junctions, LineState, LineStep, Mooring, MooringLine, NodeSurroundings, junctions},
     },
     system::{System, known_water},
@@ -66,12 +66,12 @@ impl<const D: usize> Moorings<D> {
         let mut lines: Vec<_> = specs.iter().map(|spec| Mooring::new(spec, start, system.properties().rho0)).collect();
         let reach = lines.iter().map(|mooring| mooring.line.state.segment).fold(made.bed_reach, f64::max);
         made.bed_reach = reach;
-        let near = |(i, solid): (usize, &crate::solid::Solid<D>)| {
+        let near = |(i, solid): (usize, &Solid<D>)| {
             let bounds = solid.spec.shape.bounds_at(&solid.kinematics.pose);
             matches!(solid.spec.role, Role::Fixed).then(|| (i, bounds.grown(reach)))
         };
         made.fixed = system.solids().iter().enumerate().filter_map(near).collect();
-        let takes_room = |(i, solid): (usize, &crate::solid::Solid<D>)| {
+        let takes_room = |(i, solid): (usize, &Solid<D>)| {
             let bounds = solid.spec.shape.bounds_at(&Pose::identity());
             let reach = system.model().support_radius();
             (!matches!(solid.spec.role, Role::Fixed)).then(|| (i, bounds.grown(reach)))

@@ -49,8 +49,8 @@ pub(super) struct RapierJoints {
     ropes: Vec<(ImpulseJointHandle, f64)>,
     /// The joints and ropes, for their rows.
     specs: (Vec<Joint<D>>, Vec<AttachedLine<D>>),
-    /// Impulses (N s, N m s) of the last step along the rows of joints and then of ropes, besides those of the engine.
-    besides: Vec<Vec<f64>>,
+    /// Impulses (N s, N m s) of the last step along the rows of joints and then of ropes, beside those of the engine.
+    added_impulses: Vec<Vec<f64>>,
     pub(super) contact_pairs: ContactPairHooks,
 }
 
@@ -104,7 +104,7 @@ impl RapierJoints {
             links.ropes.iter().map(|rope| AttachedLine::new(&rope.ends, start)).collect(),
         );
         let contact_pairs = ContactPairHooks(links.contacts.clone());
-        Self { joints, ropes, specs, besides: Vec::new(), contact_pairs }
+        Self { joints, ropes, specs, added_impulses: Vec::new(), contact_pairs }
     }
 
     /// Connects joint number `i` with these frames, or disconnects it.
@@ -157,14 +157,14 @@ impl RapierJoints {
         driven: &[Option<Kinematics<D>>],
         dt: f64,
     ) {
-        self.besides = vec![Vec::new(); self.joints.len() + self.ropes.len()];
+        self.added_impulses = vec![Vec::new(); self.joints.len() + self.ropes.len()];
         world.integration_parameters.num_internal_pgs_iterations = SWEEPS;
-        if self.besides.len() < 2 {
+        if self.added_impulses.len() < 2 {
             return;
         }
         let free = |end: Option<usize>| end.filter(|&solid| world.bodies[bodies[solid]].is_dynamic());
         let mut count = vec![0; bodies.len()];
-        for i in (0..self.besides.len()).filter(|&i| self.enabled(world, i).is_some()) {
+        for i in (0..self.added_impulses.len()).filter(|&i| self.enabled(world, i).is_some()) {
             self.ends(i).into_iter().filter_map(free).for_each(|solid| count[solid] += 1);
         }
         if count.iter().all(|&count| count < 2) {
@@ -177,17 +177,14 @@ impl RapierJoints {
         let solids: Vec<_> = bodies.iter().zip(driven).map(motion).collect();
         let loads: Vec<Load<D>> = bodies.iter().map(|body| load_on(world.gravity, &world.bodies[*body])).collect();
         let in_series = |i: usize| self.ends(i).into_iter().filter_map(free).any(|solid| count[solid] > 1);
-        let chosen: Vec<bool> = (0..self.besides.len()).map(in_series).collect();
+        let chosen: Vec<bool> = (0..self.added_impulses.len()).map(in_series).collect();
         let (rows, sizes) = self.rows(world, bodies, &solids, &chosen, dt);
         world.integration_parameters.num_internal_pgs_iterations = SWEEPS_IN_SERIES;
         let forces = series_forces(&rows, &solids, &loads, dt);
-        for (load, &body) in sum_loads(&rows, &forces, bodies.len()).iter().zip(bodies) {
-            let body = &mut world.bodies[body];
-            if body.is_dynamic() {
-                body.add_force(to_point(&load.force), false);
-                body.add_torque(to_angular(&load.torque), false);
-            }
-        }
+        give(world, bodies, &sum_loads(&rows, &forces, bodies.len()), |body, load| {
+            body.add_force(to_point(&load.force), false);
+            body.add_torque(to_angular(&load.torque), false);
+        });
         self.record(&sizes, &forces, dt);
     }
 
@@ -201,7 +198,7 @@ impl RapierJoints {
         driven: &[Option<Kinematics<D>>],
         dt: f64,
     ) {
-        if self.besides.is_empty() {
+        if self.added_impulses.is_empty() {
             return;
         }
         let motion = |(body, target): (&RigidBodyHandle, &Option<Kinematics<D>>)| {
@@ -209,16 +206,13 @@ impl RapierJoints {
         };
         let solids: Vec<_> = bodies.iter().zip(driven).map(motion).collect();
         let pulled = |i: usize| i.checked_sub(self.joints.len()).is_none_or(|i| self.rope_impulse(world, i, 1) > 0.0);
-        let chosen: Vec<bool> = (0..self.besides.len()).map(pulled).collect();
+        let chosen: Vec<bool> = (0..self.added_impulses.len()).map(pulled).collect();
         let (rows, sizes) = self.rows(world, bodies, &solids, &chosen, dt);
         let forces = series_forces(&rows, &solids, &vec![Load::zero(); solids.len()], dt);
-        for (load, &body) in sum_loads(&rows, &forces, bodies.len()).iter().zip(bodies) {
-            let body = &mut world.bodies[body];
-            if body.is_dynamic() {
-                body.apply_impulse(to_point(&(load.force * dt)), false);
-                body.apply_torque_impulse(to_angular(&(load.torque * dt)), false);
-            }
-        }
+        give(world, bodies, &sum_loads(&rows, &forces, bodies.len()), |body, load| {
+            body.apply_impulse(to_point(&(load.force * dt)), false);
+            body.apply_torque_impulse(to_angular(&(load.torque * dt)), false);
+        });
         self.record(&sizes, &forces, dt);
     }
 
@@ -275,15 +269,15 @@ impl RapierJoints {
     /// Adds the impulses of `forces` along the rows, of which tie number i has `sizes[i]`, in a step of `dt` (s).
     fn record(&mut self, sizes: &[usize], forces: &[f64], dt: f64) {
         let mut forces = forces.iter();
-        for (impulses, &size) in self.besides.iter_mut().zip(sizes) {
+        for (impulses, &size) in self.added_impulses.iter_mut().zip(sizes) {
             impulses.resize(impulses.len().max(size), 0.0);
             impulses.iter_mut().zip(forces.by_ref().take(size)).for_each(|(impulse, force)| *impulse += force * dt);
         }
     }
 
-    /// Returns the impulse (N s, N m s) that row number `row` of tie number `i` has besides that of the engine.
-    fn impulse_besides(&self, i: usize, row: usize) -> f64 {
-        self.besides.get(i).and_then(|rows| rows.get(row)).copied().unwrap_or(0.0)
+    /// Returns the impulse (N s, N m s) that row number `row` of tie number `i` has beside that of the engine.
+    fn added_impulse(&self, i: usize, row: usize) -> f64 {
+        self.added_impulses.get(i).and_then(|rows| rows.get(row)).copied().unwrap_or(0.0)
     }
 
     /// Returns the impulses (N s, N m s) of joint number `i` on its second solid in the last step: of its locks in
@@ -296,14 +290,29 @@ impl RapierJoints {
             modes_rotations_first::<D>().filter(|i| limited >> i & 1 == 1).map(|i| joint.data.limits[i].impulse);
         // The engine stores the impulses of its last iteration only.
         let all = locks.chain(stops).map(|impulse| -impulse * iterations as f64).enumerate();
-        all.map(|(row, impulse)| impulse + self.impulse_besides(i, row)).collect()
+        all.map(|(row, impulse)| impulse + self.added_impulse(i, row)).collect()
     }
 
     /// Returns the impulse (N s) of rope number `i` in the last step.
     pub(super) fn rope_impulse(&self, world: &PhysicsWorld, i: usize, iterations: usize) -> f64 {
         let rest = |rope: &ImpulseJoint| rope.data.limits[0].impulse * iterations as f64;
         let rest = world.impulse_joints.get(self.ropes[i].0).map_or(0.0, rest);
-        rest - self.impulse_besides(self.joints.len() + i, 0)
+        rest - self.added_impulse(self.joints.len() + i, 0)
+    }
+}
+
+/// Gives each of `bodies` that is free its load (N, N m) of `loads`, as `act` does.
+fn give(
+    world: &mut PhysicsWorld,
+    bodies: &[RigidBodyHandle],
+    loads: &[Load<D>],
+    act: impl Fn(&mut RigidBody, &Load<D>),
+) {
+    for (load, &body) in loads.iter().zip(bodies) {
+        let body = &mut world.bodies[body];
+        if body.is_dynamic() {
+            act(body, load);
+        }
     }
 }
 
