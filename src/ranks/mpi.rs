@@ -1,15 +1,27 @@
 //! Ranks that are processes, by MPI.
 
+use std::{
+    thread,
+    time::{Duration, Instant},
+};
+
 use ::mpi::{
     Count, Threading,
     datatype::PartitionMut,
     environment::{Universe, processor_name},
+    request::{Request, Scope, scope},
     topology::SimpleCommunicator,
     traits::{Communicator as _, CommunicatorCollectives as _, Destination as _, Source as _},
 };
 
 use super::{Exchange, Ranks};
 use crate::error::{Error, ErrorKind, Result};
+
+/// Time for which a rank polls for the end of an exchange before it sleeps between two looks.
+const POLLED: Duration = Duration::from_micros(50);
+
+/// Longest sleep between two looks.
+const LONGEST_SLEEP: Duration = Duration::from_micros(200);
 
 /// MPI, from its start to its end. Keep it for as long as ranks exchange.
 #[expect(missing_debug_implementations, reason = "`Universe` has none")]
@@ -63,23 +75,34 @@ impl Exchange for Processes {
             Some(*end - n)
         };
         let starts: Vec<Count> = counts.iter().scan(0, first).collect();
-        SimpleCommunicator::world().all_gather_varcount_into(own, &mut PartitionMut::new(all, counts, starts));
+        let mut all = PartitionMut::new(all, counts, starts);
+        scope(|scope| complete(SimpleCommunicator::world().immediate_all_gather_varcount_into(scope, own, &mut all)));
     }
 
     fn pass(&self, (to, out): (Option<usize>, &[u32]), (from, into): (Option<usize>, &mut [u32])) {
         let world = SimpleCommunicator::world();
-        ::mpi::request::scope(|scope| {
+        scope(|scope| {
             let sent = to.map(|rank| world.process_at_rank(rank as i32).immediate_send(scope, out));
             if let Some(rank) = from {
-                world.process_at_rank(rank as i32).receive_into(into);
+                complete(world.process_at_rank(rank as i32).immediate_receive_into(scope, into));
             }
-            if let Some(sent) = sent {
-                sent.wait();
-            }
+            sent.into_iter().for_each(complete);
         });
     }
 
     fn abort(&self, code: i32) -> ! {
         SimpleCommunicator::world().abort(code)
+    }
+}
+
+/// Waits for the end of an exchange. MPI libraries poll while they wait; a rank that waits for a slower one sleeps instead.
+fn complete<'a, D: ?Sized, S: Scope<'a>>(mut request: Request<'a, D, S>) {
+    let start = Instant::now();
+    while let Err(pending) = request.test() {
+        request = pending;
+        let waited = start.elapsed();
+        if waited > POLLED {
+            thread::sleep((waited / 4).min(LONGEST_SLEEP));
+        }
     }
 }

@@ -56,12 +56,13 @@ pub(super) struct RapierJoints {
 
 impl RapierJoints {
     /// Adds the joints and ropes of `links` to `world`, in which `bodies` represent the solids with starting kinematics
-    /// `start`.
+    /// `start` and `restitution` (–).
     pub(super) fn new(
         world: &mut PhysicsWorld,
         bodies: &[RigidBodyHandle],
         links: &Constraints<D>,
         start: &[Kinematics<D>],
+        restitution: Vec<f64>,
     ) -> Self {
         let on_ground = links.joints.iter().any(|joint| joint.between.contains(&None))
             || links.ropes.iter().any(|rope| rope.ends.iter().any(|end| end.solid.is_none()));
@@ -103,7 +104,7 @@ impl RapierJoints {
             links.joints.iter().map(|joint| Joint::new(joint.clone(), start)).collect(),
             links.ropes.iter().map(|rope| AttachedLine::new(&rope.ends, start)).collect(),
         );
-        let contact_pairs = ContactPairHooks(links.contacts.clone());
+        let contact_pairs = ContactPairHooks { own: links.contacts.clone(), restitution, slowest: 0.0 };
         Self { joints, ropes, specs, added_impulses: Vec::new(), contact_pairs }
     }
 
@@ -322,33 +323,51 @@ fn load_on(gravity: Point, body: &RigidBody) -> Load<D> {
     Load { force, torque: from_angular(body.user_torque()) }
 }
 
-/// Contact properties of the pairs of solids that have their own.
-pub(super) struct ContactPairHooks(ContactPairs);
+/// Contact properties of pairs of solids.
+pub(super) struct ContactPairHooks {
+    /// The pairs that have properties of their own.
+    own: ContactPairs,
+    /// Restitution of each solid, –.
+    pub(super) restitution: Vec<f64>,
+    /// Approach speed above which bodies with restitution meet by impulses, m/s.
+    pub(super) slowest: f64,
+}
 
 impl ContactPairHooks {
     /// Returns whether no pair has its own contact properties.
     pub(super) fn is_empty(&self) -> bool {
-        self.0.is_empty()
+        self.own.is_empty()
     }
 
-    /// Returns the restitution and friction of two solids. `restitution` holds the value of each solid, and `friction`
-    /// is the mean of both solids' values.
-    pub(super) fn restitution_and_friction(
-        &self,
-        a: usize,
-        b: usize,
-        restitution: &[f64],
-        friction: f64,
-    ) -> (f64, f64) {
-        let own = self.0.find(a, b);
-        let usual = 0.5 * (restitution[a] + restitution[b]);
+    /// Returns the restitution and friction of two solids. `friction` is the mean of both solids' values.
+    pub(super) fn restitution_and_friction(&self, a: usize, b: usize, friction: f64) -> (f64, f64) {
+        let own = self.own.find(a, b);
+        let usual = 0.5 * (self.restitution[a] + self.restitution[b]);
         (own.and_then(|spec| spec.restitution).unwrap_or(usual), own.and_then(|spec| spec.friction).unwrap_or(friction))
     }
 
     /// Returns the contact properties of the pair of solids that own two colliders.
     fn of(&self, colliders: &ColliderSet, pair: [ColliderHandle; 2]) -> Option<&ContactSpec> {
         let [a, b] = pair.map(|collider| colliders[collider].user_data as usize);
-        self.0.find(a, b)
+        self.own.find(a, b)
+    }
+
+    /// Removes the points of a contact whose bodies do not touch yet and will meet by impulses. The engine would slow them before.
+    fn leave_to_impacts(&self, context: &mut ContactModificationContext) {
+        let [a, b] = [context.collider1, context.collider2].map(|i| context.colliders[i].user_data as usize);
+        if self.restitution_and_friction(a, b, 0.0).0 == 0.0 {
+            return;
+        }
+        let bodies = context.bodies;
+        let [first, second] = [context.rigid_body1, context.rigid_body2].map(|body| body.and_then(|i| bodies.get(i)));
+        let velocity = |body: Option<&RigidBody>, at| body.map_or(Point::ZERO, |body| body.velocity_at_point(at));
+        if let Some(contact) = context.rigid_mut() {
+            let (normal, slowest) = (*contact.normal, self.slowest);
+            contact.solver_contacts.retain(|point| {
+                let approach = velocity(first, point.anchor1) - velocity(second, point.anchor2);
+                point.dist <= 0.0 || approach.dot(normal) <= slowest
+            });
+        }
     }
 }
 
@@ -363,6 +382,7 @@ impl PhysicsHooks for ContactPairHooks {
         if let (Some(friction), Some(contact)) = (own, context.rigid_mut()) {
             *contact.friction = friction;
         }
+        self.leave_to_impacts(context);
         align(context);
     }
 }

@@ -49,14 +49,14 @@ impl RapierWorld {
     /// Adds a solid after all others.
     pub(super) fn append_solid(&mut self, solid: &SolidSpec<D>, start: &Kinematics<D>) -> Result<()> {
         let parts = parts(solid)?;
-        let hooks = if self.ties.contact_pairs.is_empty() { HOOKS } else { ActiveHooks::all() };
-        let body = insert_solid(&mut self.world, self.bodies.len(), solid, start, &parts, hooks);
+        let pairs = !self.ties.contact_pairs.is_empty();
+        let body = insert_solid(&mut self.world, self.bodies.len(), solid, start, &parts, pairs);
         if let Role::Free(_) = solid.role {
             self.reach = self.reach.min(0.1 * thickness(&parts));
         }
         self.bodies.push(body);
         self.locks.push(self.world.bodies[body].locked_axes());
-        self.restitution.push(solid.restitution);
+        self.ties.contact_pairs.restitution.push(solid.restitution);
         self.bounces |= solid.restitution > 0.0;
         self.gone.push(false);
         self.when_near = iterations_in_contact(&self.world);
@@ -90,15 +90,20 @@ pub(super) fn iterations_in_contact(world: &PhysicsWorld) -> usize {
     for_masses(free.map(|(_, body)| body.mass()))
 }
 
-/// Adds solid number `index` to `world`.
+/// Adds solid number `index` to `world`. `pairs` tells whether pairs of solids have contact properties of their own.
 pub(super) fn insert_solid(
     world: &mut PhysicsWorld,
     index: usize,
     solid: &SolidSpec<D>,
     start: &Kinematics<D>,
     parts: &ConvexParts,
-    hooks: ActiveHooks,
+    pairs: bool,
 ) -> RigidBodyHandle {
+    let hooks = match solid.restitution {
+        _ if pairs => ActiveHooks::all(),
+        0.0 => HOOKS,
+        _ => HOOKS | ActiveHooks::MODIFY_SOLVER_CONTACTS,
+    };
     let builder = match (&solid.role, solid.initial_body()) {
         (Role::Driven(_), _) => RigidBodyBuilder::kinematic_position_based(),
         (_, None) => RigidBodyBuilder::fixed(),

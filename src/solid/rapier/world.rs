@@ -34,7 +34,7 @@ mod contact_forces;
 use super::rapier::{
     dynamics::{LockedAxes, RigidBody, RigidBodyHandle, SpringCoefficients},
     math::{Pose as Frame, Vector as Point},
-    pipeline::{ActiveHooks, PhysicsWorld},
+    pipeline::PhysicsWorld,
 };
 use super::{
     Angular, D, ENGINE, HOOKS, from_angular, from_rotation, inverse_inertia, lock, mass_properties, to_angular,
@@ -65,7 +65,6 @@ const ALONE: f64 = 1e-12;
 pub(in crate::solid) struct RapierWorld {
     world: PhysicsWorld,
     bodies: Vec<RigidBodyHandle>,
-    restitution: Vec<f64>,
     /// Whether any pair of solids can have a restitution.
     bounces: bool,
     /// Iterations of a step in which bodies may touch.
@@ -119,12 +118,12 @@ impl RapierWorld {
         let free = solids.iter().zip(&all_parts).filter(|(solid, _)| matches!(solid.role, Role::Free(_)));
         let reach = 0.1 * free.map(|(_, parts)| thickness(parts)).fold(0.2, f64::min);
         settle(&mut world, reach);
-        let hooks = if links.contacts.is_empty() { HOOKS } else { ActiveHooks::all() };
-        let insert = |i: usize| registry::insert_solid(&mut world, i, &solids[i], &start[i], &all_parts[i], hooks);
+        let pairs = !links.contacts.is_empty();
+        let insert = |i: usize| registry::insert_solid(&mut world, i, &solids[i], &start[i], &all_parts[i], pairs);
         let bodies: Vec<_> = (0..solids.len()).map(insert).collect();
-        let ties = RapierJoints::new(&mut world, &bodies, links, start);
-        let locks = bodies.iter().map(|&body| world.bodies[body].locked_axes()).collect();
         let restitution = solids.iter().map(|solid| solid.restitution).collect();
+        let ties = RapierJoints::new(&mut world, &bodies, links, start, restitution);
+        let locks = bodies.iter().map(|&body| world.bodies[body].locked_axes()).collect();
         let rebounds = |a, b| links.contacts.find(a, b).and_then(|pair| pair.restitution).is_some_and(|e| e > 0.0);
         let bounces = solids.iter().any(|solid| solid.restitution > 0.0)
             || (0..solids.len()).any(|b| (0..b).any(|a| rebounds(a, b)));
@@ -133,7 +132,6 @@ impl RapierWorld {
         Ok(Self {
             world,
             bodies,
-            restitution,
             bounces,
             when_near,
             iterations: 1,
@@ -295,8 +293,9 @@ impl Engine<D> for RapierWorld {
         self.drive(driven)?;
         let before: Vec<Point> = (0..self.bodies.len()).map(|i| self.body(i).linvel()).collect();
         let spins: Vec<Angular> = (0..self.bodies.len()).map(|i| self.body(i).angvel()).collect();
+        self.ties.contact_pairs.slowest = restitution::slowest_impact(&self.world, dt);
         self.met = restitution::apply_impacts(&mut self.world, dt, |a, b, mu| {
-            self.ties.contact_pairs.restitution_and_friction(a, b, &self.restitution, mu)
+            self.ties.contact_pairs.restitution_and_friction(a, b, mu)
         });
         self.ties.update_rope_limits(&mut self.world, dt);
         self.ties.apply_series_loads(&mut self.world, &self.bodies, driven, dt);
