@@ -211,7 +211,7 @@ fn build_report<const D: usize>(scene: &Scene, timed: bool) -> Result<Inspection
 where
     Dim<D>: Dimension<D>,
 {
-    let parts = scene.parts::<D>()?;
+    let parts = scene.parts::<D>(1)?;
     let size = parts.estimated_size();
     if size.fluid + size.boundary > LARGE {
         return Ok(Inspection::Estimate(CostEstimate::new(scene, &size)));

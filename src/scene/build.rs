@@ -32,7 +32,7 @@ use crate::{
     system::{Periodic, buffer_length, check_open_boundary, own_water::allow_division, periodic},
 };
 
-/// Largest number of particles in a scene: they need about 100 GB of memory.
+/// Largest number of particles of a process: they need about 100 GB of memory.
 const MOST_PARTICLES: f64 = 2e8;
 
 /// A scene after construction.
@@ -137,23 +137,24 @@ impl Scene {
 
     #[inline(never)]
     fn build_2d(&self, ranks: &Ranks) -> Result<BuiltScene<2>> {
-        ranks.agree(self.parts(), |_| String::new())?.fill(ranks)
+        ranks.agree(self.parts(ranks.count()), |_| String::new())?.fill(ranks)
     }
 
     #[inline(never)]
     fn build_3d(&self, ranks: &Ranks) -> Result<BuiltScene<3>> {
-        ranks.agree(self.parts(), |_| String::new())?.fill(ranks)
+        ranks.agree(self.parts(ranks.count()), |_| String::new())?.fill(ranks)
     }
 
     fn other_dimension(&self, asked: usize) -> Error {
         Error::new(ErrorKind::Usage, format!("this scene is {}-D, not {asked}-D", self.dimension))
     }
 
-    /// Opens the files that the scene names, and returns all parts of the simulation except for the particles.
+    /// Opens the files that the scene names, and returns all parts of the simulation except for the particles. At most `ranks` processes
+    /// share the water.
     ///
     /// # Errors
     /// The errors of [`Scene::build`], except for those of the filling.
-    pub(crate) fn parts<const D: usize>(&self) -> Result<SceneParts<D>> {
+    pub(crate) fn parts<const D: usize>(&self, ranks: usize) -> Result<SceneParts<D>> {
         if self.dimension != D {
             return Err(self.other_dimension(D));
         }
@@ -179,7 +180,7 @@ impl Scene {
         periodic::check(&periodic, has_planes, &model, solids, &constraints)
             .and_then(|()| periodic::check_motions(&periodic, has_planes, &model, solids, scene.until))
             .map_err(|e| ctx.with_location(e, "periodic"))?;
-        require_affordable(ctx, &water, solids)?;
+        require_affordable(ctx, &water, solids, ranks)?;
         let file_notes = ctx.file_notes.take();
         Ok(SceneParts { scene, water, still, gravity_law, model, placed, constraints, domain, periodic, file_notes })
     }
@@ -224,7 +225,7 @@ impl Scene {
         let model = self.model.build(ctx, &self.time, &StillWaterLevel::of(&water))?;
         let solids = placed_solids::<D>(self, ctx, &water, false)?.specs;
         require_plausible_units(ctx, &self.solid, &water, &solids)?;
-        require_affordable(ctx, &water, &solids)?;
+        require_affordable(ctx, &water, &solids, 1)?;
         Ok(self.size_estimate(ctx, &water, &model, &solids))
     }
 
@@ -393,6 +394,7 @@ impl<const D: usize> SceneParts<D> {
             && scene.jitter.is_none();
         let alone = Ranks::default();
         let owners = if is_shared { ranks } else { &alone };
+        require_affordable(ctx, &water, solids, owners.count())?;
         let filling = Filling { regions: &regions, inside, solids: &solid_shapes, spaces: &spaces, ranks, owners };
         let Filled { water: mut filled, mut home, has_own_water } =
             filling.fill(scene.dp).map_err(|e| ctx.with_location(e, "water"))?;
@@ -569,12 +571,19 @@ fn estimated_counts<const D: usize>(ctx: &Context, water: &[WaterBody<D>], solid
     (volume / ctx.dp.powi(dimension), surface * ctx.layers() as f64 / ctx.dp.powi(dimension - 1))
 }
 
-/// Refuses a scene with more particles than [`MOST_PARTICLES`] before any particle is created.
-fn require_affordable<const D: usize>(ctx: &Context, water: &[WaterBody<D>], solids: &[SolidSpec<D>]) -> Result<()> {
+/// Refuses a scene with more particles than [`MOST_PARTICLES`] for each of `ranks` processes, which share the water, before any particle
+/// is created.
+fn require_affordable<const D: usize>(
+    ctx: &Context,
+    water: &[WaterBody<D>],
+    solids: &[SolidSpec<D>],
+    ranks: usize,
+) -> Result<()> {
     require_near_origin(ctx, water)?;
     let (fluid, boundary) = estimated_counts(ctx, water, solids);
-    let all = fluid + boundary;
-    if all.is_finite() && all <= MOST_PARTICLES {
+    let (all, own) = (fluid + boundary, fluid / ranks as f64 + boundary);
+    // Particles have numbers of 32 bits.
+    if own <= MOST_PARTICLES && all < f64::from(u32::MAX) {
         return Ok(());
     }
     let (volume, surface) = volume_and_surface(water, solids);
@@ -588,8 +597,8 @@ fn require_affordable<const D: usize>(ctx: &Context, water: &[WaterBody<D>], sol
         ctx.layers(),
         ["", "²"][D - 2],
     );
-    let dp = 1.05 * ctx.dp * (all / MOST_PARTICLES).powf(1.0 / D as f64);
-    let help = format!("the most is {MOST_PARTICLES:.0e}: write  dp = {dp:.1e}  or more");
+    let dp = 1.05 * ctx.dp * (own / MOST_PARTICLES).powf(1.0 / D as f64);
+    let help = format!("the most is {MOST_PARTICLES:.0e} a process: write  dp = {dp:.1e}  or more");
     Err(ctx.error_with_help("dp", what, help))
 }
 
@@ -610,3 +619,7 @@ fn jitter<const D: usize>(points: &mut [Vector<D>], by: f64) {
         *x += by * (2.0 * part - 1.0);
     }
 }
+
+#[cfg(test)]
+#[path = "../../tests/unit/scene/build.rs"]
+mod tests;

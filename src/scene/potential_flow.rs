@@ -52,7 +52,7 @@ impl PanelledScene {
         if panel_count == 0 {
             return Err(usage("a body needs one panel or more".into(), "name a number, as  --panels 800".into()));
         }
-        let parts = scene.parts::<3>()?;
+        let parts = scene.parts::<3>(1)?;
         let gravity = parts.gravity()?;
         let chosen = chosen_solids(&parts, names)?;
         let bodies = chosen.into_iter().map(|i| parts.panelled_body(i, gravity, panel_count)).collect();

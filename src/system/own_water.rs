@@ -258,7 +258,7 @@ pub(super) fn restore<const D: usize>(
         division.set_own_water(own, count);
     }
     set_apart(system, true);
-    let mut now = StateAtStart { water: now, boundary_density: Vec::new() };
+    let mut now = StateAtStart { water: now, first: 0, boundary_density: Vec::new() };
     let columns = share_out(system, Some(&mut now), true);
     let next = take_next_slab(system, &columns);
     system.neighbours.build_own(&columns, &system.fluid.particles.r, &next, boundary);
@@ -291,7 +291,7 @@ pub(super) fn share_out<const D: usize>(
     let numbers = Particles::<D>::NUMBERS;
     let Fluid { particles, gradient_correction, .. } = &mut system.fluid;
     let corrections = gradient_correction.as_mut().filter(|_| corrected);
-    let start = start.map(|start| &mut start.water);
+    let start = start.map(|start| start.for_all(count));
     let states = if start.is_some() { 2 } else { 1 };
     let width = states * numbers + if corrections.is_some() { D * D } else { 0 };
     type Data<'a, const D: usize> =
@@ -420,19 +420,11 @@ pub(super) fn take_next_slab<const D: usize>(system: &mut System<D>, columns: &C
     next
 }
 
-/// Arrays as long as those of `all`, of which only the places `these` are written, and no names.
-fn part<const D: usize>(all: &Particles<D>, these: &Range<usize>) -> Particles<D> {
-    let mut part = Particles::unwritten(all.len());
-    part.r[these.clone()].copy_from_slice(&all.r[these.clone()]);
-    part.v[these.clone()].copy_from_slice(&all.v[these.clone()]);
-    part.rho[these.clone()].copy_from_slice(&all.rho[these.clone()]);
-    part
-}
-
 /// The state of this rank's water and of its boundary particles near water at the start of a step.
 pub(crate) struct StateAtStart<const D: usize> {
-    /// The water, without names.
+    /// The water from particle `first` on, without names.
     water: Particles<D>,
+    first: usize,
     /// Densities of the boundary particles near water that this rank advances, kg/m³.
     boundary_density: Vec<f64>,
 }
@@ -440,12 +432,16 @@ pub(crate) struct StateAtStart<const D: usize> {
 impl<const D: usize> StateAtStart<D> {
     /// That of the present.
     pub(crate) fn of(system: &System<D>) -> Self {
-        let now @ Particles { r, v, rho, .. } = &system.fluid.particles;
-        let water = match division(&system.neighbours) {
-            None => Particles { r: r.clone(), v: v.clone(), rho: rho.clone(), id: Vec::new() },
-            Some(division) => part(now, &division.own_range(r.len())),
+        let Particles { r, v, rho, .. } = &system.fluid.particles;
+        let own = division(&system.neighbours).map_or(0..r.len(), |division| division.own_range(r.len()));
+        let first = own.start;
+        let water = Particles {
+            r: r[own.clone()].to_vec(),
+            v: v[own.clone()].to_vec(),
+            rho: rho[own].to_vec(),
+            id: Vec::new(),
         };
-        let mut start = Self { water, boundary_density: Vec::new() };
+        let mut start = Self { water, first, boundary_density: Vec::new() };
         start.set_boundary_densities(system, &system.boundary.particles.rho);
         start
     }
@@ -453,8 +449,21 @@ impl<const D: usize> StateAtStart<D> {
     /// Position (m), velocity (m/s) and density (kg/m³) of water particle `i`.
     #[inline(always)]
     pub(crate) fn particle(&self, i: usize) -> (Vector<D>, Vector<D>, f64) {
-        let Particles { r, v, rho, .. } = &self.water;
+        let (Particles { r, v, rho, .. }, i) = (&self.water, i - self.first);
         (r[i], v[i], rho[i])
+    }
+
+    /// The water, in arrays that have places for all `count` particles.
+    fn for_all(&mut self, count: usize) -> &mut Particles<D> {
+        let Self { water, first, .. } = self;
+        if water.len() < count {
+            let (own, part) = (*first..*first + water.len(), std::mem::replace(water, Particles::unwritten(count)));
+            water.r[own.clone()].copy_from_slice(&part.r);
+            water.v[own.clone()].copy_from_slice(&part.v);
+            water.rho[own].copy_from_slice(&part.rho);
+            *first = 0;
+        }
+        water
     }
 
     /// Density (kg/m³) of the boundary particle at this place among those near water that this rank advances.
