@@ -21,7 +21,7 @@ use crate::error::{Error, ErrorKind, Result};
 const POLLED: Duration = Duration::from_micros(50);
 
 /// Longest sleep between two looks.
-const LONGEST_SLEEP: Duration = Duration::from_micros(200);
+const LONGEST_SLEEP: Duration = Duration::from_millis(1);
 
 /// MPI, from its start to its end. Keep it for as long as ranks exchange.
 #[expect(missing_debug_implementations, reason = "`Universe` has none")]
@@ -102,7 +102,7 @@ fn complete<'a, D: ?Sized, S: Scope<'a>>(mut request: Request<'a, D, S>) {
         request = pending;
         let waited = start.elapsed();
         if waited > POLLED {
-            thread::sleep((waited / 4).min(LONGEST_SLEEP));
+            thread::sleep((waited / 8).min(LONGEST_SLEEP));
         }
     }
 }
