@@ -5,6 +5,7 @@
 //! method finds the rises at which buoyancy, weight, lines and forces balance. A rope is a stiff spring that only pulls; the
 //! bottom of the water is a stiff spring that only pushes.
 
+mod linkage;
 mod strength;
 mod support;
 mod ties;
