@@ -110,6 +110,23 @@ fn loose_cargo_in_a_dry_hold_stands_there_and_is_noted() {
     assert!(find(&falls, "beside_water").unwrap().what.contains("\"b\" starts where no water is"), "{falls:#?}");
 }
 
+/// Beside water to 0.4 m a piston in water to 0.2 m makes waves for 0.2 m: by linear theory those of 1 s are 1.212 m long there, and
+/// 1.464 m in 0.4 m.
+#[test]
+fn a_paddle_in_the_lower_of_two_basins_makes_waves_for_its_depth() {
+    let wave = "driven = { along = [1.0, 0.0], wave = { regular = { height = 0.02, period = 1.0 } } }";
+    let paddle = |x: f64, top: f64| {
+        format!(
+            "[[solid]]\nname = \"paddle\"\nshape = {{ box = {{ size = [0.08, {top}] }} }}\nat = {{ x = {x}, bottom = 0.0 }}\n{wave}\n"
+        )
+    };
+    let lower = BASINS.replace("min = [0.84, 0.0]", "min = [1.0, 0.0]");
+    let found = report(&format!("{TANK}{lower}{}", paddle(0.96, 0.35)));
+    let own = &found.waves[0];
+    assert!((own.depth_m - 0.2).abs() < 1e-9 && (own.length_m - 1.212).abs() < 0.001, "{own:?}");
+    assert!(find(&found, "drowned_paddle").is_none() && find(&found, "wrong_depth").is_none(), "{found:#?}");
+}
+
 /// A box of half the density of water and 0.1 m high floats 0.05 m deep in its own basin, with its bottom at 0.15 m.
 #[test]
 fn a_body_in_the_lower_of_two_basins_has_its_draft_there() {
