@@ -20,12 +20,13 @@ use super::{
     Finding, PreflightContext,
     expected_errors::heave_error,
     gaps::Gaps,
-    hinged_bodies::{FreeAssembly, free_assembly_finding},
+    hinged_bodies::{FreeAssembly, free_assembly, free_assembly_finding},
     hollows::{hull, is_in_dry_hollow},
     lifetimes::overload,
     surface_samples::SurfaceSample,
     surroundings::Surroundings,
     thickness::{load_error, thinnest_part},
+    turns::{LARGEST_ESTIMATE, linear_heel, turn_finding},
 };
 use crate::{
     math::{
@@ -42,23 +43,11 @@ use crate::{
     },
 };
 
-/// Heel (rad) from equilibrium below which no finding is reported: half a degree.
-pub(super) const LEVEL: f64 = 0.5 * PI / 180.0;
-
 /// Number of intervals of a run at whose ends the metacentric height of a body with ballast is computed.
 const BALLAST_TIMES: u32 = 50;
 
-/// Turn (rad) to rest beyond which a body turns over.
-const OVER: f64 = 0.5 * PI;
-
-/// Turn (rad) to rest up to which a body with a negative metacentric height does not turn over: ten degrees.
-const SMALL_TURN: f64 = PI / 18.0;
-
 /// Share by which facets and samples may find a part thinner than it is.
 const CHORD_ERROR: f64 = 0.01;
-
-/// Largest heel (degrees) that is estimated for small angles.
-const LARGEST_ESTIMATE: f64 = 45.0;
 
 /// Metacentric height over the least extent of a body below which it is neutral: facets and round-off give a
 /// homogeneous ball a small one; its true one is 0.
@@ -134,7 +123,8 @@ pub struct Equilibrium {
     /// The turn that `heel_deg` tells, if it is no estimate.
     #[serde(skip)]
     pub(crate) turn: Option<Turn>,
-    /// The assembly with the joints between its bodies free; absent without such joints, and if it is not judged.
+    /// The assembly with the joints between its bodies free, at its first body that floats; absent without such joints, and if it is
+    /// not judged.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub free_joints: Option<FreeAssembly>,
 }
@@ -148,68 +138,6 @@ pub struct Tilt {
     pub gm_m: f64,
     /// Period of roll without added inertia, s; absent unless GM is positive.
     pub period_s: Option<f64>,
-}
-
-/// Returns the estimated heel (rad) of an assembly between its start and rest, from its levers and metacentric heights at the
-/// start.
-fn linear_heel<const D: usize>(statics: &StaticSystem<D>, number: usize, tilts: &[Tilt]) -> f64 {
-    let along = |axis: &[f64]| statics.lever(number, axis, 0.0).iter().zip(axis).map(|(l, a)| l * a).sum::<f64>();
-    // A body of revolution on its side has GM = 0 and no heel.
-    let heel = |t: &Tilt| if t.gm_m == 0.0 { 0.0 } else { along(&t.axis) / t.gm_m };
-    tilts.iter().fold(0.0, |sum: f64, t| sum.hypot(heel(t)))
-}
-
-/// Returns a finding about the turn of an assembly from its start to its rest; `called`: its name, and the endings of words
-/// about it.
-fn turn_finding<const D: usize>(
-    afloat: &Equilibrium,
-    (statics, number): (&StaticSystem<D>, usize),
-    (name, verb, its): (&str, &str, &str),
-) -> Option<Finding> {
-    let least = afloat.tilts.iter().map(|t| t.gm_m).fold(f64::INFINITY, f64::min);
-    let level_it = "turn it by so much (angle_deg, turn_deg), or put its centre of mass under its buoyancy";
-    let lower = || {
-        format!("lower {its} centre of mass by {} m or more (centre_offset), or lock {its} turn", two_digits_up(-least))
-    };
-    match afloat.turn {
-        Some(Turn::Floods(angle)) => {
-            let at = three_digits(angle.to_degrees());
-            let what = format!("{name} floods as it turns: {at}° from its start the still water stands at its rim");
-            Some(Finding::warning("hull_floods", what, level_it.into()))
-        }
-        Some(Turn::Rests(angle)) => {
-            let is_unstable = least < 0.0 && linear_heel(statics, number, &afloat.tilts) < LEVEL;
-            let rest = three_digits(angle.to_degrees());
-            if angle > OVER || (is_unstable && angle > SMALL_TURN) {
-                let height = match is_unstable {
-                    true => format!(": its metacentric height is {} m", three_digits(least)),
-                    false => String::new(),
-                };
-                let what = format!("{name} will turn over, to rest at {rest}° from its start{height}");
-                let mend = match is_unstable {
-                    true => lower(),
-                    false => "put its centre of mass under its buoyancy (centre_offset), or lock its turn".into(),
-                };
-                return Some(Finding::warning("capsizes", what, mend));
-            }
-            (angle > LEVEL)
-                .then(|| Finding::note("lists", format!("{name} turns by {rest}° to its rest"), level_it.into()))
-        }
-        None if least < 0.0 => {
-            let what = format!("{name} will turn over: {its} metacentric height is {} m", three_digits(least));
-            Some(Finding::warning("capsizes", what, lower()))
-        }
-        None => {
-            let heel = afloat.heel_deg.filter(|heel| *heel > LEVEL.to_degrees())?;
-            let far = if heel < LARGEST_ESTIMATE { "about" } else { "more than" };
-            let rests = if verb == "s" { "it rests" } else { "they rest" };
-            let what = format!(
-                "{name} start{verb} {far} {}° out of the trim in which {rests}, estimated for small angles",
-                three_digits(heel)
-            );
-            Some(Finding::note("lists", what, level_it.into()))
-        }
-    }
 }
 
 impl<const D: usize> PreflightContext<'_, D> {
@@ -378,7 +306,7 @@ impl<const D: usize> PreflightContext<'_, D> {
             heel_is_estimate: turn.is_none() && !tilts.is_empty(),
             turn,
             tilts,
-            free_joints: self.free_assembly(statics, number),
+            free_joints: free_assembly(self, statics, number),
         }
     }
 
@@ -500,6 +428,11 @@ impl<const D: usize> PreflightContext<'_, D> {
         }
     }
 
+    /// Returns whether body `number` is the first of its assembly that floats.
+    pub(super) fn is_first_afloat(&self, statics: &StaticSystem<D>, number: usize) -> bool {
+        statics.assembly_of(number).find(|j| self.support(statics, *j) == Support::Water) == Some(number)
+    }
+
     /// Adds findings about the equilibrium of a body, of an assembly with its first body.
     fn flotation_findings(
         &self,
@@ -522,7 +455,7 @@ impl<const D: usize> PreflightContext<'_, D> {
             all => (all.join(" with "), "", "their"),
         };
         let afloat = |j: &usize| self.support(statics, *j) == Support::Water;
-        let is_first = statics.assembly_of(number).find(afloat) == Some(number);
+        let is_first = self.is_first_afloat(statics, number);
         let loose = statics.loose_joints(number);
         let free = equilibrium.free_joints.as_ref();
         if let (Some(joint), None, true) = (loose.first(), free, is_first) {

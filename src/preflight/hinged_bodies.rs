@@ -4,12 +4,12 @@
 
 use serde::Serialize;
 
-use super::{Finding, PreflightContext, floating_bodies::LEVEL, hollows::hull};
+use super::{Finding, PreflightContext, hollows::hull, turns::LEVEL};
 use crate::{
     math::{Bivector, Pose, Vector, format::three_digits},
     solid::{
         JointKind, JointSpec,
-        statics::{NO_WATER, StaticSystem},
+        statics::{NO_WATER, StaticSystem, free_joints},
     },
 };
 
@@ -30,17 +30,20 @@ pub struct FreeAssembly {
     pub is_stable: bool,
 }
 
-impl<const D: usize> PreflightContext<'_, D> {
-    /// Returns the assembly of body `number` with its joints free; `None` without such joints, and if it is not judged.
-    pub(super) fn free_assembly(&self, statics: &StaticSystem<D>, number: usize) -> Option<FreeAssembly> {
-        if statics.loose_joints(number).is_empty() {
-            return None;
-        }
-        let found = statics.free_joints(number)?;
-        let name = |number: usize| self.solids()[statics.bodies[number].solid].spec.name.clone();
-        let turns_deg = found.turns.iter().map(|(number, turn)| (name(*number), turn.to_degrees())).collect();
-        Some(FreeAssembly { periods_s: found.periods, turns_deg, is_stable: !found.is_unstable })
+/// Returns the assembly of body `number`, its first one afloat, with its joints free; `None` without such joints, and if it is not
+/// judged.
+pub(super) fn free_assembly<const D: usize>(
+    context: &PreflightContext<D>,
+    statics: &StaticSystem<D>,
+    number: usize,
+) -> Option<FreeAssembly> {
+    if statics.loose_joints(number).is_empty() || !context.is_first_afloat(statics, number) {
+        return None;
     }
+    let found = free_joints(statics, number)?;
+    let name = |number: usize| context.solids()[statics.bodies[number].solid].spec.name.clone();
+    let turns_deg = found.turns.iter().map(|(number, turn)| (name(*number), turn.to_degrees())).collect();
+    Some(FreeAssembly { periods_s: found.periods, turns_deg, is_stable: !found.is_unstable })
 }
 
 /// Returns a finding about an assembly with free joints that turns to its rest or has none.

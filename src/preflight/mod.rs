@@ -32,6 +32,7 @@ mod expected_errors;
 mod face_waves;
 mod thickness;
 mod thin_parts;
+mod turns;
 mod generated_waves;
 
 use std::collections::BTreeMap;

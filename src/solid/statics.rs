@@ -21,6 +21,7 @@ use super::{
 };
 use crate::math::{Bivector, Bounds, Pose, Vector};
 
+pub(crate) use linkage::free_joints;
 pub(crate) use strength::Overload;
 pub(crate) use support::Support;
 pub(crate) use ties::MooredEnd;

@@ -67,30 +67,28 @@ struct Linkage<'a, const D: usize> {
     size: f64,
 }
 
-impl<const D: usize> StaticSystem<'_, D> {
-    /// Returns the rest of the assembly of body `i` with its joints free. `None` if it has a joint of another kind, a loop of joints, a
-    /// line, a lock or a joint to the ground, if it rests at an end stop, or if the search for its rest fails.
-    pub(crate) fn free_joints(&self, i: usize) -> Option<FreeJoints> {
-        let members: Vec<usize> = self.assembly_of(i).collect();
-        let member = |end: Option<usize>| end.and_then(|solid| self.number(solid)).filter(|j| members.contains(j));
-        let touches = |joint: &&JointSpec<D>| joint.between.into_iter().any(|end| member(end).is_some());
-        let joints: Vec<&JointSpec<D>> = self.joints.iter().filter(touches).collect();
-        let is_known = |kind: JointKind| !matches!(kind, JointKind::Tow | JointKind::Generic);
-        let is_own =
-            |joint: &&JointSpec<D>| is_known(joint.kind) && joint.between.into_iter().all(|end| member(end).is_some());
-        let lines = self.lines.iter().flat_map(|line| line.bodies).flatten();
-        let moored = self.moored.iter().filter_map(|own| self.number(own.solid));
-        let is_locked = |j: &usize| {
-            let body = self.bodies[*j].body;
-            body.locked_translations.contains(&true) || body.locked_rotations.contains(&true)
-        };
-        let is_tied = lines.chain(moored).any(|j| members.contains(&j)) || members.iter().any(is_locked);
-        if is_tied || !joints.iter().all(is_own) || joints.len() + 1 != members.len() {
-            return None;
-        }
-        let linkage = Linkage::new(self, members, &joints)?;
-        linkage.rest(&joints)
+/// Returns the rest of the assembly of body `i` with its joints free. `None` if it has a joint of another kind, a loop of joints, a
+/// line, a lock or a joint to the ground, if it rests at an end stop, or if the search for its rest fails.
+pub(crate) fn free_joints<const D: usize>(system: &StaticSystem<D>, i: usize) -> Option<FreeJoints> {
+    let members: Vec<usize> = system.assembly_of(i).collect();
+    let member = |end: Option<usize>| end.and_then(|solid| system.number(solid)).filter(|j| members.contains(j));
+    let touches = |joint: &&JointSpec<D>| joint.between.into_iter().any(|end| member(end).is_some());
+    let joints: Vec<&JointSpec<D>> = system.joints.iter().filter(touches).collect();
+    let is_known = |kind: JointKind| !matches!(kind, JointKind::Tow | JointKind::Generic);
+    let is_own =
+        |joint: &&JointSpec<D>| is_known(joint.kind) && joint.between.into_iter().all(|end| member(end).is_some());
+    let lines = system.lines.iter().flat_map(|line| line.bodies).flatten();
+    let moored = system.moored.iter().filter_map(|own| system.number(own.solid));
+    let is_locked = |j: &usize| {
+        let body = system.bodies[*j].body;
+        body.locked_translations.contains(&true) || body.locked_rotations.contains(&true)
+    };
+    let is_tied = lines.chain(moored).any(|j| members.contains(&j)) || members.iter().any(is_locked);
+    if is_tied || !joints.iter().all(is_own) || joints.len() + 1 != members.len() {
+        return None;
     }
+    let linkage = Linkage::new(system, members, &joints)?;
+    linkage.rest(&joints)
 }
 
 /// Returns the pose moved by `way` (m or rad) along or about an axis.

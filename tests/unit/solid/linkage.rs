@@ -31,7 +31,7 @@ fn free<const D: usize>(solids: &[SolidSpec<D>], joints: Vec<JointSpec<D>>) -> O
     };
     let specs: Vec<&SolidSpec<D>> = solids.iter().collect();
     let constraints = Constraints { joints, ..Constraints::default() };
-    StaticSystem::new(solids.iter().enumerate().map(body).collect(), &specs, &constraints, WATER).free_joints(0)
+    free_joints(&StaticSystem::new(solids.iter().enumerate().map(body).collect(), &specs, &constraints, WATER), 0)
 }
 
 /// Periods (s) of two degrees of freedom, from the longest.
