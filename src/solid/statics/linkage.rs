@@ -6,7 +6,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::{StaticSystem, lifted, up};
+use super::{Line, StaticSystem, lifted, up};
 use crate::{
     math::{Bivector, Pose, Vector},
     solid::{JointKind, JointSpec},
@@ -68,7 +68,7 @@ struct Linkage<'a, const D: usize> {
 }
 
 /// Returns the rest of the assembly of body `i` with its joints free. `None` if it has a joint of another kind, a loop of joints, a
-/// line, a lock or a joint to the ground, if it rests at an end stop, or if the search for its rest fails.
+/// rope, a mooring line, a lock or a joint to the ground, if it rests at an end stop, or if the search for its rest fails.
 pub(crate) fn free_joints<const D: usize>(system: &StaticSystem<D>, i: usize) -> Option<FreeJoints> {
     let members: Vec<usize> = system.assembly_of(i).collect();
     let member = |end: Option<usize>| end.and_then(|solid| system.number(solid)).filter(|j| members.contains(j));
@@ -77,13 +77,17 @@ pub(crate) fn free_joints<const D: usize>(system: &StaticSystem<D>, i: usize) ->
     let is_known = |kind: JointKind| !matches!(kind, JointKind::Tow | JointKind::Generic);
     let is_own =
         |joint: &&JointSpec<D>| is_known(joint.kind) && joint.between.into_iter().all(|end| member(end).is_some());
-    let lines = system.lines.iter().flat_map(|line| line.bodies).flatten();
+    let is_member = |end: &Option<usize>| end.is_some_and(|j| members.contains(&j));
+    // A spring to the ground or between two bodies of the assembly is known by its ends.
+    let is_known_line =
+        |line: &&Line<D>| !line.is_rope && line.bodies.iter().all(|end| end.is_none() || is_member(end));
+    let is_roped = system.lines.iter().any(|line| line.bodies.iter().any(is_member) && !is_known_line(&line));
     let moored = system.moored.iter().filter_map(|own| system.number(own.solid));
     let is_locked = |j: &usize| {
         let body = system.bodies[*j].body;
         body.locked_translations.contains(&true) || body.locked_rotations.contains(&true)
     };
-    let is_tied = lines.chain(moored).any(|j| members.contains(&j)) || members.iter().any(is_locked);
+    let is_tied = is_roped || moored.into_iter().any(|j| members.contains(&j)) || members.iter().any(is_locked);
     if is_tied || !joints.iter().all(is_own) || joints.len() + 1 != members.len() {
         return None;
     }
@@ -191,6 +195,13 @@ impl<'a, const D: usize> Linkage<'a, D> {
         poses.iter().zip(&own.moves).map(one).collect()
     }
 
+    /// Returns the place (m) of an end of a line with the bodies at `poses`.
+    fn end(&self, line: &Line<D>, end: usize, poses: &[Pose<D>]) -> Vector<D> {
+        let at = line.at[end];
+        let body = line.bodies[end].and_then(|j| Some((j, self.members.iter().position(|own| *own == j)?)));
+        body.map_or(at, |(j, k)| poses[k].point(&self.system.bodies[j].pose.local(&at)))
+    }
+
     /// Returns the force (N m) on each coordinate with the bodies at `poses` and the joints' coordinates at `q`.
     fn forces(&self, poses: &[Pose<D>], q: &DVector<f64>, joints: &[&JointSpec<D>]) -> DVector<f64> {
         let g = self.system.water.g;
@@ -205,6 +216,18 @@ impl<'a, const D: usize> Linkage<'a, D> {
             for force in self.system.forces.iter().filter(|force| force.body == number) {
                 all.push((pose.point(&own.pose.local(&force.at)), force.force));
                 torque = torque + force.torque;
+            }
+            for line in &self.system.lines {
+                let ends = [0, 1].map(|end| self.end(line, end, poses));
+                let along = ends[1] - ends[0];
+                let (length, stretch) = (along.norm(), along.norm() - line.length);
+                if length > 0.0 && (stretch > 0.0 || line.pushes) {
+                    let pull = along * (line.stiffness * stretch / length);
+                    let own = |(end, body): (usize, &Option<usize>)| {
+                        (*body == Some(number)).then(|| (ends[end], if end == 0 { pull } else { -pull }))
+                    };
+                    all.extend(line.bodies.iter().enumerate().filter_map(own));
+                }
             }
             (all, torque)
         };

@@ -655,7 +655,7 @@ fn a_tie_that_begins_after_the_removal_of_its_solid_is_refused_with_both() {
         ),
         ("force", "[[force]]\non = \"box\"\nforce = [0.0, 1.0]\nsince = 0.5\n"),
     ] {
-        let named = section.replace("]]\n", &format!("]]\nname = \"tie\"\n"));
+        let named = section.replace("]]\n", "]]\nname = \"tie\"\n");
         let words = ["solid \"box\" is removed at 0.5 s", &format!("{word}.0.since"), "its  until"];
         assert_refused(word, &format!("{scene}{named}"), &[], &words);
     }

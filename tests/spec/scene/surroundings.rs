@@ -220,9 +220,8 @@ fn a_mast_on_a_hinge_falls_and_joints_that_are_not_judged_are_named_beside_gm() 
     // A motor of 100 N m/rad holds the mast, whose weight of 4.8 kg 0.15 m above the hinge turns it by 7 N m/rad.
     let held = joined("hinge", "motor = { stiffness = 100.0 }\n");
     assert!(find(&held, "capsizes").is_none() && find(&held, "loose_joint").is_none(), "{:#?}", held.findings);
-    let spring =
-        "[[spring]]\nname = \"s\"\nbetween = [\"b\", \"m\"]\nfrom = [0.7, 0.55]\nto = [0.8, 0.8]\nstiffness = 1000.0\n";
-    let tied = joined("hinge", spring);
+    let rope = "[[rope]]\nname = \"s\"\nbetween = [\"b\", \"m\"]\nfrom = [0.7, 0.55]\nto = [0.8, 0.8]\n";
+    let tied = joined("hinge", rope);
     assert!(find(&tied, "loose_joint").unwrap().what.contains("\"b\" with \"m\" take joint \"j\" as rigid"));
     assert!(find(&joined("fixed", ""), "loose_joint").is_none());
 }

@@ -8,7 +8,7 @@ use super::*;
 use crate::{
     geometry::Shape,
     solid::{
-        Constraints, Motor, Role, SolidSpec,
+        Constraints, LineEnd, Motor, Role, RopeSpec, SolidSpec, SpringSpec,
         hydrostatics::Hull,
         statics::{StaticBody, WaterAtRest},
     },
@@ -18,6 +18,11 @@ const WATER: WaterAtRest = WaterAtRest { rho0: 1000.0, g: 10.0, level: 0.0 };
 
 /// The first assembly of these solids, with its joints free.
 fn free<const D: usize>(solids: &[SolidSpec<D>], joints: Vec<JointSpec<D>>) -> Option<FreeJoints> {
+    tied(solids, Constraints { joints, ..Constraints::default() })
+}
+
+/// The first assembly of these solids with these ties.
+fn tied<const D: usize>(solids: &[SolidSpec<D>], constraints: Constraints<D>) -> Option<FreeJoints> {
     let body = |(solid, spec): (usize, &SolidSpec<D>)| StaticBody {
         solid,
         hull: Hull::new(&solids[solid].shape),
@@ -30,7 +35,6 @@ fn free<const D: usize>(solids: &[SolidSpec<D>], joints: Vec<JointSpec<D>>) -> O
         level: WATER.level,
     };
     let specs: Vec<&SolidSpec<D>> = solids.iter().collect();
-    let constraints = Constraints { joints, ..Constraints::default() };
     free_joints(&StaticSystem::new(solids.iter().enumerate().map(body).collect(), &specs, &constraints, WATER), 0)
 }
 
@@ -126,4 +130,25 @@ fn a_mast_on_a_hinge_has_no_stable_rest() {
     let mast = SolidSpec::free("mast", Shape::Box { size: Vector::from([0.1, 1.0]) }, 100.0).at([0.0, 0.7]);
     let hinge = JointSpec::new("h", JointKind::Hinge, [Some(0), Some(1)], Vector::from([0.0, 0.2]), Vector::zeros());
     assert!(free(&[raft, mast], vec![hinge]).unwrap().is_unstable);
+}
+
+/// The barges of [`barge_periods`] with a level spring of 1 kN/m from the hinge to the ground: it adds surge and nothing else, as the
+/// barges are alike on both sides of the hinge.
+#[test]
+fn a_spring_to_the_ground_adds_its_period_and_a_rope_is_not_judged() {
+    let shape = Shape::Box { size: Vector::from([LENGTH, HEIGHT]) };
+    let solids = [-1.0, 1.0].map(|x| SolidSpec::free(format!("{x}"), shape.clone(), 500.0).at([x, 0.0]));
+    let hinge = JointSpec::new("h", JointKind::Hinge, [Some(0), Some(1)], Vector::from([0.0, 0.0]), Vector::zeros());
+    let ends = [LineEnd::on(0, [0.0, 0.0]), LineEnd::ground([5.0, 0.0])];
+    let mut ties = Constraints { joints: vec![hinge], ..Constraints::default() };
+    let alone = tied(&solids, ties.clone()).unwrap().periods;
+    ties.springs.push(SpringSpec::new("s", ends.clone(), 1000.0));
+    let found = tied(&solids, ties.clone()).unwrap().periods;
+    assert_eq!((alone.len(), found.len()), (3, 4), "{alone:?} {found:?}");
+    // 800 kg/m on 1 kN/m; at the hinge, in the still level with the centres of mass, the spring has no lever.
+    for exact in alone.into_iter().chain([TAU * 0.8f64.sqrt()]) {
+        assert!(found.iter().any(|found| (found / exact - 1.0).abs() < 1e-6), "{exact} s of {found:?}");
+    }
+    ties.ropes.push(RopeSpec::new("r", ends));
+    assert_eq!(tied(&solids, ties), None);
 }
