@@ -142,7 +142,7 @@ fn a_spring_to_the_ground_adds_its_period_and_a_rope_is_not_judged() {
     let ends = [LineEnd::on(0, [0.0, 0.0]), LineEnd::ground([5.0, 0.0])];
     let mut ties = Constraints { joints: vec![hinge], ..Constraints::default() };
     let alone = tied(&solids, ties.clone()).unwrap().periods;
-    ties.springs.push(SpringSpec::new("s", ends.clone(), 1000.0));
+    ties.springs.push(SpringSpec::new("s", ends, 1000.0));
     let found = tied(&solids, ties.clone()).unwrap().periods;
     assert_eq!((alone.len(), found.len()), (3, 4), "{alone:?} {found:?}");
     // 800 kg/m on 1 kN/m; at the hinge, in the still level with the centres of mass, the spring has no lever.
