@@ -7,6 +7,7 @@
 
 mod bench;
 mod export;
+mod given_keys;
 mod import_moordyn;
 mod inspect;
 mod json_log;
@@ -38,6 +39,7 @@ use crate::{
     run::MOST_THREADS,
 };
 use clap::{Args, CommandFactory, Parser, Subcommand};
+use given_keys::GivenKeys;
 
 /// Rigid bodies that float, collide and are driven in water.
 #[derive(Parser)]
@@ -224,22 +226,24 @@ struct SceneArgs {
     sweep: Option<String>,
     /// Change a key of the scene; may be given several times
     #[arg(long, value_name = "KEY=VALUE", value_parser = key_value)]
-    set: Vec<(String, String)>,
+    set: Vec<KeyValue>,
 }
 
 impl SceneArgs {
     /// Returns the scene keys that the arguments change.
-    fn overrides(&self) -> Vec<(String, String)> {
-        let mut sets = self.set.clone();
-        sets.extend(self.dp.map(|dp| ("dp".into(), format!("{dp:?}"))));
-        sets.extend(self.until.map(|until| ("until".into(), format!("{until:?}"))));
-        sets.extend(self.sweep.as_ref().map(|sweep| ("model.sweep".into(), format!("{sweep:?}"))));
-        sets
+    fn given_keys(&self) -> GivenKeys {
+        GivenKeys::of_set(&self.set)
+            .and("--dp ", "dp", self.dp.map(|dp| format!("{dp:?}")))
+            .and("--until ", "until", self.until.map(|until| format!("{until:?}")))
+            .and("--sweep ", "model.sweep", self.sweep.as_ref().map(|sweep| format!("{sweep:?}")))
     }
 }
 
+/// A key of the scene and its value.
+type KeyValue = (String, String);
+
 /// Parses `key=value` as a pair.
-fn key_value(text: &str) -> std::result::Result<(String, String), String> {
+fn key_value(text: &str) -> std::result::Result<KeyValue, String> {
     match text.split_once('=') {
         Some((key, value)) if !key.trim().is_empty() => Ok((key.trim().into(), value.trim().into())),
         _ => Err("write key=value, as in --set model.h_over_dp=1.7".into()),
@@ -386,7 +390,7 @@ mod tests {
         let words = ["pontoon", "run", "raft", "--set", "a.b = [1, 2]", "--dp", "0.02", "--until", "3"];
         let Ok(Cli { command: Command::Run(args) }) = Cli::try_parse_from(words) else { panic!("is a run") };
         let pairs = [("a.b", "[1, 2]"), ("dp", "0.02"), ("until", "3.0")];
-        assert_eq!(args.scene.overrides(), pairs.map(|(k, v)| (k.to_string(), v.to_string())));
+        assert_eq!(args.scene.given_keys().overrides().unwrap(), pairs.map(|(k, v)| (k.to_string(), v.to_string())));
         assert!(Cli::try_parse_from(["pontoon", "run", "raft", "--set", "dp"]).is_err());
     }
 }

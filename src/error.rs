@@ -249,6 +249,15 @@ impl Error {
         self
     }
 
+    /// Returns the same error with its location inside the part `key` of a value whose place is not known yet.
+    pub(crate) fn in_part(mut self, key: impl Into<String>) -> Self {
+        let mut key = key.into();
+        if let Some(inner) = self.location.take_if(|location| location.file.is_empty()) {
+            key = format!("{key}.{}", inner.key);
+        }
+        self.at("", None, key)
+    }
+
     /// Returns the same error with this location; a location that is already known is kept.
     pub fn at(mut self, file: impl Into<String>, line_column: Option<(usize, usize)>, key: impl Into<String>) -> Self {
         self.location

@@ -148,6 +148,10 @@ fn wrong_commands_are_refused_with_a_remedy() {
     folder.pontoon(&["run", "raff"]).assert_refused(2, &["there is no scene \"raff\"", "did you mean \"raft\"?"]);
     folder.pontoon(&["run", "bathtub"]).assert_refused(2, &["\"bathtub\"", "pontoon scenes"]);
     folder.pontoon(&["run", "raft", "--dp", "-1"]).assert_refused(2, &["dp must be a positive number, not -1"]);
+    let twice = ["run", "raft", "--until", "0.1", "--set", "until=0.2"];
+    folder.pontoon(&twice).assert_refused(2, &["\"until\" is given twice", "--until 0.1", "--set until=0.2"]);
+    let study = ["study", "raft", "--vary", "model.kernel=wendland,cubic", "--set", "model.kernel=cubic"];
+    folder.pontoon(&study).assert_refused(2, &["\"model.kernel\" is given twice"]);
     folder.pontoon(&["run", "raft", "--until", "0"]).assert_refused(2, &["until"]);
     folder.pontoon(&["run", "raft", "--threads", "0"]).assert_refused(2, &["threads are from 1 to 1024"]);
     folder.pontoon(&["inspect", "raft", "--threads", "1025"]).assert_refused(2, &["threads are from 1 to 1024"]);

@@ -5,7 +5,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use super::{key_value, print_error, scene_lookup::find_scene};
+use super::{given_keys::GivenKeys, key_value, print_error, scene_lookup::find_scene};
 use crate::{
     error::{Error, ErrorKind, Result},
     output::{Manifest, SeriesTable, npz},
@@ -69,15 +69,16 @@ pub fn export(args: &ExportArgs) -> Result<String> {
 
 /// Writes the bodies of a scene for a panel method.
 fn bodies(args: &ExportArgs, out: &Path) -> Result<String> {
+    let sets = GivenKeys::of_set(&args.set).overrides()?;
     let export = |scene: &Scene| PanelledScene::new(scene, &args.solid, args.panels);
     let exported = if args.folder.join("manifest.json").is_file() {
         // The scene of a run with its changed keys; the files that it names are copied beside it.
         let manifest = Manifest::read(&args.folder)?;
-        export(&Scene::parse(&manifest.scene, &args.folder.join("scene"), &args.set)?)?
+        export(&Scene::parse(&manifest.scene, &args.folder.join("scene"), &sets)?)?
     } else {
         let found = find_scene(&args.folder)?;
         found.with_scene_name(
-            Scene::read(&run::run_folder::scene_file(found.path()), &args.set).and_then(|scene| export(&scene)),
+            Scene::read(&run::run_folder::scene_file(found.path()), &sets).and_then(|scene| export(&scene)),
         )?
     };
     let path = exported.write(out)?;

@@ -37,7 +37,8 @@ pub struct InspectArgs {
 /// The page, or the JSON.
 pub fn inspect(args: &InspectArgs) -> Result<String> {
     let found = scene_lookup::find_scene(&args.scene.scene)?;
-    let asked = InspectOptions { overrides: args.scene.overrides(), threads: args.threads, timing: !args.no_timing };
+    let overrides = args.scene.given_keys().overrides()?;
+    let asked = InspectOptions { overrides, threads: args.threads, timing: !args.no_timing };
     let report = found.with_scene_name(run::inspect(found.path(), &asked))?;
     if args.json {
         let text =
@@ -374,6 +375,16 @@ fn bodies(bodies: &[BodySummary], dimension: usize) -> String {
                 body.name,
                 body.tied_to.join(", ")
             );
+            let all = || bodies.iter().filter(|other| other.name == body.name || body.tied_to.contains(&other.name));
+            let free = all().find_map(|other| other.afloat.as_ref()?.free_joints.as_ref());
+            if let Some(free) = free.filter(|free| free.is_stable) {
+                let periods: Vec<String> = free.periods_s.iter().map(|period| three_digits(*period)).collect();
+                let _ = writeln!(
+                    ties,
+                    "  with their joints free they have natural periods of {} s, without water that moves along",
+                    periods.join(", ")
+                );
+            }
         }
         if body.load_kg.abs() > 1e-6 * body.mass_kg {
             let (way, load) = (if body.load_kg > 0.0 { "down" } else { "up" }, three_digits(body.load_kg.abs()));

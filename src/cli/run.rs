@@ -11,7 +11,9 @@ use crate::{
 use clap::{Args, ValueEnum};
 
 use super::{
-    SceneArgs, console_text, exit_code, interrupt_flag, interrupt_flag_with_message,
+    KeyValue, SceneArgs, console_text, exit_code,
+    given_keys::GivenKeys,
+    interrupt_flag, interrupt_flag_with_message,
     json_log::{self, JsonLog},
     live::{LiveObserver, LiveServer, LiveState},
     print_error, print_output,
@@ -40,14 +42,16 @@ pub struct RunArgs {
     log_args: LogArgs,
 }
 
-/// A key of the scene and its value.
-type KeyValue = (String, String);
-
 impl RunArgs {
     /// The scene keys that the arguments change.
-    fn overrides(&self) -> Vec<KeyValue> {
-        let device = self.device.iter().map(|name| ("model.device".into(), format!("{name:?}")));
-        self.scene.overrides().into_iter().chain(self.frames.clone()).chain(device).collect()
+    ///
+    /// # Errors
+    /// As [`GivenKeys::overrides`].
+    fn overrides(&self) -> Result<Vec<KeyValue>> {
+        let (key, every) = self.frames.clone().unzip();
+        let device = self.device.as_ref().map(|name| format!("{name:?}"));
+        let given = self.scene.given_keys().and("--frames ", &key.unwrap_or_default(), every);
+        given.and("--device ", "model.device", device).overrides()
     }
 }
 
@@ -109,7 +113,7 @@ enum LogFormat {
 pub fn run(args: &RunArgs) -> Result<u8> {
     let find = || scene_lookup::find_scene(&args.scene.scene);
     on_all_processes(&args.log_args, args.threads, find, |ranks, threads, found, watch| {
-        let options = RunOptions { out: args.out.clone(), overrides: args.overrides(), threads };
+        let options = RunOptions { out: args.out.clone(), overrides: args.overrides()?, threads };
         found.with_scene_name(run::run_on(ranks, found.path(), &options, watch))
     })
 }
@@ -123,7 +127,10 @@ pub fn resume(args: &ResumeArgs) -> Result<u8> {
         &args.log_args,
         args.threads,
         || Ok(()),
-        |ranks, threads, (), watch| run::resume_on(ranks, &args.folder, &args.set, threads, watch),
+        |ranks, threads, (), watch| {
+            let guards = GivenKeys::of_set(&args.set).overrides()?;
+            run::resume_on(ranks, &args.folder, &guards, threads, watch)
+        },
     )
 }
 

@@ -20,7 +20,9 @@ use crate::{
 use clap::Args;
 
 use super::{
+    KeyValue,
     console_text::table,
+    given_keys::GivenKeys,
     interrupt_flag, key_value, print_error, print_output,
     progress::{CliObserver, ProgressDisplay},
     report_page::{PictureStyleArgs, draw_picture},
@@ -171,11 +173,28 @@ fn planned_table(jobs: &[Job], ran: &[JobResult], planned: &[TimeEstimate]) -> S
     text
 }
 
+impl StudyArgs {
+    /// Returns the scene keys that the arguments change in all runs.
+    ///
+    /// # Errors
+    /// As [`GivenKeys::overrides`]; a varied key counts as given.
+    fn overrides(&self) -> Result<Vec<KeyValue>> {
+        let until = self.until.map(|until| format!("{until:?}"));
+        let all = || GivenKeys::of_set(&self.set).and("--until ", "until", until.clone());
+        let spacings: Vec<String> = self.dp.iter().map(|dp| format!("{dp:?}")).collect();
+        let spacings = Some(spacings.join(",")).filter(|_| !self.dp.is_empty());
+        let vary = |given: GivenKeys, (key, values): &KeyValue| {
+            given.and(&format!("--vary {key}="), key, Some(values.clone()))
+        };
+        self.vary.iter().fold(all().and("--dp ", "dp", spacings), vary).overrides()?;
+        all().overrides()
+    }
+}
+
 /// Runs the grid, or says what it would run.
 pub fn study(args: StudyArgs, command_line: &str) -> Result<u8> {
     let found = scene_lookup::find_scene(&args.scene)?;
-    let mut sets = args.set.clone();
-    sets.extend(args.until.map(|until| ("until".into(), format!("{until:?}"))));
+    let sets = args.overrides()?;
     let scene = found.with_scene_name(Scene::read(found.path(), &sets))?;
     let name = scene_name(&args.scene);
     let out = args.out.clone().unwrap_or_else(|| PathBuf::from("studies").join(&name));

@@ -3,7 +3,10 @@
 use super::{BodySummary, Finding, PreflightContext};
 use crate::{
     math::{Vector, format::three_digits},
-    solid::{JointKind, JointSpec, Solid},
+    solid::{
+        JointKind, JointSpec, Solid, SolidSpec,
+        decks::{deck_of, may_stand},
+    },
 };
 
 /// Part of the weight of a body below which a load does not count.
@@ -21,6 +24,16 @@ pub(super) fn check<const D: usize>(
     }
     for (i, solid) in context.solids().iter().enumerate() {
         let Some(body) = bodies.iter().find(|body| body.name == solid.spec.name) else { continue };
+        if let Some(deck) = context.decks[i] {
+            let what = format!(
+                "\"{}\" stands on \"{}\": draft, GM and periods are those of both as one body",
+                body.name,
+                context.solids()[deck].spec.name
+            );
+            let mend = "whether it slides or tips shows in the run".into();
+            findings.push(Finding::note("carried_body", what, mend));
+            continue;
+        }
         let stands = touching[i] && body.support == "solid";
         if let Some(lower) =
             (0..bodies.len()).map(|j| &bodies[j].name).find(|name| stands && is_below(context, name, i))
@@ -47,6 +60,23 @@ pub(super) fn check<const D: usize>(
             }));
         }
     }
+}
+
+/// Returns the free body on which each free body stands in the air, with nothing else to carry it.
+pub(super) fn find_decks<const D: usize>(context: &PreflightContext<D>) -> Vec<Option<usize>> {
+    let solids = context.solids();
+    let constraints = &context.system.constraints().at_start();
+    let specs: Vec<&SolidSpec<D>> = solids.iter().map(|solid| &solid.spec).collect();
+    let poses: Vec<_> = solids.iter().map(|solid| solid.kinematics.pose).collect();
+    let is_dry = |i: usize| {
+        let below = |level: f64| solids[i].spec.shape.submerged_volume(&poses[i], level).0;
+        context.level_around(i).is_none_or(|level| below(level) <= 0.0)
+    };
+    let deck = |i: usize| {
+        let may = context.g > 0.0 && may_stand(specs[i], i, constraints) && is_dry(i);
+        if may { deck_of(&specs, &poses, constraints, i, context.dp()) } else { None }
+    };
+    (0..solids.len()).map(deck).collect()
 }
 
 /// Whether the free solid called `name` is under solid number `i`, in contact.

@@ -32,7 +32,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         bounds: &Bounds<D>,
     ) -> Option<DrivenStroke<D>> {
         let mut mark = 0.5 * (bounds.min + bounds.max);
-        mark[D - 1] = self.still_water.level;
+        mark[D - 1] = self.basin(bounds).level;
         if let Some(law) = motion.wave() {
             let (way, speed): (Vec<f64>, Vec<f64>) = law.sample_motion(self.end_time()).into_iter().unzip();
             let stroke = largest_stroke(&way).map_or_else(|| range(&way), |(stroke, _)| stroke);

@@ -19,11 +19,14 @@ use serde::Serialize;
 use super::{
     Finding, PreflightContext,
     expected_errors::heave_error,
+    gaps::Gaps,
+    hinged_bodies::{FreeAssembly, free_assembly, free_assembly_finding},
     hollows::{hull, is_in_dry_hollow},
     lifetimes::overload,
     surface_samples::SurfaceSample,
     surroundings::Surroundings,
     thickness::{load_error, thinnest_part},
+    turns::{LARGEST_ESTIMATE, linear_heel, turn_finding},
 };
 use crate::{
     math::{
@@ -32,30 +35,19 @@ use crate::{
     },
     scene::world_bounds,
     solid::{
-        FreeBody, Solid, SolidSpec,
+        Constraints, FreeBody, Solid, SolidSpec,
+        decks::standing_joint,
         joint_groups::JointGroups,
         righting::{Floating, Turn},
         statics::{MooredEnd, NO_WATER, StaticBody, StaticSystem, Support, WaterAtRest},
     },
 };
 
-/// Heel (rad) from equilibrium below which no finding is reported: half a degree.
-const LEVEL: f64 = 0.5 * PI / 180.0;
-
 /// Number of intervals of a run at whose ends the metacentric height of a body with ballast is computed.
 const BALLAST_TIMES: u32 = 50;
 
-/// Turn (rad) to rest beyond which a body turns over.
-const OVER: f64 = 0.5 * PI;
-
-/// Turn (rad) to rest up to which a body with a negative metacentric height does not turn over: ten degrees.
-const SMALL_TURN: f64 = PI / 18.0;
-
 /// Share by which facets and samples may find a part thinner than it is.
 const CHORD_ERROR: f64 = 0.01;
-
-/// Largest heel (degrees) that is estimated for small angles.
-const LARGEST_ESTIMATE: f64 = 45.0;
 
 /// Metacentric height over the least extent of a body below which it is neutral: facets and round-off give a
 /// homogeneous ball a small one; its true one is 0.
@@ -131,6 +123,10 @@ pub struct Equilibrium {
     /// The turn that `heel_deg` tells, if it is no estimate.
     #[serde(skip)]
     pub(crate) turn: Option<Turn>,
+    /// The assembly with the joints between its bodies free, at its first body that floats; absent without such joints, and if it is
+    /// not judged.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub free_joints: Option<FreeAssembly>,
 }
 
 /// A tilt (roll or pitch) of a floating body.
@@ -144,81 +140,22 @@ pub struct Tilt {
     pub period_s: Option<f64>,
 }
 
-/// Returns the estimated heel (rad) of an assembly between its start and rest, from its levers and metacentric heights at the
-/// start.
-fn linear_heel<const D: usize>(statics: &StaticSystem<D>, number: usize, tilts: &[Tilt]) -> f64 {
-    let along = |axis: &[f64]| statics.lever(number, axis, 0.0).iter().zip(axis).map(|(l, a)| l * a).sum::<f64>();
-    // A body of revolution on its side has GM = 0 and no heel.
-    let heel = |t: &Tilt| if t.gm_m == 0.0 { 0.0 } else { along(&t.axis) / t.gm_m };
-    tilts.iter().fold(0.0, |sum: f64, t| sum.hypot(heel(t)))
-}
-
-/// Returns a finding about the turn of an assembly from its start to its rest; `called`: its name, and the endings of words
-/// about it.
-fn turn_finding<const D: usize>(
-    afloat: &Equilibrium,
-    (statics, number): (&StaticSystem<D>, usize),
-    (name, verb, its): (&str, &str, &str),
-) -> Option<Finding> {
-    let least = afloat.tilts.iter().map(|t| t.gm_m).fold(f64::INFINITY, f64::min);
-    let level_it = "turn it by so much (angle_deg, turn_deg), or put its centre of mass under its buoyancy";
-    let lower = || {
-        format!("lower {its} centre of mass by {} m or more (centre_offset), or lock {its} turn", two_digits_up(-least))
-    };
-    match afloat.turn {
-        Some(Turn::Floods(angle)) => {
-            let at = three_digits(angle.to_degrees());
-            let what = format!("{name} floods as it turns: {at}° from its start the still water stands at its rim");
-            Some(Finding::warning("hull_floods", what, level_it.into()))
-        }
-        Some(Turn::Rests(angle)) => {
-            let is_unstable = least < 0.0 && linear_heel(statics, number, &afloat.tilts) < LEVEL;
-            let rest = three_digits(angle.to_degrees());
-            if angle > OVER || (is_unstable && angle > SMALL_TURN) {
-                let height = match is_unstable {
-                    true => format!(": its metacentric height is {} m", three_digits(least)),
-                    false => String::new(),
-                };
-                let what = format!("{name} will turn over, to rest at {rest}° from its start{height}");
-                let mend = match is_unstable {
-                    true => lower(),
-                    false => "put its centre of mass under its buoyancy (centre_offset), or lock its turn".into(),
-                };
-                return Some(Finding::warning("capsizes", what, mend));
-            }
-            (angle > LEVEL)
-                .then(|| Finding::note("lists", format!("{name} turns by {rest}° to its rest"), level_it.into()))
-        }
-        None if least < 0.0 => {
-            let what = format!("{name} will turn over: {its} metacentric height is {} m", three_digits(least));
-            Some(Finding::warning("capsizes", what, lower()))
-        }
-        None => {
-            let heel = afloat.heel_deg.filter(|heel| *heel > LEVEL.to_degrees())?;
-            let far = if heel < LARGEST_ESTIMATE { "about" } else { "more than" };
-            let rests = if verb == "s" { "it rests" } else { "they rest" };
-            let what = format!(
-                "{name} start{verb} {far} {}° out of the trim in which {rests}, estimated for small angles",
-                three_digits(heel)
-            );
-            Some(Finding::note("lists", what, level_it.into()))
-        }
-    }
-}
-
 impl<const D: usize> PreflightContext<'_, D> {
-    /// Returns the summaries of the free bodies and adds findings about them. `touching` marks the solids that touch
+    /// Returns the summaries of the free bodies and adds findings about them. `gaps` tells which solids touch one
     /// another; `moored` are the ends of mooring lines.
     pub(super) fn bodies(
         &self,
-        touching: &[bool],
+        gaps: &Gaps,
         moored: Vec<MooredEnd<D>>,
         findings: &mut Vec<Finding>,
     ) -> Vec<BodySummary> {
-        let statics = self.statics(touching).map(|statics| statics.with_mooring_stiffness(moored));
         let specs: Vec<&SolidSpec<D>> = self.solids().iter().map(|solid| &solid.spec).collect();
-        let constraints = &self.system.constraints().at_start();
-        let groups = JointGroups::of(&specs, constraints);
+        let constraints = self.system.constraints().at_start();
+        let groups = JointGroups::of(&specs, &constraints);
+        let stands = |pair: &[usize; 2]| [[0, 1], [1, 0]].iter().any(|[a, b]| self.decks[pair[*a]] == Some(pair[*b]));
+        let lies: Vec<bool> =
+            (0..specs.len()).map(|i| gaps.pairs.iter().any(|pair| pair.contains(&i) && !stands(pair))).collect();
+        let statics = self.statics(&lies, constraints).map(|statics| statics.with_mooring_stiffness(moored));
         findings.extend(statics.iter().flat_map(StaticSystem::overloads).map(overload::<D>));
         let mut bodies = Vec::new();
         for (i, solid) in self.solids().iter().enumerate() {
@@ -228,9 +165,9 @@ impl<const D: usize> PreflightContext<'_, D> {
             found.tied_to = others.map(|j| specs[j].name.clone()).collect();
             bodies.push(found);
             let first = bodies.len() - 1;
-            let touches = (0..specs.len()).any(|j| touching[j] && groups.jointed[j] == groups.jointed[i]);
+            let touches = (0..specs.len()).any(|j| lies[j] && groups.jointed[j] == groups.jointed[i]);
             self.flotation_findings(&bodies[first], (&statics, first), touches, findings);
-            self.ballast_findings(i, &bodies[first], findings);
+            self.ballast_findings(i, (&statics, first), &bodies[first], findings);
             findings.extend(self.unstable_ballast((&statics, first), i, &bodies[first]));
             self.resolution_findings(&bodies[first], findings);
         }
@@ -238,24 +175,27 @@ impl<const D: usize> PreflightContext<'_, D> {
         bodies
     }
 
-    /// Returns the free bodies with their ties, at rest; `None` without gravity.
-    fn statics(&self, touching: &[bool]) -> Option<StaticSystem<'_, D>> {
+    /// Returns the free bodies with their ties and the bodies on their decks, at rest; `None` without gravity. `lies` tells which
+    /// solids touch another that is not such a body or its deck.
+    fn statics(&self, lies: &[bool], mut constraints: Constraints<D>) -> Option<StaticSystem<'_, D>> {
         if self.g == 0.0 {
             return None;
         }
-        let (level, constraints) = (self.still_water.level, self.system.constraints().at_start());
+        let level = self.still_water.level;
+        let specs: Vec<&SolidSpec<D>> = self.solids().iter().map(|solid| &solid.spec).collect();
+        let standing = self.decks.iter().enumerate().filter_map(|(i, deck)| Some([i, (*deck)?]));
+        constraints.joints.extend(standing.map(|pair| standing_joint(&specs, pair)));
         let body = |(i, solid): (usize, &'_ Solid<D>)| {
             let body = self.solids()[i].body.as_ref()?;
             let (hull, pose) = (hull(self, i), solid.kinematics.pose);
             let [start, _] = hull.extent(&pose);
             // Under a body without water and ties, which falls, the ground is not known.
             let falls = self.level_around(i).is_none() && constraints.constraint_on(i, 0.0).is_none();
-            let bottom = if touching[i] || falls { start } else { start.min(level - self.still_water.depth) };
+            let bottom = if lies[i] || falls { start } else { start.min(level - self.still_water.depth) };
             let level = self.level_around(i).unwrap_or(NO_WATER);
             Some(StaticBody { solid: i, hull, body, pose, bottom, level })
         };
         let bodies = self.solids().iter().enumerate().filter_map(body).collect();
-        let specs: Vec<&SolidSpec<D>> = self.solids().iter().map(|solid| &solid.spec).collect();
         let water = WaterAtRest { rho0: self.system.model().rho0, g: self.g, level };
         Some(StaticSystem::new(bodies, &specs, &constraints, water))
     }
@@ -282,7 +222,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         let (solid, faces) = (&self.solids()[i], &self.surface_samples[i]);
         let (model, shape, pose) = (self.system.model(), &solid.spec.shape, &solid.kinematics.pose);
         let volume = shape.volume_properties().volume;
-        let support = statics.as_ref().map(|statics| statics.support(number));
+        let support = statics.as_ref().map(|statics| self.support(statics, number));
         let afloat = statics.as_ref().filter(|_| support == Some(Support::Water));
         let rest = match support {
             Some(Support::Water) => afloat.map(|statics| statics.pose(number)),
@@ -366,6 +306,7 @@ impl<const D: usize> PreflightContext<'_, D> {
             heel_is_estimate: turn.is_none() && !tilts.is_empty(),
             turn,
             tilts,
+            free_joints: free_assembly(self, statics, number),
         }
     }
 
@@ -426,12 +367,20 @@ impl<const D: usize> PreflightContext<'_, D> {
         }
     }
 
-    /// Adds a finding about a body that floats at the start and sinks at its largest mass.
-    fn ballast_findings(&self, i: usize, body: &BodySummary, findings: &mut Vec<Finding>) {
+    /// Adds a finding about a body that floats at the start, with the bodies on its deck, and sinks at its largest mass.
+    fn ballast_findings(
+        &self,
+        i: usize,
+        (statics, number): (&Option<StaticSystem<D>>, usize),
+        body: &BodySummary,
+        findings: &mut Vec<Finding>,
+    ) {
         let floats_alone = body.support == "water" && body.tied_to.is_empty() && body.load_kg == 0.0;
-        let Some(largest) = body.largest_mass_kg.filter(|_| floats_alone) else { return };
+        let (Some(largest), Some(statics)) = (body.largest_mass_kg.filter(|_| floats_alone), statics) else { return };
+        let others = statics.assembly_of(number).filter(|j| *j != number);
+        let largest = largest + others.map(|j| statics.bodies[j].body.mass).sum::<f64>();
         let (pose, rho0) = (&self.solids()[i].kinematics.pose, self.system.model().rho0);
-        if hull(self, i).equilibrium_height(pose, largest, rho0, self.still_water.level).is_ok() {
+        if hull(self, i).equilibrium_height(pose, largest, rho0, self.draft_level(i)).is_ok() {
             return;
         }
         let what = format!(
@@ -471,6 +420,19 @@ impl<const D: usize> PreflightContext<'_, D> {
         Some(Finding::warning("capsizes", what, "give it less ballast, or place it lower".into()))
     }
 
+    /// Returns the effect that carries body `number`: the deck on which it stands, if the water carries that.
+    fn support(&self, statics: &StaticSystem<D>, number: usize) -> Support {
+        match statics.support(number) {
+            Support::Water if self.decks[statics.bodies[number].solid].is_some() => Support::Solid,
+            support => support,
+        }
+    }
+
+    /// Returns whether body `number` is the first of its assembly that floats.
+    pub(super) fn is_first_afloat(&self, statics: &StaticSystem<D>, number: usize) -> bool {
+        statics.assembly_of(number).find(|j| self.support(statics, *j) == Support::Water) == Some(number)
+    }
+
     /// Adds findings about the equilibrium of a body, of an assembly with its first body.
     fn flotation_findings(
         &self,
@@ -485,15 +447,18 @@ impl<const D: usize> PreflightContext<'_, D> {
             let mend = "make it lighter, or its sides higher".into();
             findings.push(Finding::warning("hull_floods", what, mend));
         }
-        let Some(afloat) = &body.afloat else { return };
+        let Some(equilibrium) = &body.afloat else { return };
         let all: Vec<String> =
             statics.assembly_of(number).map(|j| format!("\"{}\"", self.body_name(statics, j))).collect();
         let (name, verb, its) = match &all[..] {
             [own] => (own.clone(), "s", "its"),
             all => (all.join(" with "), "", "their"),
         };
+        let afloat = |j: &usize| self.support(statics, *j) == Support::Water;
+        let is_first = self.is_first_afloat(statics, number);
         let loose = statics.loose_joints(number);
-        if let (Some(joint), true) = (loose.first(), statics.assembly_of(number).next() == Some(number)) {
+        let free = equilibrium.free_joints.as_ref();
+        if let (Some(joint), None, true) = (loose.first(), free, is_first) {
             let what = format!(
                 "GM, trim and roll of {name} take joint \"{joint}\"{} as rigid: the motion that it leaves free is not judged",
                 if loose.len() > 1 { " and others" } else { "" }
@@ -503,12 +468,15 @@ impl<const D: usize> PreflightContext<'_, D> {
         }
         // A body in the air that lies on another does not float.
         let is_carried = touches && body.displaced_kg <= 0.0;
-        if statics.assembly_of(number).next() == Some(number) && !is_carried {
-            findings.extend(turn_finding(afloat, (statics, number), (&name, verb, its)));
+        if let (Some(free), true) = (free, is_first) {
+            findings.extend(free_assembly_finding(free, &name));
+        } else if is_first && !is_carried {
+            findings.extend(turn_finding(equilibrium, (statics, number), (&name, verb, its)));
         }
         // A body that rests on another solid need not float at equilibrium.
-        let off = body.draft_m - afloat.draft_m;
-        let first = statics.assembly_of(number).find(|j| statics.rise_together(*j, number)) == Some(number);
+        let off = body.draft_m - equilibrium.draft_m;
+        let first =
+            statics.assembly_of(number).filter(afloat).find(|j| statics.rise_together(*j, number)) == Some(number);
         if off.abs() > self.dp() && !touches && first {
             let side = if off > 0.0 { "below" } else { "above" };
             let what = format!(
@@ -516,11 +484,11 @@ impl<const D: usize> PreflightContext<'_, D> {
                 body.name,
                 three_digits(off.abs()),
                 three_digits(off.abs() / self.dp()),
-                three_digits(afloat.draft_m)
+                three_digits(equilibrium.draft_m)
             );
             let mend = match (all.len(), self.surroundings[statics.bodies[number].solid]) {
                 (1, Surroundings::Hull(level)) => {
-                    format!("it starts at rest with  bottom = {}", three_digits(level - afloat.draft_m))
+                    format!("it starts at rest with  bottom = {}", three_digits(level - equilibrium.draft_m))
                 }
                 (1, _) => "it starts at rest with  draft = \"equilibrium\"".into(),
                 _ => {

@@ -21,6 +21,8 @@ const FACING: [f64; 2] = [-0.8, -0.99];
 pub(crate) struct Gaps {
     /// For each solid, whether it touches another solid, or its contact skin, without a joint between them.
     pub touching: Vec<bool>,
+    /// The pairs of these solids.
+    pub pairs: Vec<[usize; 2]>,
 }
 
 /// The narrowest gap between two solids.
@@ -34,7 +36,7 @@ impl<const D: usize> PreflightContext<'_, D> {
     /// Finds the gaps between each two solids, from the faces of the one that moves, or of both if both or neither move.
     pub(super) fn gaps(&self, findings: &mut Vec<Finding>) -> Gaps {
         let n = self.solids().len();
-        let mut touching = vec![false; n];
+        let (mut touching, mut pairs) = (vec![false; n], Vec::new());
         let specs: Vec<_> = self.solids().iter().map(|solid| &solid.spec).collect();
         let tied = JointGroups::of(&specs, &self.system.constraints().at_start()).jointed;
         let moves = |i: usize| !matches!(self.solids()[i].spec.role, Role::Fixed);
@@ -53,11 +55,12 @@ impl<const D: usize> PreflightContext<'_, D> {
                 touch &= tied[i] != tied[j];
                 touching[i] |= touch;
                 touching[j] |= touch;
+                pairs.extend(touch.then_some([j, i]));
                 let narrowest = found.into_iter().flatten().min_by(|a, b| a.width.total_cmp(&b.width));
                 findings.extend(narrowest.map(|gap| self.gap_finding(gap, j, i)));
             }
         }
-        Gaps { touching }
+        Gaps { touching, pairs }
     }
 
     /// How far (m) the contact skins of two solids keep their faces apart.

@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{
     math::format::{three_digits, two_digits_down, two_digits_up},
-    scene::world_bounds,
+    scene::{StillWaterLevel, world_bounds},
     solid::{PrescribedMotion, Role, Solid},
     wavemaker::{DepthRegime, LinearWave, Paddle, TheoryRegion},
 };
@@ -138,8 +138,8 @@ impl<const D: usize> PreflightContext<'_, D> {
         solid: &Solid<D>,
         motion: &PrescribedMotion<D>,
     ) -> Option<(GeneratedWave, WavemakerSite<D>)> {
-        let level = self.still_water.level;
         let bounds = world_bounds(&solid.spec.shape, &solid.kinematics.pose);
+        let StillWaterLevel { level, depth } = self.basin(&bounds);
         // A moving tank contains the water and is not a paddle.
         if is_wall(&solid.spec.shape) || self.g == 0.0 || bounds.min[D - 1] >= level || bounds.max[D - 1] <= level {
             return None;
@@ -149,7 +149,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         let [stand, behind] = [swing.direction, -swing.direction].map(|way| WavemakerSite::new(&bounds, way, level));
         // A motion that the scene gives makes waves to both sides; the waves with the longer path are evaluated.
         let stand = if named.is_none() && self.water_end(&behind) > self.water_end(&stand) { behind } else { stand };
-        let depth = named.map_or(self.still_water.depth, |wave| wave.depth());
+        let depth = named.map_or(depth, |wave| wave.depth());
         let facts = named.map(|wave| wave.properties());
         let kind = facts.map(|facts| facts.kind);
         let (order, ramp) = (facts.map_or(1, |f| f.order), named.map_or(0.0, |wave| wave.ramp_time()));
@@ -171,7 +171,7 @@ impl<const D: usize> PreflightContext<'_, D> {
                     None => LinearWave::new(std::f64::consts::PI / swing.half_period?, depth, self.g),
                 };
                 let height = facts.map_or_else(
-                    || swing.stroke * self.equivalent_paddle(motion).transfer_function(&train),
+                    || swing.stroke * equivalent_paddle(motion, level).transfer_function(&train),
                     |f| f.height,
                 );
                 GeneratedWave {
@@ -196,13 +196,13 @@ impl<const D: usize> PreflightContext<'_, D> {
         (wave.far_s, wave.back_s) = (wave.reach_m / wave.group_mps, 2.0 * wave.reach_m / wave.group_mps);
         (wave.height_m.is_finite() && swing.stroke > 1e-3 * self.dp()).then_some((wave, stand))
     }
+}
 
-    /// Returns the paddle that is equivalent to the motion.
-    fn equivalent_paddle(&self, motion: &PrescribedMotion<D>) -> Paddle {
-        match motion.hinge_height() {
-            Some(height) if height < self.still_water.level => Paddle::Flap { arm: self.still_water.level - height },
-            _ => Paddle::Piston,
-        }
+/// Returns the paddle that is equivalent to the motion in water with this level (m).
+fn equivalent_paddle<const D: usize>(motion: &PrescribedMotion<D>, level: f64) -> Paddle {
+    match motion.hinge_height() {
+        Some(height) if height < level => Paddle::Flap { arm: level - height },
+        _ => Paddle::Piston,
     }
 }
 

@@ -1,22 +1,70 @@
-//! The balance at the start of bodies on a hinge to the ground. At the turn φ about the hinge the moments of buoyancy, weight, steady
+//! Bodies on joints with a free motion: the rest of assemblies whose joints are free, and the balance at the start of bodies on a
+//! hinge to the ground. At the turn φ about the hinge the moments of buoyancy, weight, steady
 //! forces and the motor are M(φ); the turn to rest is about −M(0)/M'(0).
 
-use std::f64::consts::PI;
+use serde::Serialize;
 
-use super::{Finding, PreflightContext, hollows::hull};
+use super::{Finding, PreflightContext, hollows::hull, turns::LEVEL};
 use crate::{
     math::{Bivector, Pose, Vector, format::three_digits},
-    solid::{JointKind, JointSpec, statics::NO_WATER},
+    solid::{
+        JointKind, JointSpec,
+        statics::{NO_WATER, StaticSystem, free_joints},
+    },
 };
-
-/// Turn (rad) to rest below which no finding is reported: half a degree.
-const LEVEL: f64 = 0.5 * PI / 180.0;
 
 /// Half of the angle (rad) of the difference that gives M'.
 const TILT: f64 = 1e-4;
 
 /// Part of the weight times the size of a body below which a moment is round-off.
 const LEAST: f64 = 1e-6;
+
+/// An assembly with the joints between its bodies free.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FreeAssembly {
+    /// Natural periods at rest without added mass, s, from the longest.
+    pub periods_s: Vec<f64>,
+    /// Turn of each body from the start to rest, degrees.
+    pub turns_deg: Vec<(String, f64)>,
+    /// Whether the assembly stays at rest; if not, its parts fall over.
+    pub is_stable: bool,
+}
+
+/// Returns the assembly of body `number`, its first one afloat, with its joints free; `None` without such joints, and if it is not
+/// judged.
+pub(super) fn free_assembly<const D: usize>(
+    context: &PreflightContext<D>,
+    statics: &StaticSystem<D>,
+    number: usize,
+) -> Option<FreeAssembly> {
+    if statics.loose_joints(number).is_empty() || !context.is_first_afloat(statics, number) {
+        return None;
+    }
+    let found = free_joints(statics, number)?;
+    let name = |number: usize| context.solids()[statics.bodies[number].solid].spec.name.clone();
+    let turns_deg = found.turns.iter().map(|(number, turn)| (name(*number), turn.to_degrees())).collect();
+    Some(FreeAssembly { periods_s: found.periods, turns_deg, is_stable: !found.is_unstable })
+}
+
+/// Returns a finding about an assembly with free joints that turns to its rest or has none.
+pub(super) fn free_assembly_finding(free: &FreeAssembly, name: &str) -> Option<Finding> {
+    if !free.is_stable {
+        let what = format!("{name} will fall over: with their joints free, they have no stable rest near the start");
+        let mend = "make a joint fixed, give it a motor with stiffness or end stops, or lower the centres of mass";
+        return Some(Finding::warning("capsizes", what, mend.into()));
+    }
+    let most = free.turns_deg.iter().map(|(_, turn)| *turn).fold(0.0, f64::max);
+    (most > LEVEL.to_degrees()).then(|| {
+        let turns: Vec<String> =
+            free.turns_deg.iter().map(|(name, turn)| format!("\"{name}\" by {}°", three_digits(*turn))).collect();
+        let what = format!("{name} turn to their rest with free joints: {}", turns.join(", "));
+        Finding::note(
+            "lists",
+            what,
+            "turn them by so much (angle_deg, turn_deg), or shift their centres of mass".into(),
+        )
+    })
+}
 
 /// Adds a note about each body on a single hinge to the ground, without lines and end stops, that starts out of balance.
 pub(super) fn check<const D: usize>(context: &PreflightContext<D>, findings: &mut Vec<Finding>) {

@@ -16,8 +16,9 @@ pub(super) const OFF_LATTICE: f64 = 0.2;
 /// Depth below a particle of the lowest row within which something carries it, dp.
 const CARRIED: f64 = 1.5;
 
-/// Adds findings about the bodies of water in `boxes`, which reach up to their levels.
-pub(super) fn check<const D: usize>(context: &PreflightContext<D>, boxes: &[Bounds<D>], findings: &mut Vec<Finding>) {
+/// Adds findings about the open bodies of water.
+pub(super) fn check<const D: usize>(context: &PreflightContext<D>, findings: &mut Vec<Finding>) {
+    let boxes = &context.open_water;
     check_periods(context, boxes, findings);
     let gravity = context.system.gravity();
     if gravity[D - 1] > 0.9 * gravity.norm() {

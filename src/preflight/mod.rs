@@ -32,6 +32,7 @@ mod expected_errors;
 mod face_waves;
 mod thickness;
 mod thin_parts;
+mod turns;
 mod generated_waves;
 
 use std::collections::BTreeMap;
@@ -42,6 +43,7 @@ pub use absorption_limits::AbsorberSummary;
 pub use face_waves::FaceWave;
 pub use floating_bodies::BodySummary;
 pub use generated_waves::GeneratedWave;
+pub use hinged_bodies::FreeAssembly;
 pub use moorings::{MooredSurge, MooringSummary};
 pub use reynolds::BodyFlow;
 pub use run_size::DiskUse;
@@ -50,8 +52,9 @@ pub(crate) use sound_speed::{SoundSpeed, StepSizeLimits};
 
 use crate::{
     error::Error,
+    math::Bounds,
     plan::Plan,
-    scene::{FileNote, InitialWater, RenamedName, StillWaterLevel},
+    scene::{FileNote, InitialWater, RenamedName, StillWaterLevel, basin},
     simulation::Simulation,
     solid::{Role, Solid},
     system::System,
@@ -199,8 +202,12 @@ struct PreflightContext<'a, const D: usize> {
     surface_samples: Vec<Vec<SurfaceSample<D>>>,
     /// The space that each solid encloses.
     hollows: Vec<Option<SolidHollows<D>>>,
+    /// Boxes around the open bodies of water, up to their levels.
+    open_water: Vec<Bounds<D>>,
     /// The water around each solid.
     surroundings: Vec<Surroundings>,
+    /// The free body on which each free body stands.
+    decks: Vec<Option<usize>>,
 }
 
 /// Evaluates a simulation before its first step. `columns` is the number of columns that each probe of the plan writes,
@@ -219,11 +226,20 @@ pub fn preflight<const D: usize>(
     let hollow =
         |(solid, enclosure): (&Solid<D>, Option<_>)| Some(SolidHollows::new(enclosure?, solid, system.fluid().r));
     let hollows = system.solids().iter().zip(initial.enclosures).map(hollow).collect();
-    let (boxes, inside) = (initial.boxes, initial.inside);
-    let (surface_samples, surroundings) = (samples, Vec::new());
-    let mut look =
-        PreflightContext { system, plan, still_water: initial.still, g, surface_samples, hollows, surroundings };
-    look.surroundings = surroundings::find_surroundings(&look, &boxes, &inside);
+    let inside = initial.inside;
+    let mut look = PreflightContext {
+        system,
+        plan,
+        still_water: initial.still,
+        g,
+        surface_samples: samples,
+        hollows,
+        open_water: initial.boxes,
+        surroundings: Vec::new(),
+        decks: Vec::new(),
+    };
+    look.surroundings = surroundings::find_surroundings(&look, &inside);
+    look.decks = carried_bodies::find_decks(&look);
     let mut findings = Vec::new();
     let sound = look.sound_speed(&mut findings);
     let step = look.step_size_limits(sim.spring_step_limit(), &mut findings);
@@ -231,7 +247,7 @@ pub fn preflight<const D: usize>(
     let gaps = look.gaps(&mut findings);
     hollows::check_hollows(&look, &mut findings);
     hollows::check_own_water(&look, &inside, &mut findings);
-    let bodies = look.bodies(&gaps.touching, moorings::moored_ends(&look, sim), &mut findings);
+    let bodies = look.bodies(&gaps, moorings::moored_ends(&look, sim), &mut findings);
     carried_bodies::check(&look, &gaps.touching, &bodies, &mut findings);
     overlapping_bodies::check(&look, &mut findings);
     hinged_bodies::check(&look, &mut findings);
@@ -239,7 +255,7 @@ pub fn preflight<const D: usize>(
     look.check_thickness(&mut findings);
     thin_parts::check_parts(&look, &mut findings);
     periodic_sides::check(&look, &mut findings);
-    initial_water::check(&look, &boxes, &mut findings);
+    initial_water::check(&look, &mut findings);
     open_boundaries::check(&look, &mut findings);
     look.check_probes(&sound, &mut findings);
     lifetimes::check(&look, &mut findings);
@@ -279,6 +295,11 @@ impl<const D: usize> PreflightContext<'_, D> {
     /// Returns the level (m) from which the draft of solid number `i` is measured: the highest one if no water is there.
     fn draft_level(&self, i: usize) -> f64 {
         self.level_around(i).unwrap_or(self.still_water.level)
+    }
+
+    /// Returns the still water of the basin of a paddle in the box `own`.
+    fn basin(&self, own: &Bounds<D>) -> StillWaterLevel {
+        basin(&self.open_water, own).unwrap_or(self.still_water)
     }
 
     /// Returns the end time (s) of the run.

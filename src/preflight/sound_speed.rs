@@ -88,7 +88,7 @@ impl<const D: usize> PreflightContext<'_, D> {
             match &solid.spec.role {
                 Role::Fixed => {}
                 Role::Driven(_) => expected.push((format!("\"{name}\", driven"), self.driven_speed(i))),
-                Role::Free(_) => expected.push(self.impact_speed(solid)),
+                Role::Free(_) => expected.push(self.impact_speed(i, solid)),
             }
         }
         expected.retain(|(_, speed)| *speed > 0.0);
@@ -143,9 +143,9 @@ impl<const D: usize> PreflightContext<'_, D> {
     }
 
     /// The speed (m/s) of a free body at the start, or with which it will strike the water.
-    fn impact_speed(&self, solid: &Solid<D>) -> (String, f64) {
+    fn impact_speed(&self, i: usize, solid: &Solid<D>) -> (String, f64) {
         let (name, start) = (&solid.spec.name, solid.kinematics.velocity.norm());
-        let drop = self.lowest_point(solid) - self.still_water.level;
+        let drop = self.lowest_point(solid) - self.draft_level(i);
         if drop > 0.0 && self.g > 0.0 {
             let what = format!("\"{name}\" after a fall of {} m", three_digits(drop));
             return (what, (start * start + 2.0 * self.g * drop).sqrt());

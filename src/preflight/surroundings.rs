@@ -1,7 +1,7 @@
 //! The water around each solid: its draft, its support and its buoyancy are those in this water, not in the highest one.
 
 use super::{PreflightContext, hollows::particles_around};
-use crate::{math::Bounds, scene::level_at};
+use crate::scene::level_at;
 
 /// The still water around a solid at the start.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,11 +14,9 @@ pub(super) enum Surroundings {
     Dry,
 }
 
-/// Returns the surroundings of each solid. `boxes` are around the open bodies of water, up to their levels, and `inside` has the level
-/// (m) of the water of each hull by its number.
+/// Returns the surroundings of each solid. `inside` has the level (m) of the water of each hull by its number.
 pub(super) fn find_surroundings<const D: usize>(
     context: &PreflightContext<D>,
-    boxes: &[Bounds<D>],
     inside: &[(usize, f64)],
 ) -> Vec<Surroundings> {
     let solids = context.solids();
@@ -33,6 +31,7 @@ pub(super) fn find_surroundings<const D: usize>(
         }
         let bounds = solids[i].spec.shape.bounds_at(&solids[i].kinematics.pose);
         // Without open water the highest level is that of all.
+        let boxes = &context.open_water;
         let open = if boxes.is_empty() { Some(context.still_water.level) } else { level_at(boxes, &bounds) };
         open.map_or(Surroundings::Dry, Surroundings::Open)
     };

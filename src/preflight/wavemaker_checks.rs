@@ -39,6 +39,11 @@ const DEEPER: f64 = 0.01;
 const SHALLOWER: f64 = 0.05;
 const BESIDE: f64 = 0.05;
 
+/// Returns the approximate height (m) of the crests of a wave at the paddle in water with the still `level` (m).
+fn crest(facts: &WaveProperties, level: f64) -> f64 {
+    level + if facts.solitary.is_some() { 1.0 } else { 0.75 } * facts.height
+}
+
 impl<const D: usize> PreflightContext<'_, D> {
     /// Adds findings about a paddle with named waves whose position differs from that of the paddle in the theory.
     pub(super) fn check_site(
@@ -48,18 +53,19 @@ impl<const D: usize> PreflightContext<'_, D> {
         law: &wavemaker::PaddleMotion,
         findings: &mut Vec<Finding>,
     ) {
-        let (name, level) = (&solid.spec.name, self.still_water.level);
+        let name = &solid.spec.name;
         if is_wall(&solid.spec.shape) {
             return;
         }
         let bounds = world_bounds(&solid.spec.shape, &solid.kinematics.pose);
+        let level = self.basin(&bounds).level;
         let (bottom, top) = (bounds.min[D - 1], bounds.max[D - 1]);
         if top <= level {
             let (top_m, level_m) = (three_digits(top), three_digits(level));
             let what = format!(
                 "\"{name}\" ends at {top_m} m, and the water stands at {level_m} m: it makes no wave of theory"
             );
-            let higher = two_digits_up(self.crest(law.properties()).max(level + self.dp()) - top);
+            let higher = two_digits_up(crest(law.properties(), level).max(level + self.dp()) - top);
             findings.push(Finding::warning(
                 "drowned_paddle",
                 what,
@@ -159,11 +165,6 @@ impl<const D: usize> PreflightContext<'_, D> {
             let mend = format!("let the water begin at its face, or move the paddle by {} m", three_digits(gap));
             Finding::warning("dry_paddle", what, mend)
         })
-    }
-
-    /// Approximate height (m) of the crests of a wave at the paddle.
-    fn crest(&self, facts: &WaveProperties) -> f64 {
-        self.still_water.level + if facts.solitary.is_some() { 1.0 } else { 0.75 } * facts.height
     }
 
     /// Adds findings about a paddle that moves too fast for the theory, or whose ramp is too long.
@@ -314,8 +315,8 @@ impl<const D: usize> PreflightContext<'_, D> {
                 format!("a hinge {arm} m below the still level swings by 30"),
             ));
         }
-        let top = world_bounds(&solid.spec.shape, &solid.kinematics.pose).max[D - 1];
-        let crest = self.crest(facts);
+        let bounds = world_bounds(&solid.spec.shape, &solid.kinematics.pose);
+        let (top, crest) = (bounds.max[D - 1], crest(facts, self.basin(&bounds).level));
         if top < crest {
             let what = format!(
                 "the crests at \"{name}\" reach about {} m, and it ends at {} m: water goes over it",

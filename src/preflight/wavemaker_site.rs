@@ -90,7 +90,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         let end = self.water_end(stand);
         let others = self.solids().iter().enumerate().filter(|(_, other)| {
             let bounds = world_bounds(&other.spec.shape, &other.kinematics.pose);
-            let through = bounds.min[D - 1] < self.still_water.level && bounds.max[D - 1] > self.still_water.level;
+            let through = bounds.min[D - 1] < stand.face[D - 1] && bounds.max[D - 1] > stand.face[D - 1];
             through && !std::ptr::eq(*other, paddle) && !is_wall(&other.spec.shape)
         });
         let near = others.filter_map(|(i, other)| Some((self.reflector_distance(i, stand)?, other.spec.name.clone())));
@@ -103,7 +103,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         let pose = &self.solids()[i].kinematics.pose;
         let ahead = self.surface_samples[i].iter().filter_map(|face| {
             let (x, n) = (pose.point(&face.x), pose.rotation * face.n);
-            let (high, facing) = (x[D - 1] - self.still_water.level, n.dot(&stand.direction));
+            let (high, facing) = (x[D - 1] - stand.face[D - 1], n.dot(&stand.direction));
             let looks = high.abs() <= self.dp() && facing < -FACING;
             // From its place to the still level along the face.
             let ahead = stand.distance_ahead(&x).filter(|_| looks)? + high * n[D - 1] / facing;
@@ -124,7 +124,8 @@ impl<const D: usize> PreflightContext<'_, D> {
         let beside = |r: &&Vector<D>| stand.distance_ahead(r).is_some_and(|ahead| (-dp..reach).contains(&ahead));
         let lowest = |least: f64, r: &Vector<D>| least.min(r[D - 1]);
         let rise = water.iter().filter(beside).fold(f64::INFINITY, lowest) - water.iter().fold(f64::INFINITY, lowest);
-        rise.is_finite().then_some(self.still_water.depth - if rise > dp { rise } else { 0.0 })
+        let lower = self.still_water.level - stand.face[D - 1];
+        rise.is_finite().then_some(self.still_water.depth - lower - if rise > dp { rise } else { 0.0 })
     }
 
     /// Adds findings about damping zones without water.

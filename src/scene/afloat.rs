@@ -18,7 +18,8 @@ use crate::{
     },
     math::Pose,
     solid::{
-        SolidSpec,
+        Constraints, SolidSpec,
+        decks::{deck_of, may_stand, standing_joint},
         hydrostatics::{HollowWater, Hull},
         mooring::forces_at_rest,
         statics::WaterAtRest,
@@ -91,8 +92,8 @@ fn note_gravity(ctx: &Context) {
 }
 
 /// Lifts the bodies that start at their equilibrium. They carry their constraints in the state at the start: springs, steady
-/// forces, and bodies at given heights that are joined to them or hang on taut ropes. What lies in a dry hollow of another body
-/// displaces no water; the hollow is known in its place only, so the places are found again with it.
+/// forces, and bodies at given heights that are joined to them, hang on taut ropes or stand on their decks. What lies in a dry
+/// hollow of another body displaces no water; the hollow is known in its place only, so the places are found again with it.
 fn float_bodies<const D: usize>(
     scene: &Scene,
     ctx: &Context,
@@ -100,15 +101,17 @@ fn float_bodies<const D: usize>(
     water: &[WaterBody<D>],
     pool: &StillWater<D>,
 ) -> Result<()> {
+    let constraints = build_constraints(scene, ctx, &placed.specs, &placed.levels)?.at_start();
+    let find = |sheltered: &[bool]| laden_rises(scene, ctx, placed, (water, pool), (&constraints, sheltered));
     let mut sheltered = vec![false; placed.specs.len()];
-    let mut rises = equilibrium_rises(scene, ctx, placed, water, pool, &sheltered)?;
+    let mut rises = find(&sheltered)?;
     for _ in 0..SHELTER_PASSES {
         let found: Vec<bool> = (0..rises.len()).map(|i| placed.is_sheltered(i, &rises, water)).collect();
         if found == sheltered {
             break;
         }
         sheltered = found;
-        rises = equilibrium_rises(scene, ctx, placed, water, pool, &sheltered)?;
+        rises = find(&sheltered)?;
     }
     for (spec, rise) in placed.specs.iter_mut().zip(rises) {
         spec.pose.position[D - 1] += rise;
@@ -116,17 +119,50 @@ fn float_bodies<const D: usize>(
     Ok(())
 }
 
+/// Returns the rise (m) of each body to its equilibrium with the bodies at given heights that stand on its deck there.
+fn laden_rises<const D: usize>(
+    scene: &Scene,
+    ctx: &Context,
+    placed: &PlacedSolids<D>,
+    (water, pool): (&[WaterBody<D>], &StillWater<D>),
+    (constraints, sheltered): (&Constraints<D>, &[bool]),
+) -> Result<Vec<f64>> {
+    let specs: Vec<&SolidSpec<D>> = placed.specs.iter().collect();
+    let height = |i: usize| world_bounds(&specs[i].shape, &specs[i].pose).min[D - 1];
+    let rho0 = ctx.rho0.unwrap_or_default();
+    let mut loose: Vec<usize> = (0..specs.len())
+        .filter(|i| !scene.solid[*i].is_afloat() && may_stand(specs[*i], *i, constraints))
+        .filter(|i| sheltered[*i] || placed.displaced_mass(*i, rho0, water) <= 0.0)
+        .collect();
+    loose.sort_by(|i, j| height(*i).total_cmp(&height(*j)));
+    let mut decks = placed.possible_decks(scene, &specs, constraints, &loose);
+    // Of the bodies that do not stand there, the highest falls: without it the deck is higher.
+    while !decks.is_empty() {
+        let mut laden = constraints.clone();
+        laden.joints.extend(decks.iter().map(|pair| standing_joint(&specs, *pair)));
+        let found = equilibrium_rises(scene, ctx, placed, (water, pool), (&laden, sheltered));
+        let stands = |rises: &Vec<f64>, [upper, deck]: [usize; 2]| {
+            deck_of(&specs, &placed.risen(rises), constraints, upper, scene.dp) == Some(deck)
+        };
+        let falls = match &found {
+            Ok(rises) => decks.iter().rposition(|pair| !stands(rises, *pair)),
+            Err(_) => Some(decks.len() - 1),
+        };
+        let Some(falls) = falls else { return found };
+        decks.remove(falls);
+    }
+    equilibrium_rises(scene, ctx, placed, (water, pool), (constraints, sheltered))
+}
+
 /// Returns the rise (m) of each body to its equilibrium; 0 for one at a given height. `sheltered` tells which lie in dry hollows.
 fn equilibrium_rises<const D: usize>(
     scene: &Scene,
     ctx: &Context,
     placed: &PlacedSolids<D>,
-    water: &[WaterBody<D>],
-    pool: &StillWater<D>,
-    sheltered: &[bool],
+    (water, pool): (&[WaterBody<D>], &StillWater<D>),
+    (constraints, sheltered): (&Constraints<D>, &[bool]),
 ) -> Result<Vec<f64>> {
     let (rho0, level) = (ctx.rho0.unwrap_or_default(), pool.still.level);
-    let constraints = build_constraints(scene, ctx, &placed.specs, &placed.levels)?.at_start();
     let specs: Vec<&SolidSpec<D>> = placed.specs.iter().collect();
     let afloat: Vec<bool> = scene.solid.iter().map(SolidConfig::is_afloat).collect();
     let bottom = level - pool.still.depth;
@@ -146,7 +182,7 @@ fn equilibrium_rises<const D: usize>(
         moored: &|i| pulls[i],
         g,
     };
-    let loads = TieLoads::at_start(&state, &constraints);
+    let loads = TieLoads::at_start(&state, constraints);
     let rise = |i: usize, mass: f64, others: &[usize]| {
         let alone = |e: Error| match others.iter().find(|other| **other != i) {
             Some(other) => {
@@ -265,6 +301,39 @@ impl<const D: usize> PlacedSolids<D> {
         rho0 * self.hull_at(i, pose, level, water).submerged_volume(pose, level).0
     }
 
+    /// Returns the poses of the solids that have risen by `rises` (m).
+    fn risen(&self, rises: &[f64]) -> Vec<Pose<D>> {
+        let pose = |(spec, rise): (&SolidSpec<D>, &f64)| {
+            let mut pose = spec.initial_kinematics().pose;
+            pose.position[D - 1] += rise;
+            pose
+        };
+        self.specs.iter().zip(rises).map(pose).collect()
+    }
+
+    /// Returns pairs of a body of `loose` and a body on which it may stand: the one at a given height under it, or the only one at
+    /// its equilibrium above or below it.
+    fn possible_decks(
+        &self,
+        scene: &Scene,
+        specs: &[&SolidSpec<D>],
+        constraints: &Constraints<D>,
+        loose: &[usize],
+    ) -> Vec<[usize; 2]> {
+        let bounds: Vec<_> = specs.iter().map(|spec| world_bounds(&spec.shape, &spec.pose)).collect();
+        let poses = self.risen(&vec![0.0; specs.len()]);
+        let over = |i: usize, j: usize| {
+            let (a, b) = (&bounds[i], &bounds[j]);
+            (0..D - 1).all(|axis| a.min[axis] < b.max[axis] && a.max[axis] > b.min[axis])
+        };
+        let deck = |i: usize| {
+            let given = deck_of(specs, &poses, constraints, i, scene.dp).filter(|j| loose.contains(j));
+            let mut afloat = (0..specs.len()).filter(|j| scene.solid[*j].is_afloat() && over(i, *j));
+            given.or_else(|| afloat.next().filter(|_| afloat.next().is_none()))
+        };
+        loose.iter().filter_map(|i| Some([*i, deck(*i)?])).collect()
+    }
+
     /// Returns the common rise (m) of these bodies from the places `rises` (m) at which they displace the additional mass `more`
     /// (kg); `None` if they cannot.
     fn common_rise(
@@ -299,14 +368,10 @@ impl<const D: usize> PlacedSolids<D> {
     /// Returns whether solid number `i` lies between the sides of another one with its middle in a hollow that is dry, if the solids
     /// have risen by `rises` (m).
     fn is_sheltered(&self, i: usize, rises: &[f64], water: &[WaterBody<D>]) -> bool {
-        let placed = |j: usize| {
-            let mut pose = self.specs[j].initial_kinematics().pose;
-            pose.position[D - 1] += rises[j];
-            pose
-        };
-        let own = self.specs[i].shape.bounds_at(&placed(i));
+        let poses = self.risen(rises);
+        let own = self.specs[i].shape.bounds_at(&poses[i]);
         (0..self.specs.len()).filter(|j| *j != i).any(|j| {
-            let (shape, pose) = (&self.specs[j].shape, placed(j));
+            let (shape, pose) = (&self.specs[j].shape, poses[j]);
             let Some(around) = &self.enclosures[j] else { return false };
             let Some(number) = around.number_around(shape, &pose, &own) else { return false };
             let (hollow, hull) = (&around.hollows[number], self.hull_at(j, &pose, self.level(j), water));

@@ -67,5 +67,9 @@ pub(super) fn build_constraints<const D: usize>(
     constraints.holds = scene.solid.iter().enumerate().filter_map(hold).collect();
     let removal = |(solid, body): (usize, &SolidConfig)| Some(TimedRemoval { solid, at: body.until? });
     constraints.removals = scene.solid.iter().enumerate().filter_map(removal).collect();
+    for removal in &constraints.removals {
+        let key = format!("solid.{}.until", removal.solid);
+        constraints.check_removal(removal, solids).map_err(|e| ctx.with_location(e, &key))?;
+    }
     Ok(constraints)
 }

@@ -79,6 +79,11 @@ impl Context<'_> {
         self.origin.key_with_names(key)
     }
 
+    /// Returns whether the scene writes `key`.
+    pub(crate) fn is_written(&self, key: &str) -> bool {
+        self.origin.source(key).is_some()
+    }
+
     /// Returns the number of layers of boundary particles within the kernel radius.
     pub(crate) fn layers(&self) -> usize {
         (2.0 * self.h / self.dp - 1e-9).ceil() as usize
@@ -157,10 +162,16 @@ impl Context<'_> {
 
     /// Refuses a vector if its length is not the dimension of the scene.
     pub(crate) fn require_dimension(&self, key: &str, x: &[f64]) -> Result<()> {
+        self.require_dimension_of(key, last_part(key), x)
+    }
+
+    /// Refuses a vector called `name` at `key` if its length is not the dimension of the scene.
+    pub(crate) fn require_dimension_of(&self, key: &str, name: &str, x: &[f64]) -> Result<()> {
         let (d, n) = (self.dimension, x.len());
         if n != d {
             let help = format!("a {d}-D scene has vectors of {d} numbers, as in [{}]", vec!["0.0"; d].join(", "));
-            let error = self.error_with_help(key, format!("{} has {n} numbers, not {d}", last_part(key)), help);
+            let numbers = if n == 1 { "number" } else { "numbers" };
+            let error = self.error_with_help(key, format!("{name} has {n} {numbers}, not {d}"), help);
             return Err(error.with_code(ErrorCode::WrongType));
         }
         match x.iter().find(|x| !x.is_finite()) {

@@ -73,7 +73,10 @@ use crate::error::{Error, Result};
 use toml_source::SceneSource;
 
 pub use context::FileNote;
-pub(crate) use section::{shape::world_bounds, water::level_at};
+pub(crate) use section::{
+    shape::world_bounds,
+    water::{basin, level_at},
+};
 pub use {
     crate::probe::ProbeConfig,
     build::{BuiltScene, InitialWater},

@@ -122,8 +122,19 @@ impl Record<'_> {
     /// Returns the samples of the table in its own scale and on its own clock. Adds notes on layout and units.
     ///
     /// # Errors
-    /// The errors of [`TableReader::series`].
+    /// The errors of [`TableReader::series`], at the key of the column.
     pub(super) fn read(&mut self) -> Result<TimeSeries> {
+        self.require_time()?;
+        self.samples().map_err(|e| self.at("column", files::with_line_in_message(e)))
+    }
+
+    /// Returns `error` with the location of a key of the record.
+    fn at(&self, word: &str, error: Error) -> Error {
+        self.ctx.with_location(error, &format!("{}.{word}", self.key))
+    }
+
+    /// Returns the samples of the table, with notes on its layout, its units and missing values.
+    fn samples(&mut self) -> Result<TimeSeries> {
         let time = self.table.time_column(&self.time, &self.column);
         let series = self.table.series(time.clone(), self.column.clone())?;
         note_layout(self.ctx, self.key, self.file, &self.table);
@@ -182,38 +193,40 @@ impl Record<'_> {
     /// Refuses a column of times that the table does not have.
     ///
     /// # Errors
-    /// `Scene`, with a column that may be meant.
-    pub(super) fn require_time(&mut self) -> Result<()> {
+    /// `Scene` at the key of the column of times, with a column that may be meant.
+    fn require_time(&mut self) -> Result<()> {
         let time = self.table.time_column(&self.time, &self.column);
         let names = self.table.header();
         let value = self.column.to_string();
-        self.table.unit(time).map(|_| ()).map_err(|error| {
-            let is_missing = self.time == ColumnName::from("t_s") && error.code() == ErrorCode::UnknownName;
-            let is_other = |name: &&String| **name != value && !name.is_empty();
-            let other = names.iter().find(is_other).filter(|_| is_missing);
-            match other {
-                Some(name) => {
-                    let all = names.join(", ");
-                    let help = format!("name the column of times, as in  time = \"{name}\"; its columns: {all}");
-                    error.help(help)
-                }
-                None => error,
+        let Err(error) = self.table.unit(time) else { return Ok(()) };
+        let is_missing = self.time == ColumnName::from("t_s") && error.code() == ErrorCode::UnknownName;
+        let is_other = |name: &&String| **name != value && !name.is_empty();
+        let other = names.iter().find(is_other).filter(|_| is_missing);
+        let error = match other {
+            Some(name) => {
+                let all = names.join(", ");
+                let help = format!("name the column of times, as in  time = \"{name}\"; its columns: {all}");
+                error.help(help)
             }
-        })
+            None => error,
+        };
+        Err(self.at("time", files::with_line_in_message(error)))
     }
 
     /// Takes the unit in which a law is meant, and returns the factor from the column's values to those of the run. The name or
     /// the row of units shows that a column is in degrees. Adds notes on their conversion.
     ///
     /// # Errors
-    /// `Scene` if there is no such column.
+    /// `Scene` at the key of the column, if there is no such column.
     pub(super) fn take_unit(&mut self, law: CoordinateUnit) -> Result<f64> {
         if let CoordinateUnit::Si(unit) = law {
             self.unit = Some(unit);
             return Ok(1.0);
         }
         let meant = if law == CoordinateUnit::Degrees { "deg" } else { "rad" };
-        let unit = self.table.unit_as(self.column.clone(), Some((meant, self.ctx.dimension)))?;
+        self.require_time()?;
+        let unit = self.table.unit_as(self.column.clone(), Some((meant, self.ctx.dimension)));
+        let unit = unit.map_err(|e| self.at("column", e))?;
         let named = unit.as_deref().filter(|unit| table::is_degree(unit));
         if law == CoordinateUnit::Radians && named.is_none() {
             self.unit = Some("rad");

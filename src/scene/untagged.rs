@@ -374,9 +374,8 @@ impl TimeFunctionConfig {
         let scaling = record::scaling(self.given_scaling());
         let time = self.time.clone().unwrap_or_else(|| "t_s".into());
         let mut record = record::Record { ctx, key, file, table, time, column: column.clone(), scaling, unit: None };
-        record.require_time().map_err(|e| place("time", e))?;
-        let factor = record.take_unit(unit).map_err(|e| place("column", e))?;
-        let series = record.read().map_err(|e| place("column", files::with_line_in_message(e)))?;
+        let factor = record.take_unit(unit)?;
+        let series = record.read()?;
         record.note_span(&series, record::Outside::Holds);
         // The order of the factors keeps the bits of a law without time factor and offset.
         let by = SampleScaling { scale: scaling.scale * factor, ..scaling };

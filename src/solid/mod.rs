@@ -6,6 +6,7 @@ mod body;
 pub(crate) mod boundary_motion;
 pub(crate) mod constraint;
 pub(crate) mod containment;
+pub(crate) mod decks;
 pub(crate) mod force;
 pub mod hydrostatics;
 pub(crate) mod joint_groups;

@@ -5,6 +5,7 @@
 //! method finds the rises at which buoyancy, weight, lines and forces balance. A rope is a stiff spring that only pulls; the
 //! bottom of the water is a stiff spring that only pushes.
 
+mod linkage;
 mod strength;
 mod support;
 mod ties;
@@ -20,6 +21,7 @@ use super::{
 };
 use crate::math::{Bivector, Bounds, Pose, Vector};
 
+pub(crate) use linkage::free_joints;
 pub(crate) use strength::Overload;
 pub(crate) use support::Support;
 pub(crate) use ties::MooredEnd;

@@ -340,7 +340,6 @@ impl CheckConfig {
 
     /// Returns the check of the run. Opens its table and verifies that it has the columns.
     pub(crate) fn build(&self, ctx: &Context, key: &str) -> Result<CheckPlan> {
-        let place = |e: Error| ctx.with_location(files::with_line_in_message(e), &format!("{key}.reference"));
         let reference = match (&self.formula, &self.response) {
             (Some(text), _) => Reference::Formula(text.clone()),
             (None, Some(response)) => Reference::Response(response.plan()),
@@ -349,7 +348,9 @@ impl CheckConfig {
                 let time = self.time.clone().unwrap_or_else(|| "t_s".into());
                 let column = self.column.clone().unwrap_or_default();
                 let scaling = record::scaling([self.scale, self.time_factor, self.offset]);
-                let table = files::open_table(ctx.folder(), &file).map_err(place)?;
+                let open = files::open_table(ctx.folder(), &file);
+                let table =
+                    open.map_err(|e| ctx.with_location(files::with_line_in_message(e), &format!("{key}.reference")))?;
                 let mut record = Record {
                     ctx,
                     key,
@@ -360,8 +361,8 @@ impl CheckConfig {
                     scaling,
                     unit: table::of_series(&self.series),
                 };
-                record.require_time().map_err(|e| ctx.with_location(e, &format!("{key}.time")))?;
-                let series = record.read().and_then(|series| series.scaled(&scaling)).map_err(place)?;
+                let series = record.read()?;
+                let series = series.scaled(&scaling).map_err(|e| ctx.with_location(e, &format!("{key}.scale")))?;
                 self.require_samples(ctx, key, &file, &series)?;
                 self.note_uncovered(ctx, &file, &series);
                 Reference::Table { file: Path::new(&file).to_path_buf(), time, column, scaling }

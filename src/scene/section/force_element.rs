@@ -173,6 +173,7 @@ impl SpringConfig {
         ctx.require_dimension(&format!("{key}.from"), &self.from)?;
         ctx.require_dimension(&format!("{key}.to"), &self.to)?;
         self.lifetime().verify(ctx, key, Element::Line)?;
+        self.lifetime().verify_solids(ctx, key, tied(solids, &self.between))?;
         ctx.require_positive(&format!("{key}.stiffness"), Some(self.stiffness))
     }
 
@@ -235,6 +236,7 @@ impl RopeConfig {
         ctx.require_dimension(&format!("{key}.from"), &self.from)?;
         ctx.require_dimension(&format!("{key}.to"), &self.to)?;
         self.lifetime().verify(ctx, key, Element::Line)?;
+        self.lifetime().verify_solids(ctx, key, tied(solids, &self.between))?;
         ctx.require_positive(&format!("{key}.length"), self.length)
     }
 
@@ -300,6 +302,7 @@ impl ForceConfig {
     pub(crate) fn verify(&self, ctx: &Context, key: &str, solids: &[SolidConfig]) -> Result<()> {
         require_solid(ctx, solids, &format!("{key}.on"), &self.on)?;
         self.lifetime().verify(ctx, key, Element::Force)?;
+        self.lifetime().verify_solids(ctx, key, tied(solids, std::slice::from_ref(&self.on)))?;
         if !solids.iter().any(|solid| solid.name == self.on && solid.free.is_some()) {
             let what = format!("\"{}\" is not free: a force does not move it", self.on);
             return Err(ctx.error_with_help(&format!("{key}.on"), what, "a force acts on a free solid"));

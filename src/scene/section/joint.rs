@@ -9,6 +9,7 @@ use serde::{
 };
 
 use super::{
+    force_element::tied,
     lifetime::{Element, LifetimeConfig, StrengthConfig},
     shape::vector,
     solid::{MotionMode, SolidConfig, require_solid, verify_modes},
@@ -232,6 +233,7 @@ impl JointConfig {
     pub(crate) fn verify(&self, ctx: &Context, key: &str, solids: &[SolidConfig]) -> Result<()> {
         verify_ends(ctx, key, &self.between, solids)?;
         self.lifetime().verify(ctx, key, Element::Joint)?;
+        self.lifetime().verify_solids(ctx, key, tied(solids, &self.between))?;
         ctx.require_dimension(&format!("{key}.at"), &self.at)?;
         let three = ctx.dimension == 3;
         let (hinge, slider) = (self.kind == JointKindConfig::Hinge, self.kind == JointKindConfig::Slider);
@@ -350,7 +352,7 @@ impl JointConfig {
         let axis = vector(self.axis.as_ref().or(self.along.as_ref()).map_or(&[], |x| x));
         let mut joint = JointSpec::new(&self.name, kind, between, vector(&self.at), axis);
         joint.contacts_enabled = self.contacts.unwrap_or_default();
-        joint.lifetime = self.lifetime().build(solids.iter().filter(|solid| self.between.contains(&solid.name)));
+        joint.lifetime = self.lifetime().build(tied(solids, &self.between));
         let stops = [(&self.limits, 1.0), (&self.limits_deg, 1f64.to_radians())];
         let stop = |mode: Option<&MotionMode>| {
             stops.iter().find_map(|(limits, unit)| match (limits, mode) {

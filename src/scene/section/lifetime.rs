@@ -148,6 +148,23 @@ impl LifetimeConfig<'_> {
         Ok(())
     }
 
+    /// Refuses an element that begins when one of its solids is removed, or later.
+    pub(crate) fn verify_solids<'s>(
+        &self,
+        ctx: &Context,
+        key: &str,
+        mut solids: impl Iterator<Item = &'s SolidConfig>,
+    ) -> Result<()> {
+        let since = self.since.unwrap_or(0.0);
+        let Some((name, end)) = solids.find_map(|solid| Some((&solid.name, solid.until.filter(|end| *end <= since)?)))
+        else {
+            return Ok(());
+        };
+        let what = format!("it begins at {since} s, and solid \"{name}\" is removed at {end} s");
+        let help = format!("begin before that, or remove \"{name}\" later, by its  until");
+        Err(ctx.error_with_help(&format!("{key}.since"), what, help).with_code(ErrorCode::OutOfRange))
+    }
+
     /// The lifetime, which ends with the first of the `solids` that is removed.
     pub(crate) fn build<'s>(&self, solids: impl Iterator<Item = &'s SolidConfig>) -> Lifetime {
         let ends = solids.filter_map(|solid| solid.until).chain(self.until);

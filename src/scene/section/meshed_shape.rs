@@ -200,8 +200,8 @@ impl MeshedShape<'_> {
                 solids::prism(&section, own.size[1], 1)?
             }
             Self::Prism(own) => {
-                let outline: Vec<[f64; 2]> =
-                    outline_points::<2>(ctx, &own.outline())?.iter().map(|p| [p[0], p[1]]).collect();
+                let points = outline_points::<2>(ctx, &own.outline()).map_err(|e| e.in_part("prism"))?;
+                let outline: Vec<[f64; 2]> = points.iter().map(|p| [p[0], p[1]]).collect();
                 solids::prism(&outline, own.length, axis(own.axis))?
             }
             Self::Torus(own) => solids::torus(own.radius, own.tube_radius, axis(own.axis), tolerance)?,

@@ -400,6 +400,7 @@ impl MooringConfig {
         }
         ctx.require_positive(&format!("{key}.length"), Some(self.length))?;
         self.lifetime().verify(ctx, key, Element::Line)?;
+        self.lifetime().verify_solids(ctx, key, tied(solids, &self.between))?;
         if let Some(winch) = &self.winch {
             if self.paid_out.is_some() {
                 let help = "leave out one: paid_out is a given length over time, winch a controller";

@@ -22,7 +22,12 @@ const CURVE_TOLERANCE: f64 = 0.01;
 pub(super) fn verify_line(ctx: &Context, key: &str, config: &PolylineConfig) -> Result<()> {
     ctx.require_positive(&format!("{key}.thickness"), config.thickness)?;
     match (&config.points, &config.file) {
-        (Some(points), None) => points.iter().try_for_each(|p| ctx.require_dimension(key, p)),
+        (Some(points), None) => points.iter().enumerate().try_for_each(|(i, p)| {
+            // A list stands at the key itself or, in a table, at its `points`.
+            let in_table = format!("{key}.points.{i}");
+            let key = if ctx.is_written(&in_table) { in_table } else { format!("{key}.{i}") };
+            ctx.require_dimension_of(&key, &format!("point {} of {}", i + 1, points.len()), p)
+        }),
         (None, Some(_)) => Ok(()),
         _ => Err(ctx.error_at(key, format!("a {} has either points or a file of points", last_part(key)))),
     }
@@ -51,6 +56,11 @@ pub(super) fn outline_points<const D: usize>(ctx: &Context, config: &PolylineCon
     if let Some(points) = &config.points {
         return Ok(points.iter().map(|p| vector(p)).collect());
     }
+    read_points(ctx, config).map_err(|e| e.in_part("file"))
+}
+
+/// The points of the file of a line or outline, m.
+fn read_points<const D: usize>(ctx: &Context, config: &PolylineConfig) -> Result<Vec<Vector<D>>> {
     let file = config.file.as_deref().unwrap_or("");
     if config.is_drawing() {
         let path = files::path_beside(ctx.folder(), file)?;

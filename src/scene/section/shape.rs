@@ -335,21 +335,24 @@ impl ShapeConfig {
             ShapeConfig::Cylinder { length, radius, axis } => {
                 Shape::Cylinder { length: *length, radius: *radius, axis: number(*axis) }
             }
-            ShapeConfig::Polygon(config) => Shape::Polygon { points: outline_points(ctx, config)? },
+            ShapeConfig::Polygon(config) => {
+                Shape::Polygon { points: outline_points(ctx, config).map_err(|e| e.in_part("polygon"))? }
+            }
             ShapeConfig::Polyline(config) => {
-                Shape::Polyline { points: wall_points(ctx, config)?, thickness: thickness(config.thickness) }
+                let points = wall_points(ctx, config).map_err(|e| e.in_part("polyline"))?;
+                Shape::Polyline { points, thickness: thickness(config.thickness) }
             }
             ShapeConfig::Tank { size, thickness: given } => {
                 Shape::Tank { size: vector(size), thickness: thickness(*given) }
             }
-            ShapeConfig::Mesh(config) => mesh_shape(ctx, config)?,
+            ShapeConfig::Mesh(config) => mesh_shape(ctx, config).map_err(|e| e.in_part("mesh.file"))?,
             ShapeConfig::Compound(parts) => {
-                let part = |part: &CompoundPartConfig| {
-                    let inner = part.shape.build(ctx)?;
+                let part = |(i, part): (usize, &CompoundPartConfig)| {
+                    let inner = part.shape.build(ctx).map_err(|e| e.in_part(format!("compound.{i}.shape")))?;
                     let pose = part.at.as_ref().map_or_else(Pose::identity, |at| at.build(&inner, 0.0));
                     Ok((pose, inner))
                 };
-                Shape::Compound(parts.iter().map(part).collect::<Result<_>>()?)
+                Shape::Compound(parts.iter().enumerate().map(part).collect::<Result<_>>()?)
             }
             ShapeConfig::Ellipsoid(own) => MeshedShape::Ellipsoid(own).build(ctx)?,
             ShapeConfig::Cone(own) => MeshedShape::Cone(own).build(ctx)?,

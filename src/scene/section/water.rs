@@ -72,7 +72,7 @@ impl WaterConfig {
 
     /// Its region, its level and its initial motion.
     pub(crate) fn build<const D: usize>(&self, ctx: &Context, key: &str) -> Result<WaterBody<D>> {
-        let place = |e: Error| ctx.with_location(e, &format!("{key}.fill"));
+        let place = |e: Error| ctx.with_location(e, &format!("{key}.fill.shape"));
         let (shape, pose) = match &self.fill {
             FillConfig { corners: Some(corners), .. } => {
                 let (min, mut max): (Vector<D>, Vector<D>) = (vector(&corners.min), vector(&corners.max));
@@ -234,6 +234,21 @@ pub(crate) fn level_at<const D: usize>(boxes: &[Bounds<D>], own: &Bounds<D>) -> 
     boxes.iter().filter(overlaps).map(|water| water.max[D - 1]).reduce(f64::max)
 }
 
+/// Returns the still water of the basin nearest to a solid in the box `own`: the water in `boxes` with the level of the nearest one,
+/// or of the highest of several as near. `None` without boxes.
+pub(crate) fn basin<const D: usize>(boxes: &[Bounds<D>], own: &Bounds<D>) -> Option<StillWaterLevel> {
+    let gap = |water: &Bounds<D>, axis: usize| {
+        (water.min[axis] - own.max[axis]).max(own.min[axis] - water.max[axis]).max(0.0)
+    };
+    let away = |water: &Bounds<D>| (0..D - 1).map(|axis| gap(water, axis).powi(2)).sum::<f64>();
+    let level = |water: &Bounds<D>| water.max[D - 1];
+    let order = |a: &&Bounds<D>, b: &&Bounds<D>| away(a).total_cmp(&away(b)).then(level(b).total_cmp(&level(a)));
+    let level = level(boxes.iter().min_by(order)?);
+    let own = boxes.iter().filter(|water| water.max[D - 1] == level);
+    let bottom = own.map(|water| water.min[D - 1]).fold(f64::INFINITY, f64::min);
+    Some(StillWaterLevel { level, depth: level - bottom })
+}
+
 /// The water at rest and the boxes around it.
 pub(crate) struct StillWater<const D: usize> {
     pub(crate) still: StillWaterLevel,
@@ -251,6 +266,11 @@ impl<const D: usize> StillWater<D> {
             bounds = Bounds { min: bounds.min.inf(&own.min), max: bounds.max.sup(&own.max) };
         }
         Self { still: StillWaterLevel::of(water), bounds, boxes: open_boxes(water) }
+    }
+
+    /// The still water of the basin nearest to a solid in the box `own`.
+    pub(crate) fn basin(&self, own: &Bounds<D>) -> StillWaterLevel {
+        basin(&self.boxes, own).unwrap_or(self.still)
     }
 
     /// The level (m) of the open water at the place of a solid in the box `own`; `None` if none is there.

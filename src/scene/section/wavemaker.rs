@@ -63,7 +63,7 @@ pub(super) fn build<const D: usize>(
     pool: &StillWater<D>,
 ) -> Result<PrescribedMotion<D>> {
     let own = world_bounds(shape, pose);
-    let depth = wave.depth.unwrap_or(pool.still.depth);
+    let depth = wave.depth.unwrap_or(pool.basin(&own).depth);
     let g = ctx.gravity.as_ref().and_then(|g| g.initial.last()).map_or(0.0, |g| -g);
     let maker = Wavemaker { depth, g, paddle: Paddle::Piston };
     let motion = match &config.along {
@@ -98,7 +98,7 @@ fn piston_motion<const D: usize>(
         let help = "waves so long need a longer tank: take a shorter period or a lower height";
         return Err(ctx.error_with_help(&key, what, help));
     }
-    let site = AbsorberSite::of(own, along, pool.still.level);
+    let site = AbsorberSite::of(own, along, pool.basin(own).level);
     note_distance(ctx, &key, wave, ahead);
     with_absorption(ctx, &key, wave, maker, &site, PrescribedMotion::slide(along, TimeFunction::Wave(Box::new(law))))
 }
@@ -113,10 +113,11 @@ fn flap_motion<const D: usize>(
     (own, pool): (&Bounds<D>, &StillWater<D>),
 ) -> Result<PrescribedMotion<D>> {
     let hinge: Vector<D> = vector(config.hinge.as_deref().unwrap_or(&[]));
-    let arm = pool.still.level - hinge[D - 1];
+    let level = pool.basin(own).level;
+    let arm = level - hinge[D - 1];
     if arm <= 0.0 {
         let what = format!("the hinge is {:.3} m above the still level: such a flap makes no wave by theory", -arm);
-        let help = format!("a flap is hinged below {:.3} m: at the bed, above or under it", pool.still.level);
+        let help = format!("a flap is hinged below {level:.3} m: at the bed, above or under it");
         return Err(ctx.error_with_help(&format!("{key}.hinge"), what, help));
     }
     let unit = |x: &Vec<f64>| vector::<D>(x).normalize().iter().copied().collect();
@@ -133,7 +134,7 @@ fn flap_motion<const D: usize>(
     let axis: Vec<f64> = axis.iter().map(|x| sense * x).collect();
     let (key, maker) = (format!("{key}.wave"), Wavemaker { paddle: Paddle::Flap { arm }, ..*maker });
     let law = wave_from_config(ctx, &key, wave, &maker)?;
-    let site = AbsorberSite::of(own, way.normalize() * sense, pool.still.level);
+    let site = AbsorberSite::of(own, way.normalize() * sense, level);
     note_distance(ctx, &key, wave, support(&pool.bounds, &site.way) - site.face.dot(&site.way));
     with_absorption(
         ctx,
@@ -255,7 +256,7 @@ fn wave_from_config(ctx: &Context, key: &str, config: &WaveConfig, maker: &Wavem
             maker.components(&components).map_err(place("components"))?
         }
         WaveConfig { elevation: Some(config), .. } => {
-            let series = read_elevation(ctx, &format!("{key}.elevation"), config).map_err(place("elevation.column"))?;
+            let series = read_elevation(ctx, &format!("{key}.elevation"), config)?;
             let (distance, delay) = (config.distance.unwrap_or_default(), config.offset.unwrap_or_default());
             maker.measured(&series, distance, delay).map_err(place("elevation"))?
         }
@@ -306,14 +307,15 @@ pub(super) fn read_components(ctx: &Context, key: &str, config: &WaveComponentsC
 
 /// The elevation of a table, without its offset.
 fn read_elevation(ctx: &Context, key: &str, config: &MeasuredElevationConfig) -> Result<TimeSeries> {
-    let table = files::open_table(ctx.folder(), &config.file)?;
+    let place = |word: &str, e: Error| ctx.with_location(files::with_line_in_message(e), &format!("{key}.{word}"));
+    let table = files::open_table(ctx.folder(), &config.file).map_err(|e| place("file", e))?;
     let scaling = record::scaling(config.given_scaling());
     let (time, column) = (config.time.clone().unwrap_or_else(|| "t_s".into()), config.column.clone());
     let mut record = Record { ctx, key, file: &config.file, table, time, column, scaling, unit: Some("m") };
-    let series = record.read().map_err(files::with_line_in_message)?;
+    let series = record.read()?;
     record.note_span(&series, Outside::Waves);
     record.note_uneven(&series);
-    series.scaled(&SampleScaling { offset: 0.0, ..scaling })
+    series.scaled(&SampleScaling { offset: 0.0, ..scaling }).map_err(|e| place("scale", e))
 }
 
 /// An irregular sea of this spectrum.

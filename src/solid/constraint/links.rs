@@ -182,21 +182,22 @@ impl<const D: usize> Constraints<D> {
         self.contacts.find(a, b).is_none_or(|pair| pair.can_touch) && !self.joints.iter().any(jointed)
     }
 
-    /// The name of a constraint of solid number `solid` that has not ended at time `t` (s), if there is one.
+    /// The kind and the name of a constraint of solid number `solid` that has not ended at time `t` (s), if there is one.
     pub(crate) fn constraint_on(&self, solid: usize, t: f64) -> Option<String> {
-        let joints = self.joints.iter().map(|joint| (&joint.name, joint.between, &joint.lifetime));
+        let joints = self.joints.iter().map(|joint| ("joint", &joint.name, joint.between, &joint.lifetime));
         let ends = |ends: &[LineEnd<D>; 2]| ends.map(|end| end.solid);
-        let springs = self.springs.iter().map(|spring| (&spring.name, ends(&spring.ends), &spring.lifetime));
-        let ropes = self.ropes.iter().map(|rope| (&rope.name, ends(&rope.ends), &rope.lifetime));
-        let forces = self.forces.iter().map(|force| (&force.name, [Some(force.solid), None], &force.lifetime));
-        let moorings = self.moorings.iter().map(|mooring| (&mooring.name, ends(&mooring.ends), &mooring.lifetime));
+        let springs = self.springs.iter().map(|spring| ("spring", &spring.name, ends(&spring.ends), &spring.lifetime));
+        let ropes = self.ropes.iter().map(|rope| ("rope", &rope.name, ends(&rope.ends), &rope.lifetime));
+        let forces = self.forces.iter().map(|force| ("force", &force.name, [Some(force.solid), None], &force.lifetime));
+        let moorings = self.moorings.iter();
+        let moorings = moorings.map(|line| ("mooring", &line.name, ends(&line.ends), &line.lifetime));
         let in_wind =
             |wind: &WindSpec<D>| wind.targets.iter().any(|target| target.solid == solid && !target.lifetime.is_over(t));
         let mut named = joints.chain(springs).chain(ropes).chain(moorings).chain(forces);
         let held = self.holds.iter().any(|hold| hold.solid == solid && hold.is_active(t));
-        let first = named.find(|(_, ends, lifetime)| ends.contains(&Some(solid)) && !lifetime.is_over(t));
+        let first = named.find(|(_, _, ends, lifetime)| ends.contains(&Some(solid)) && !lifetime.is_over(t));
         let blown = self.winds.iter().any(in_wind);
-        let first = first.map(|(name, ..)| format!("{name:?}"));
+        let first = first.map(|(kind, name, ..)| format!("{kind} {name:?}"));
         first.or_else(|| held.then(|| "its release".into())).or_else(|| blown.then(|| "a wind".into()))
     }
 
@@ -269,7 +270,10 @@ impl<const D: usize> Constraints<D> {
     }
 
     /// Refuses the removal of a solid to which something is still tied.
-    fn check_removal(&self, removal: &TimedRemoval, solids: &[SolidSpec<D>]) -> Result<()> {
+    ///
+    /// # Errors
+    /// `Scene`, as [`Constraints::check`].
+    pub(crate) fn check_removal(&self, removal: &TimedRemoval, solids: &[SolidSpec<D>]) -> Result<()> {
         let Some(solid) = solids.get(removal.solid) else {
             return Err(Error::scene("a solid that is not there is to be removed"));
         };
@@ -278,8 +282,11 @@ impl<const D: usize> Constraints<D> {
             return Err(Error::scene(what).help("a solid is removed at a time above 0, s"));
         }
         match self.constraint_on(removal.solid, removal.at) {
-            Some(tie) => Err(Error::scene(format!("{tie} is tied to solid \"{}\", which is removed", solid.name))
-                .help("end the constraint at the same time or before")),
+            Some(tie) => {
+                let (name, at) = (&solid.name, removal.at);
+                let what = format!("{tie} is tied to solid \"{name}\", which is removed at {at} s");
+                Err(Error::scene(what).help(format!("end the tie at the same time or before:  until = {at}")))
+            }
             None => Ok(()),
         }
     }

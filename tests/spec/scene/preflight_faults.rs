@@ -261,6 +261,62 @@ fn a_thin_dry_wall_is_told_with_the_error_of_its_load() {
     assert!(!finding(&wall(0.04), "thin_wall").what.contains('%'));
 }
 
+/// A raft of 36 kg/m and 0.6 m² per metre of draft with a crate of 12 kg/m: 48 kg/m need a draft of 0.08 m, the raft alone 0.06 m.
+#[test]
+fn a_raft_with_a_crate_on_its_deck_has_the_draft_of_both_weights() {
+    let raft = |draft: &str| body("raft", [0.6, 0.2], 300.0, &format!("x = 1.0, draft = {draft}"));
+    let crate_on_it = |bottom: f64| body("crate", [0.2, 0.1], 600.0, &format!("x = 1.0, bottom = {bottom}"));
+    let found = |raft: &str, bottom: f64| report(&format!("{WATER}{TANK}{raft}{}", crate_on_it(bottom)));
+    let draft = |found: &Preflight| found.bodies[0].afloat.as_ref().map_or(0.0, |afloat| afloat.draft_m);
+    // The deck of both lies at 0.6 + 0.2 − 0.08 m. The bisection stops at 1e-14 of the height of the raft.
+    let both = found(&raft("\"equilibrium\""), 0.72);
+    assert!((both.bodies[0].draft_m - 0.08).abs() < 1e-9 && (draft(&both) - 0.08).abs() < 1e-9, "{:?}", both.bodies[0]);
+    assert!(find(&both, "carried_body").expect("noted").what.contains("those of both"));
+    assert!(find(&both, "off_draft").is_none(), "{:#?}", both.findings);
+    // The same with the crate before its raft, and with two crates of half its height on one another.
+    let upside_down = report(&format!("{WATER}{TANK}{}{}", crate_on_it(0.72), raft("\"equilibrium\"")));
+    assert!((upside_down.bodies[1].draft_m - 0.08).abs() < 1e-9, "{:?}", upside_down.bodies[1]);
+    let half = |name: &str, bottom: f64| body(name, [0.2, 0.05], 600.0, &format!("x = 1.0, bottom = {bottom}"));
+    let stack = format!("{WATER}{TANK}{}{}{}", raft("\"equilibrium\""), half("upper", 0.77), half("lower", 0.72));
+    assert!((report(&stack).bodies[0].draft_m - 0.08).abs() < 1e-9, "{:?}", report(&stack).bodies[0]);
+    // A crate 5 dp above the deck falls: the raft starts at its own draft. So it does if only one of two crates stands.
+    let falls = found(&raft("\"equilibrium\""), 0.84);
+    assert!((falls.bodies[0].draft_m - 0.06).abs() < 1e-9, "{:?}", falls.bodies[0]);
+    let one_falls = format!("{WATER}{TANK}{}{}{}", raft("\"equilibrium\""), crate_on_it(0.72), half("above", 0.95));
+    assert!((report(&one_falls).bodies[0].draft_m - 0.08).abs() < 1e-9, "{:?}", report(&one_falls).bodies[0]);
+    // On a raft at its own draft, inspect has the draft at which both rest.
+    let alone = found(&raft("0.06"), 0.74);
+    assert!((draft(&alone) - 0.08).abs() < 1e-9, "{:?}", alone.bodies[0]);
+    // BM = B³/(12 V) = 0.6³/(12 0.048), above KB = 0.04 m; the centre of mass of both is at (36 0.1 + 12 0.25)/48 m above the keel.
+    let centre = (36.0 * 0.1 + 12.0 * 0.25) / 48.0;
+    let gm = 0.216 / (12.0 * 0.048) + 0.04 - centre;
+    let afloat = both.bodies[0].afloat.as_ref().expect("afloat");
+    // The finite turn from which the restoring moment is taken changes it by 1e-8.
+    assert!((afloat.tilts[0].gm_m / gm - 1.0).abs() < 1e-6, "{} m for {gm} m", afloat.tilts[0].gm_m);
+    // 48 kg/m heave on 0.6 m and roll with the inertia of both about their centre, I = Σ m ((b² + h²)/12 + r²).
+    let heave = std::f64::consts::TAU * (48.0 / (1000.0 * 9.81 * 0.6f64)).sqrt();
+    assert!((afloat.heave_s / heave - 1.0).abs() < 1e-6, "{} s for {heave} s", afloat.heave_s);
+    let inertia = 36.0 * ((0.36 + 0.04) / 12.0 + (centre - 0.1).powi(2))
+        + 12.0 * ((0.04 + 0.01) / 12.0 + (0.25 - centre).powi(2));
+    let roll = std::f64::consts::TAU * (inertia / (48.0 * 9.81 * gm)).sqrt();
+    assert!((afloat.tilts[0].period_s.expect("stable") / roll - 1.0).abs() < 1e-6, "{:?} for {roll} s", afloat.tilts);
+}
+
+#[test]
+fn a_gangway_between_a_raft_and_a_quay_is_told_as_not_counted() {
+    let raft = body("raft", [0.6, 0.2], 300.0, "x = 0.7, draft = \"equilibrium\"");
+    let quay = "[[solid]]\nname = \"quay\"\nfixed = true\nshape = { box = { size = [0.4, 0.74] } }\nat = { x = 1.5, bottom = 0.0 }\n";
+    let gangway = body("gangway", [0.8, 0.04], 600.0, "x = 1.1, bottom = 0.74");
+    let found = report(&format!("{WATER}{TANK}{raft}{quay}{gangway}"));
+    assert!((found.bodies[0].draft_m - 0.06).abs() < 1e-9, "{:?}", found.bodies[0]);
+    let note = find(&found, "carried_body").expect("noted");
+    assert!(
+        note.what.contains("\"gangway\" stands on \"raft\", whose draft and GM are given without"),
+        "{}",
+        note.what
+    );
+}
+
 #[test]
 fn bodies_that_displace_the_same_water_are_told_with_its_volume() {
     let hull = body("hull", [0.6, 0.2], 300.0, "x = 1.0, draft = 0.1");

@@ -601,3 +601,62 @@ fn a_law_that_takes_a_solid_out_of_the_scene_is_a_finding() {
     let found = inspected("large", &law(scaled), &large).unwrap();
     assert!(!found.iter().any(|(_, text)| text.contains("missing value")), "{found:?}");
 }
+
+#[test]
+fn a_fault_of_a_measured_elevation_is_told_at_the_key_with_the_fault() {
+    let paddle = |record: &str| {
+        format!(
+            "{}[[solid]]\nname = \"paddle\"\nshape = {{ box = {{ size = [0.2, 0.8] }} }}\nat = {{ x = 0.0, bottom = 0.0 }}\n\
+             driven = {{ along = [1.0, 0.0], wave = {{ elevation = {{ {record} }} }} }}\n",
+            GOOD.replace("LAW", REST)
+        )
+    };
+    let table = "t_s,eta_m\n0,0\n0.5,0.01\n1,0\n";
+    let key = |word: &str| format!("solid.paddle.driven.wave.elevation.{word}");
+    for (word, record, part) in [
+        ("file", "file = \"eta.csv\", column = \"eta_m\"", "no file \"eta.csv\""),
+        ("column", "file = \"g.csv\", column = \"eta\"", "no column \"eta\"; did you mean \"eta_m\"?"),
+        ("time", "file = \"g.csv\", column = \"eta_m\", time = \"t\"", "no column \"t\""),
+        ("column", "file = \"g.csv\"", "\"column\" is missing"),
+    ] {
+        assert_refused("elevation", &paddle(record), &[("g.csv", table)], &[&key(word), part, "scene.toml:"]);
+    }
+    let check =
+        "[[probe]]\nmotion = \"box\"\n[[check]]\nseries = \"box.heave_m\"\nreference = \"g.csv\"\ncolumn = \"eta\"\n";
+    let scene = GOOD.replace("LAW", REST) + check;
+    assert_refused("check", &scene, &[("g.csv", table)], &["no column \"eta\"", "check.0.column", "eta_m"]);
+}
+
+#[test]
+fn a_fault_of_an_outline_is_told_at_its_point_or_its_file() {
+    let outline = |shape: &str| GOOD.replace("LAW", REST).replace("{ box = { size = [0.5, 0.3] } }", shape);
+    let point = ["point 2 of 3 has 1 number, not 2", "solid.box.shape.polygon"];
+    let plain = outline("{ polygon = [[0.0, 0.0], [0.3], [0.3, 0.2]] }");
+    assert_refused("point", &plain, &[], &[point[0], &format!("{}.1", point[1])]);
+    let table = outline("{ polygon = { points = [[0.0, 0.0], [0.3], [0.3, 0.2]] } }");
+    assert_refused("points", &table, &[], &[point[0], &format!("{}.points.1", point[1])]);
+    let file = outline("{ polygon = { file = \"hull.csv\" } }");
+    let names = "solid.box.shape.polygon.file";
+    assert_refused("outline", &file, &[], &["no file \"hull.csv\"", names]);
+    assert_refused("outline", &file, &[("hull.csv", "a,b,c\n0,0,0\n1,0,0\n1,1,0\n")], &["no column \"x_m\"", names]);
+    let part = outline("{ compound = [{ shape = { polygon = { file = \"hull.csv\" } } }] }");
+    assert_refused("part", &part, &[], &["solid.box.shape.compound.0.shape.polygon.file"]);
+}
+
+#[test]
+fn a_tie_that_begins_after_the_removal_of_its_solid_is_refused_with_both() {
+    let scene =
+        GOOD.replace("LAW", REST).replace("free = { density = 500.0 }", "free = { density = 500.0 }\nuntil = 0.5");
+    for (word, section) in [
+        ("joint", "[[joint]]\nkind = \"hinge\"\nbetween = [\"box\"]\nat = [1.0, 0.5]\nsince = 1.0\n"),
+        (
+            "spring",
+            "[[spring]]\nbetween = [\"box\"]\nfrom = [1.0, 0.6]\nto = [1.0, 1.0]\nstiffness = 9.0\nsince = 1.0\n",
+        ),
+        ("force", "[[force]]\non = \"box\"\nforce = [0.0, 1.0]\nsince = 0.5\n"),
+    ] {
+        let named = section.replace("]]\n", "]]\nname = \"tie\"\n");
+        let words = ["solid \"box\" is removed at 0.5 s", &format!("{word}.0.since"), "its  until"];
+        assert_refused(word, &format!("{scene}{named}"), &[], &words);
+    }
+}

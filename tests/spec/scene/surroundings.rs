@@ -88,6 +88,17 @@ fn loose_cargo_in_a_dry_hold_stands_there_and_is_noted() {
     let own = summary(&found, "b");
     assert!(own.support == "solid" && own.displaced_kg == 0.0 && own.afloat.is_none(), "{own:?}");
     assert!(find(&found, "carried_body").unwrap().what.contains("\"b\" stands on \"barge\""));
+    // At the height at which the barge floats with it, it counts as if it were bolted there: 130 kg/m on 0.76 m.
+    let floor = 0.4 - 130.0 / 760.0 + 0.08;
+    let laden = block("b", [0.2, 0.1], &format!("x = 0.8, bottom = {floor}"), "mass = 30.0");
+    let found = report(&format!(
+        "{TANK}{SEA}{}{laden}",
+        self::barge("free = { mass = 100.0 }", "x = 0.5, draft = \"equilibrium\"")
+    ));
+    let own = summary(&found, "barge");
+    // The bisection stops at 1e-14 of the height.
+    assert!((own.draft_m - 130.0 / 760.0).abs() < 1e-9, "placed at {} m", own.draft_m);
+    assert!((own.afloat.as_ref().unwrap().draft_m - 130.0 / 760.0).abs() < 1e-9, "{own:?}");
     // A light body on the floor of a dock below the level of the sea.
     let dock = |bottom: &str| {
         let light = block("b", [0.2, 0.1], &format!("x = 0.8, {bottom}"), "density = 500.0");
@@ -97,6 +108,23 @@ fn loose_cargo_in_a_dry_hold_stands_there_and_is_noted() {
     assert!(summary(&on_floor, "b").support == "solid" && find(&on_floor, "beside_water").is_none());
     let falls = dock("draft = \"equilibrium\"");
     assert!(find(&falls, "beside_water").unwrap().what.contains("\"b\" starts where no water is"), "{falls:#?}");
+}
+
+/// Beside water to 0.4 m a piston in water to 0.2 m makes waves for 0.2 m: by linear theory those of 1 s are 1.212 m long there, and
+/// 1.464 m in 0.4 m.
+#[test]
+fn a_paddle_in_the_lower_of_two_basins_makes_waves_for_its_depth() {
+    let wave = "driven = { along = [1.0, 0.0], wave = { regular = { height = 0.02, period = 1.0 } } }";
+    let paddle = |x: f64, top: f64| {
+        format!(
+            "[[solid]]\nname = \"paddle\"\nshape = {{ box = {{ size = [0.08, {top}] }} }}\nat = {{ x = {x}, bottom = 0.0 }}\n{wave}\n"
+        )
+    };
+    let lower = BASINS.replace("min = [0.84, 0.0]", "min = [1.0, 0.0]");
+    let found = report(&format!("{TANK}{lower}{}", paddle(0.96, 0.35)));
+    let own = &found.waves[0];
+    assert!((own.depth_m - 0.2).abs() < 1e-9 && (own.length_m - 1.212).abs() < 0.001, "{own:?}");
+    assert!(find(&found, "drowned_paddle").is_none() && find(&found, "wrong_depth").is_none(), "{found:#?}");
 }
 
 /// A box of half the density of water and 0.1 m high floats 0.05 m deep in its own basin, with its bottom at 0.15 m.
@@ -175,15 +203,58 @@ fn a_probe_beyond_a_symmetry_plane_is_told_with_its_mirror_image() {
 }
 
 #[test]
-fn joints_that_are_not_rigid_are_named_beside_gm() {
-    let joined = |kind: &str| {
+fn a_mast_on_a_hinge_falls_and_joints_that_are_not_judged_are_named_beside_gm() {
+    let joined = |kind: &str, more: &str| {
         let raft = block("b", [0.4, 0.2], "x = 0.8, draft = \"equilibrium\"", "density = 400.0");
         let mast = block("m", [0.08, 0.3], "x = 0.8, bottom = 0.55", "density = 200.0");
         let joint = format!("[[joint]]\nname = \"j\"\nkind = \"{kind}\"\nbetween = [\"b\", \"m\"]\nat = [0.8, 0.55]\n");
-        report(&format!("{TANK}{SEA}{raft}{mast}{joint}"))
+        report(&format!("{TANK}{SEA}{raft}{mast}{joint}{more}"))
     };
-    assert!(find(&joined("hinge"), "loose_joint").unwrap().what.contains("\"b\" with \"m\" take joint \"j\" as rigid"));
-    assert!(find(&joined("fixed"), "loose_joint").is_none());
+    let falls = joined("hinge", "");
+    assert!(
+        find(&falls, "capsizes").unwrap().what.contains("\"b\" with \"m\" will fall over"),
+        "{:#?}",
+        falls.findings
+    );
+    assert!(find(&falls, "loose_joint").is_none());
+    // A motor of 100 N m/rad holds the mast, whose weight of 4.8 kg 0.15 m above the hinge turns it by 7 N m/rad.
+    let held = joined("hinge", "motor = { stiffness = 100.0 }\n");
+    assert!(find(&held, "capsizes").is_none() && find(&held, "loose_joint").is_none(), "{:#?}", held.findings);
+    let rope = "[[rope]]\nname = \"s\"\nbetween = [\"b\", \"m\"]\nfrom = [0.7, 0.55]\nto = [0.8, 0.8]\n";
+    let tied = joined("hinge", rope);
+    assert!(find(&tied, "loose_joint").unwrap().what.contains("\"b\" with \"m\" take joint \"j\" as rigid"));
+    assert!(find(&joined("fixed", ""), "loose_joint").is_none());
+}
+
+/// Two barges of 0.6 m × 0.2 m, half as dense as water, on a hinge between them at the deck. With the centres of mass 4 mm further
+/// out, each sinks at its outer end. The heave z of the hinge and the turn φ of each barge about it are at rest where
+/// K (z, φ) = (0, −2 m g e), K = [[2 k, k L], [k L, 2 (k L²/3 + m g (z_B − z_G))]] with k = ρ g L.
+#[test]
+fn hinged_barges_are_told_with_the_trim_of_each_part() {
+    let (length, mass, g, out) = (0.6, 60.0, 9.81, 0.004);
+    let barge = |name: &str, x: f64, shift: f64| {
+        let free = format!("density = 500.0, centre_offset = [{shift}, 0.0]");
+        block(name, [length, 0.2], &format!("x = {x}, draft = \"equilibrium\""), &free)
+    };
+    let barges = |out: f64| {
+        let joint = "[[joint]]\nname = \"j\"\nkind = \"hinge\"\nbetween = [\"left\", \"right\"]\nat = [0.8, 0.5]\n";
+        report(&format!("{TANK}{SEA}{}{}{joint}", barge("left", 0.5, -out), barge("right", 1.1, out)))
+    };
+    let k = 1000.0 * g * length;
+    // B is 0.05 m below the level, G at the level.
+    let [zz, zp, pp] = [2.0 * k, k * length, 2.0 * (k * length * length / 3.0 - mass * g * 0.05)];
+    let turn = (2.0 * mass * g * out * zz / (zz * pp - zp * zp)).to_degrees();
+    let found = barges(out);
+    let free = summary(&found, "left").afloat.as_ref().unwrap().free_joints.clone().unwrap();
+    for (name, told) in &free.turns_deg {
+        // Turns of 0.02 rad: second-order terms are of this share.
+        assert!((told / turn - 1.0).abs() < 0.03, "{name}: {told}° for {turn}°");
+    }
+    assert!(
+        find(&found, "lists").unwrap().what.contains("turn to their rest with free joints: \"left\" by"),
+        "{found:#?}"
+    );
+    assert!(find(&barges(0.0), "lists").is_none());
 }
 
 /// A box of 0.4 m × 0.2 m, half as dense as water, hinged 0.4 m beside its middle at the still level. About the hinge the waterplane
