@@ -98,6 +98,36 @@ free = { density = 1800, locked = ["x", "y", "z", "turn_x", "turn_y", "turn_z"] 
 }
 
 #[test]
+fn a_body_across_a_periodic_side_has_the_lift_of_the_reference() {
+    let text = r#"dimension = 2
+dp = 0.02
+until = 1.0
+periodic = { x = [0.0, 0.8] }
+[[water]]
+fill = { box = { min = [0.0, 0.0], max = [0.8, 0.3] } }
+[[solid]]
+name = "bed"
+fixed = true
+shape = { box = { size = [1.6, 0.08] } }
+at = { x = 0.4, bottom = -0.08 }
+[[solid]]
+name = "body"
+shape = { box = { size = [0.2, 0.2] } }
+at = { x = 0.105, bottom = 0.0 }
+free = { density = 6000, velocity = [-1.0, 0.0], locked = ["y", "turn"] }
+[[contact]]
+between = ["body"]
+touch = false
+"#;
+    let setup = setup_of(text);
+    let [moved, _] = beside(&setup, 0.1, 0);
+    let x = moved.system().solids()[1].kinematics.centre[0];
+    assert!(x < 0.05, "it is half across the side: {x} m");
+    let lift = loads_agree("across a side", &setup, 392.4);
+    assert!(lift > 0.5 * 392.4, "{lift} N/m");
+}
+
+#[test]
 fn a_body_that_rises_from_the_bed_agrees_with_the_reference() {
     // A box of ten rows, half as heavy as water: the film lets it rise, and fades as the gap opens. Without it the box stays.
     let text = touching("box = { size = [0.2, 0.2] }", "x = 0.4, bottom = 0.0", "density = 500");
