@@ -27,10 +27,14 @@ mod beside_reference;
 use beside_reference::{run, sizes, under};
 #[path = "device/coupled.rs"]
 mod coupled;
+#[path = "device/films.rs"]
+mod films;
 #[path = "device/forces.rs"]
 mod forces;
 #[path = "device/periodic.rs"]
 mod periodic;
+#[path = "device/thin_parts.rs"]
+mod thin_parts;
 
 fn device() -> String {
     std::env::var("PONTOON_DEVICE").unwrap_or_else(|_| "llvmpipe".into())
@@ -283,8 +287,7 @@ fn free_bodies_agree_with_the_reference() {
 
 #[test]
 fn gaps_beside_free_bodies_carry_the_same_pressure() {
-    // A box one to two rows above the bed: without the pressure across the gap it would sink. A device leaves out the film of a gap
-    // narrower than a row, which the box reaches later.
+    // A box one to two rows above the bed, where there is no film: without the pressure across the gap it would sink.
     let dp = 0.02;
     let model = Model::water(2, dp, 0.3).for_free_bodies();
     let body = SolidSpec::free("box", Shape::Box { size: [0.2, 0.2].into() }, 950.0).at([0.15, 0.13]);
@@ -587,8 +590,11 @@ fn every_shader_is_valid_and_translates_to_metal_and_hlsl() {
     {
         let mut checked = 0;
         for model in every_choice::<D>(dp) {
-            // Half of them with periodic sides, beyond which the walls end, and with what the host reads of the water.
-            let mut setup = dam(model, size);
+            // Half of them with a free body, the others with periodic sides, beyond which the walls end, and with what the host reads of
+            // the water.
+            let middle = size.map(|x| 0.5 * x);
+            let body = || SolidSpec::free("body", Shape::Box { size: middle.into() }, 500.0).at(middle);
+            let mut setup = dam_with(model, size, (checked % 2 == 0).then(body));
             if checked % 2 == 1 {
                 let width = 4.0 * size[0];
                 setup = setup.periodic(0, -width, width);
@@ -597,7 +603,7 @@ fn every_shader_is_valid_and_translates_to_metal_and_hlsl() {
             let Ok(texts) = pontoon::device::shaders_of(sim.system(), checked % 2 == 1) else { continue };
             checked += 1;
             let all = [&texts.search, &texts.lists, &texts.sweep, &texts.step, &texts.solids];
-            let optional = [&texts.images, &texts.gaps];
+            let optional = [&texts.images, &texts.gaps, &texts.films];
             for text in all
                 .into_iter()
                 .chain(optional.into_iter().flatten())

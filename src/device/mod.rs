@@ -9,6 +9,7 @@
 //! Solids stay with the host, in double precision. In a scene whose solids are fixed the device makes many steps on its own.
 
 mod buffers;
+mod film_reads;
 mod gpu;
 mod layout;
 mod near;
@@ -22,6 +23,7 @@ pub use gpu::{Adapter, adapters};
 pub use shaders::ShaderTexts;
 
 use buffers::{Buffers, Control, Counts, WORDS};
+use film_reads::FilmReads;
 use gpu::Gpu;
 use layout::Layout;
 use near::{Answer, Near};
@@ -67,13 +69,13 @@ pub(crate) struct Device<const D: usize> {
     passes: Passes,
     /// The arrays and passes with which the host reads water between two outputs, if it does.
     near: Option<Near>,
+    /// Those with which it reads the boundary particles of films, if there may be films.
+    films: Option<FilmReads>,
     /// Time (s) at tick 0, and the ticks since.
     start: f64,
     ticks: u64,
     /// Steps of the next submission.
     steps: usize,
-    /// Whether steps are Verlet's, and not symplectic.
-    verlet: bool,
 }
 
 /// Rows of additional inputs of the pair loop, and the first of them with the stress of the water, if it is kept.
@@ -140,6 +142,8 @@ pub(crate) struct WaterReads {
     pub(crate) near: bool,
     /// The boundary particles for which it reads the weight of the surrounding water, in ascending order.
     pub(crate) watched: Vec<u32>,
+    /// Axes along which it reads where that water is: all, or none.
+    pub(crate) offset_rows: usize,
 }
 
 /// A step up to its middle.
@@ -196,7 +200,8 @@ fn sponge_statements<const D: usize>(system: &System<D>, layout: &Layout, units:
 /// `Usage` if no device computes the system yet.
 #[doc(hidden)]
 pub fn shaders_of<const D: usize>(system: &System<D>, reads: bool) -> Result<ShaderTexts> {
-    let reads = WaterReads { near: reads, watched: if reads { vec![0] } else { Vec::new() } };
+    let watched = if reads { vec![0] } else { Vec::new() };
+    let reads = WaterReads { near: reads, watched, offset_rows: if reads { D } else { 0 } };
     let layout = Layout::new::<D>(system.model());
     shader_texts(system, (&layout, &Sides::new(system, &layout)), &SolidChunks::new(system), &reads)
 }
@@ -229,6 +234,7 @@ fn shader_texts<const D: usize>(
         chunks: [chunks.moving, chunks.owners.len()],
         near: reads.near || !reads.watched.is_empty(),
         weighs: !reads.watched.is_empty(),
+        offsets: reads.offset_rows > 0 && model.walls == Walls::RelaxedAdami,
         gravity_changes,
         sponge: sponge_statements(system, layout, &units)?,
         gaps: device_state::has_free_solids(system) && model.walls == Walls::RelaxedAdami,
@@ -259,7 +265,8 @@ impl<const D: usize> Device<D> {
         let shaders = Shaders::new(&gpu, &texts, verlet)?;
         let buffers = Buffers::new(&gpu, &counts, &chunks, &texts, verlet)?;
         let passes = Passes::new(&gpu, &shaders, &counts, &chunks, &buffers)?;
-        let near = Near::new(&gpu, &texts, &counts, &buffers, reads.watched)?;
+        let near = Near::new(&gpu, &texts, &counts, &buffers, reads)?;
+        let films = FilmReads::new(&gpu, &texts, &counts, &buffers)?;
         let (units, rows) =
             (model.single_precision_units::<D>(), RowCounts { stress: texts.stress, inputs: texts.rows[1] });
         let (start, ticks, steps) = (time, 0, FIRST_STEPS);
@@ -275,10 +282,10 @@ impl<const D: usize> Device<D> {
             buffers,
             passes,
             near,
+            films,
             start,
             ticks,
             steps,
-            verlet,
         };
         device.load(system, stepper, time)?;
         Ok(device)
@@ -296,7 +303,8 @@ impl<const D: usize> Device<D> {
 
     /// Memory of the arrays, B: all, and of these the neighbour lists.
     pub(crate) fn memory_bytes(&self) -> [u64; 2] {
-        [self.buffers.bytes() + self.near.as_ref().map_or(0, Near::bytes), self.buffers.list_bytes()]
+        let exchanged = self.near.as_ref().map_or(0, Near::bytes) + self.films.as_ref().map_or(0, FilmReads::bytes);
+        [self.buffers.bytes() + exchanged, self.buffers.list_bytes()]
     }
 
     /// Takes the state of `system` at `time` (s).
@@ -423,6 +431,9 @@ impl<const D: usize> Device<D> {
     /// Makes the passes for the present arrays and numbers of particles.
     fn make_passes(&mut self) -> Result<()> {
         self.passes = Passes::new(&self.gpu, &self.shaders, &self.counts, &self.chunks, &self.buffers)?;
+        if let Some(films) = &mut self.films {
+            films.make_pass(&self.gpu, &self.counts, &self.buffers)?;
+        }
         match &mut self.near {
             Some(near) => near.make_passes(&self.gpu, &self.counts, &self.buffers),
             None => Ok(()),
@@ -453,7 +464,7 @@ impl<const D: usize> Device<D> {
             _ => StepsEnd::Time,
         };
         let dt = f64::from(control.dt()) * self.units.time;
-        let weight = control.weight(self.verlet);
+        let weight = control.weight(self.shaders.verlet);
         DeviceSteps { steps: u64::from(control.steps()), passes: u64::from(control.passes()), time, dt, weight, end }
     }
 
@@ -497,7 +508,7 @@ impl<const D: usize> Device<D> {
         self.write_solids(system);
         self.prepare_find(ranges)?;
         let passes = self.passes.second.iter().map(AsRef::as_ref);
-        self.gpu.run(&[], passes.chain(self.weigh()).chain(self.find(ranges)));
+        self.gpu.run(&[], passes.chain(self.read_boundary()).chain(self.find(ranges)));
         let mut answer = self.answer(ranges, true)?;
         if self.grow_lists(&answer.control)? {
             return Ok(None);
@@ -507,8 +518,8 @@ impl<const D: usize> Device<D> {
             self.gpu.run(&[], self.find(ranges));
             answer = self.answer(ranges, true)?;
         }
-        let Answer { control, loads, weights, near, .. } = answer;
-        let loads = WaterLoads { loads: self.chunks.loads(&loads, system, &self.units), weights };
+        let Answer { control, loads, near, .. } = answer;
+        let loads = self.water_loads(&loads, system);
         Ok(Some(SecondHalf { done: self.outcome(&control, end), loads, near }))
     }
 
@@ -551,10 +562,9 @@ impl<const D: usize> Device<D> {
 
     /// The loads on the solids by the last force pass.
     pub(crate) fn loads(&mut self, system: &System<D>) -> Result<WaterLoads<D>> {
-        self.gpu.run(&[], std::iter::once(self.passes.loads.as_ref()).chain(self.weigh()));
-        let [loads, weights] = self.gpu.read([(&self.buffers.loads, 8 * self.chunks.owners.len()), self.weights()])?;
-        let weights = self.near.as_ref().map_or_else(Vec::new, |near| near.weights(&weights));
-        Ok(WaterLoads { loads: self.chunks.loads(&loads, system, &self.units), weights })
+        self.gpu.run(&[], std::iter::once(self.passes.loads.as_ref()).chain(self.read_boundary()));
+        let words = self.gpu.read(self.load_words())?;
+        Ok(self.water_loads(&words, system))
     }
 
     /// Gives the state back to `system` and `stepper`.

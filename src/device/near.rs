@@ -2,8 +2,9 @@
 //! water around some boundary particles, and it changes velocities.
 
 use super::{
-    Device,
+    Device, WaterReads,
     buffers::{Buffers, Control, Counts, WORDS},
+    film_reads::FilmReads,
     gpu::{Gpu, Pass, Shader},
     layout::Layout,
     shaders::{GROUP, ShaderTexts},
@@ -11,7 +12,10 @@ use super::{
 use crate::{
     error::Result,
     math::{Bounds, Vector},
-    system::{System, device_state::NearParticle},
+    system::{
+        System,
+        device_state::{NearParticle, WaterLoads},
+    },
 };
 
 /// Words of a [`NearParticle`] on the device.
@@ -54,7 +58,8 @@ fn bindings<'a>(
 ) -> Vec<&'a wgpu::Buffer> {
     let b = &buffers.pairs;
     let state = [params, &buffers.control, &buffers.places, &buffers.motion, &buffers.before, &b.velocities];
-    state.into_iter().chain([&buffers.slot, &b.spans, &b.aways, ranges, found, watched, weights, changes]).collect()
+    let read = [&buffers.slot, &b.spans, &b.aways, ranges, found, watched, weights, changes, &b.sums];
+    state.into_iter().chain(read).collect()
 }
 
 impl NearPasses {
@@ -74,14 +79,14 @@ impl Near {
         texts: &ShaderTexts,
         counts: &Counts,
         buffers: &Buffers,
-        watched: Vec<u32>,
+        WaterReads { watched, offset_rows, .. }: WaterReads,
     ) -> Result<Option<Self>> {
         let Some(text) = &texts.near else { return Ok(None) };
         let shader = gpu.shader(text, &["find_near", "weigh", "change_velocities"])?;
         let mut padded = watched.clone();
         padded.resize(watched.len().next_multiple_of(GROUP).max(GROUP), NONE);
         let (ranges, changes) = (gpu.buffer(64)?, gpu.buffer(16)?);
-        let (on_device, weights) = (gpu.buffer(4 * padded.len())?, gpu.buffer(4 * padded.len())?);
+        let (on_device, weights) = (gpu.buffer(4 * padded.len())?, gpu.buffer(4 * (1 + offset_rows) * padded.len())?);
         gpu.write(&on_device, 0, &padded);
         let room = ROOM.min(counts.water.max(1));
         let found = gpu.buffer(4 * PARTICLE * room)?;
@@ -120,18 +125,22 @@ impl Near {
         (!self.watched.is_empty()).then_some(&self.passes.weigh)
     }
 
-    /// The weights among `words`, with the boundary particles that have water.
-    pub(super) fn weights(&self, words: &[u32]) -> Vec<(u32, f64)> {
-        let all = self.watched.iter().zip(words).map(|(i, word)| (*i, f64::from(f32::from_bits(*word))));
-        all.filter(|(_, weight)| *weight > 0.0).collect()
+    /// The weights among `words`, with the boundary particles that have water, and the sums of ways to these (in units of the pair loop),
+    /// if they are read.
+    fn weights<const D: usize>(&self, words: &[u32]) -> (Vec<(u32, f64)>, Vec<Vector<D>>) {
+        let rows: Vec<&[u32]> = words.chunks_exact(self.watched_on_device.size() as usize / 4).collect();
+        let number = |row: usize, k: usize| f64::from(f32::from_bits(rows[row][k]));
+        let wet: Vec<usize> = (0..self.watched.len()).filter(|k| number(0, *k) > 0.0).collect();
+        let weights = wet.iter().map(|&k| (self.watched[k], number(0, k))).collect();
+        let offset = |k: &usize| Vector::from_fn(|axis, _| number(1 + axis, *k));
+        (weights, if rows.len() > 1 { wet.iter().map(offset).collect() } else { Vec::new() })
     }
 }
 
-/// The answer of a device: control words, loads, weights and particles.
+/// The answer of a device: control words, the words of loads, weights and films, and water particles.
 pub(super) struct Answer<const D: usize> {
     pub(super) control: Control,
-    pub(super) loads: Vec<u32>,
-    pub(super) weights: Vec<(u32, f64)>,
+    pub(super) loads: [Vec<u32>; 3],
     pub(super) near: Vec<NearParticle<D>>,
     /// Whether there was room for all particles near the places.
     pub(super) has_all: bool,
@@ -159,33 +168,48 @@ impl<const D: usize> Device<D> {
         self.near.as_ref().filter(|_| !ranges.is_empty()).map(|near| &near.passes.find)
     }
 
-    /// The pass that weighs the water around watched boundary particles, if there are any.
-    pub(super) fn weigh(&self) -> Option<&Pass> {
-        self.near.as_ref().and_then(Near::weigh)
+    /// The passes that weigh the water around watched boundary particles, and that read those of films, if there are any.
+    pub(super) fn read_boundary(&self) -> impl Iterator<Item = &Pass> {
+        let weigh = self.near.as_ref().and_then(Near::weigh);
+        weigh.into_iter().chain(self.films.as_ref().and_then(FilmReads::pass))
     }
 
-    /// The buffer of the weights, and their number.
-    pub(super) fn weights(&self) -> (&wgpu::Buffer, usize) {
-        self.near.as_ref().map_or((&self.buffers.loads, 0), |near| (&near.weights, near.watched.len()))
+    /// Lets each force pass from now on read these boundary particles of films, in ascending order.
+    pub(crate) fn set_film_particles(&mut self, particles: Vec<u32>) -> Result<()> {
+        match &mut self.films {
+            Some(films) => films.set_particles(&self.gpu, &self.counts, &self.buffers, particles),
+            None => Ok(()),
+        }
+    }
+
+    /// The buffers with the words of loads, weights and films, and their numbers of words.
+    pub(super) fn load_words(&self) -> [(&wgpu::Buffer, usize); 3] {
+        let (loads, near) = (&self.buffers.loads, self.near.as_ref().filter(|near| !near.watched.is_empty()));
+        let weights = near.map_or((loads, 0), |near| (&near.weights, near.weights.size() as usize / 4));
+        let films = self.films.as_ref().map_or((loads, 0), FilmReads::words);
+        [(loads, 8 * self.chunks.owners.len()), weights, films]
+    }
+
+    /// What these words say of the water at the solids.
+    pub(super) fn water_loads(&self, [loads, weights, films]: &[Vec<u32>; 3], system: &System<D>) -> WaterLoads<D> {
+        let (weights, mut offsets) = self.near.as_ref().map_or_else(Default::default, |near| near.weights(weights));
+        offsets.iter_mut().for_each(|offset| *offset *= self.units.length);
+        let at_films = self.films.as_ref().map_or_else(Vec::new, |reads| reads.water(films, &self.units));
+        WaterLoads { loads: self.chunks.loads(loads, system, &self.units), weights, offsets, at_films }
     }
 
     /// The answer of the device after all passes, with the water found in `ranges` (m) and, if `loaded`, the loads.
     pub(super) fn answer(&mut self, ranges: &[Bounds<D>], loaded: bool) -> Result<Answer<D>> {
+        let expected = self.near.as_ref().filter(|_| !ranges.is_empty()).map_or(0, |near| near.expected);
+        let found = self.near.as_ref().map_or(&self.buffers.loads, |near| &near.found);
+        let [loads, weights, films] = self.load_words().map(|(of, count)| (of, if loaded { count } else { 0 }));
+        let (control, found) = ((&self.buffers.control, WORDS), (found, PARTICLE * expected));
+        let [control, loads, weights, films, mut particles] = self.gpu.read([control, loads, weights, films, found])?;
+        let (control, loads) = (Control::from_words(&control), [loads, weights, films]);
         let Self { gpu, layout, buffers, near, counts, .. } = self;
-        let loads = if loaded { 8 * self.chunks.owners.len() } else { 0 };
         let Some(near) = near else {
-            let [control, loads] = gpu.read([(&buffers.control, WORDS), (&buffers.loads, loads)])?;
-            let control = Control::from_words(&control);
-            return Ok(Answer { control, loads, weights: Vec::new(), near: Vec::new(), has_all: true });
+            return Ok(Answer { control, loads, near: Vec::new(), has_all: true });
         };
-        let expected = if ranges.is_empty() { 0 } else { near.expected };
-        let [control, loads, weights, mut particles] = gpu.read([
-            (&buffers.control, WORDS),
-            (&buffers.loads, loads),
-            (&near.weights, if loaded { near.watched.len() } else { 0 }),
-            (&near.found, PARTICLE * expected),
-        ])?;
-        let control = Control::from_words(&control);
         let count = if ranges.is_empty() { 0 } else { control.found() as usize };
         let has_all = count <= near.room;
         if has_all && count > expected {
@@ -205,7 +229,7 @@ impl<const D: usize> Device<D> {
         };
         let mut found: Vec<NearParticle<D>> = particles.chunks_exact(PARTICLE).take(count).map(of).collect();
         found.sort_unstable_by_key(|(i, ..)| *i);
-        Ok(Answer { control, weights: near.weights(&weights), loads, near: found, has_all })
+        Ok(Answer { control, loads, near: found, has_all })
     }
 
     /// Adds to the velocities (m/s) of these water particles, of which none comes twice.

@@ -43,7 +43,8 @@ pub(super) struct Shaders {
     images: Option<Shader>,
     /// Whether the stress of the water is kept.
     stress: bool,
-    verlet: bool,
+    /// Whether steps are Verlet's, and not symplectic.
+    pub(super) verlet: bool,
 }
 
 const SEARCH: [&str; 10] =

@@ -53,6 +53,8 @@ pub(super) struct ShaderInput<'a, const D: usize> {
     pub(super) near: bool,
     /// Whether the host reads the weights of the water around boundary particles.
     pub(super) weighs: bool,
+    /// Whether it also reads where that water is.
+    pub(super) offsets: bool,
     /// Whether gravity changes with time.
     pub(super) gravity_changes: bool,
     /// Statements that add the rates of the sponge layers at `place` to `rate`.
@@ -76,6 +78,8 @@ pub struct ShaderTexts {
     pub images: Option<String>,
     /// Pressure across gaps, if there may be any.
     pub gaps: Option<String>,
+    /// Boundary particles of films, if there may be any.
+    pub films: Option<String>,
     /// Additional inputs of the pair loop, if terms read any.
     pub inputs: Option<String>,
     /// Moments of the neighbours, if gradients are corrected.
@@ -132,6 +136,7 @@ impl<const D: usize> ShaderInput<'_, D> {
             );
         Some(ShaderTexts {
             gaps: self.gaps.then(|| with_head(&gaps)),
+            films: self.gaps.then(|| with_head(&include_str!("shaders/films.wgsl").replace("{{FORCE}}", &force))),
             search: with_head(include_str!("shaders/search.wgsl")),
             lists: with_head(include_str!("shaders/lists.wgsl")),
             sweep: with_head(&self.sweep(&properties, &eos, &coefficients)?),
@@ -140,10 +145,10 @@ impl<const D: usize> ShaderInput<'_, D> {
                 .then(|| self.input_rows(&properties))
                 .flatten()
                 .map(|text| with_head(&text)),
-            near: self.near.then(|| with_head(include_str!("shaders/near.wgsl"))),
+            near: self.near.then(|| with_head(&self.near_text())),
             moments: self.moments(&properties).map(|text| with_head(&text)),
             images: (self.sides.kinds() > 2).then(|| with_head(include_str!("shaders/images.wgsl"))),
-            rows: [self.traces.rows[1], self.traces.rows[0], self.kept_rows()],
+            rows: [self.traces.rows[1] + self.offset_rows(), self.traces.rows[0], self.kept_rows()],
             stress: self.traces.layout.stress,
             solids: with_head(&include_str!("shaders/solids.wgsl").replace("{{FORCE}}", &force)),
         })
@@ -232,7 +237,9 @@ impl<const D: usize> ShaderInput<'_, D> {
             beside = format!("{{\n{wall}}}\n{{\n{fit}}}\n");
             target = if relaxed {
                 let equations = statements(&wall_target(properties, eos, coefficients), "w", read(wall_input))?;
-                include_str!("shaders/wall_target.wgsl").replace("{{TARGET}}", &equations)
+                let offset = |k: usize| format!("\nsums[{}u * params.n + k] = fit{};", sums + k, 2 + k);
+                let offsets: String = (0..self.offset_rows()).map(offset).collect();
+                include_str!("shaders/wall_target.wgsl").replace("{{TARGET}}", &equations) + &offsets
             } else {
                 "aways[k - params.water] = vec4<f32>(0.0f, 0.0f, 0.0f, fit0);\n".into()
             };
@@ -273,6 +280,23 @@ impl<const D: usize> ShaderInput<'_, D> {
     /// Rows of additional inputs that the next pass reads although it does not make them.
     fn kept_rows(&self) -> usize {
         if self.traces.layout.stress.is_some() { self.traces.rows[0] } else { 0 }
+    }
+
+    /// Rows of sums with the ways from the water to boundary particles, if the host reads them.
+    fn offset_rows(&self) -> usize {
+        if self.offsets { D } else { 0 }
+    }
+
+    /// The shader by which the host reads water.
+    fn near_text(&self) -> String {
+        let row = |k: usize| {
+            let sum = format!("sums[{}u * params.n + k]", self.traces.rows[1] + k);
+            format!("    weights[{}u * arrayLength(&watched) + i] = {sum};\n", k + 1)
+        };
+        let binding = "@group(0) @binding(14) var<storage, read> sums: array<f32>;\n";
+        include_str!("shaders/near.wgsl")
+            .replace("{{SUMS}}", if self.offsets { binding } else { "" })
+            .replace("{{OFFSETS}}", &(0..self.offset_rows()).map(row).collect::<String>())
     }
 
     /// The shader that makes the additional inputs.

@@ -1,5 +1,7 @@
 //! Search for the points near a position, on a grid of cells that the code fills once.
 
+#[cfg(feature = "gpu")]
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 use rayon::prelude::*;
@@ -94,6 +96,19 @@ impl<const D: usize> PointCells<D> {
             }
         });
         found.truncate(n);
+    }
+
+    /// Returns a box around the points in each cube of edge `size` (m) that has any.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn boxes(&self, size: f64) -> Vec<Bounds<D>> {
+        let mut boxes = BTreeMap::<[i64; D], Bounds<D>>::new();
+        for k in 0..self.order.len() {
+            let x = Vector::from_fn(|axis, _| self.along[axis][k]);
+            let cube = std::array::from_fn(|axis| ((x[axis] - self.min[axis]) / size).floor() as i64);
+            let own = boxes.entry(cube).or_insert_with(Bounds::empty);
+            *own = own.union(&Bounds::around([&x]));
+        }
+        boxes.into_values().collect()
     }
 
     /// Visits ranges of indices in `order`, each with the points of a row of cells.

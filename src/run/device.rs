@@ -16,8 +16,6 @@ use crate::{
     ranks::Ranks,
     scene::Scene,
     simulation::{Simulation, water_of_ranks},
-    solid::Solid,
-    system::has_thin_faces,
 };
 
 /// Refuses a device for a run on several `ranks`.
@@ -32,22 +30,6 @@ pub(super) fn check_ranks(scene: &Scene, ranks: &Ranks) -> Result<()> {
         }
         _ => Ok(()),
     }
-}
-
-/// The parts of the physics of `sim` that a device leaves out, if `scene` names a device.
-pub(super) fn omissions<const D: usize>(scene: &Scene, sim: &Simulation<D>) -> Vec<String> {
-    if scene.device_name().is_none() {
-        return Vec::new();
-    }
-    let film =
-        "the pressure of the film of water between a body and what it touches, so that a body on the bed is not lifted";
-    let faces =
-        "the force by which the faces of parts thinner than 2.5 dp keep water out in 3-D, so that such walls may leak";
-    let system = sim.system();
-    let needed = [(system.solids().iter().any(Solid::is_free), film), (has_thin_faces(system), faces)];
-    let needed = needed.into_iter().filter_map(|(is_needed, what)| is_needed.then_some(what));
-    let remedy = "let such a scene run on the processor, without --device (model.device)";
-    needed.map(|what| format!("a device leaves out {what}: {remedy}")).collect()
 }
 
 /// Puts the water of `sim` on the device that `scene` names, if it names one.

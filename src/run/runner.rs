@@ -107,7 +107,6 @@ where
         // The list of a killed run may be ahead of its checkpoint.
         let listed = if resumed && folder.join(removed_particles::REMOVED).exists() { usize::MAX } else { 0 };
         warnings.extend(warning);
-        warnings.extend(device::omissions(scene, &sim));
         notes.extend(checkpoint.changes.iter().map(ToString::to_string));
         warnings.extend(sim.rollbacks().iter().map(ToString::to_string));
         let (name, version) = Dim::<D>::VERSION;

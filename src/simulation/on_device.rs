@@ -8,9 +8,13 @@ use crate::{
     device::{Adapter, Device, DeviceSteps, SecondHalf, StepRequest, StepsEnd, WaterReads, refused},
     error::{ErrorCode, Result},
     interaction::{PairSums, StepLimits},
+    math::{Bounds, Pose},
     model::TimeScheme,
     solid::{Role, Solid},
-    system::{System, device_state, has_water_beside},
+    system::{
+        System, device_films, device_state, has_water_beside,
+        thin_faces::{self, has_thin_faces},
+    },
 };
 
 /// The water of a simulation on a device.
@@ -20,10 +24,14 @@ pub(super) struct OnDevice<const D: usize> {
     host_is_current: bool,
     /// Whether the loads of the solids are those of the last force pass.
     loads_are_current: bool,
-    /// Whether the host changes nothing between two outputs: no solid moves, and gravity is constant.
+    /// Whether the host changes nothing between two outputs: no solid moves, no thin part pushes water, and gravity is constant.
     runs_alone: bool,
     /// Numbers of the solids whose boundary particles the host places too.
     watched_solids: Vec<usize>,
+    /// Boxes (m) around the thin parts of each solid, in its frame, whose faces push water.
+    thin_boxes: Vec<Vec<Bounds<D>>>,
+    /// Poses of the solids at which films were found; `None` if they are to be found.
+    poses_of_films: Option<Vec<Pose<D>>>,
     /// Steps after which a state for a rollback is stored.
     next_state: u64,
     /// Whether the state of the host was changed by hand, and must go to the device.
@@ -39,6 +47,14 @@ impl<const D: usize> OnDevice<D> {
     /// Memory of its arrays, B: all, and of these the neighbour lists.
     pub(super) fn memory(&self) -> [u64; 2] {
         self.device.memory_bytes()
+    }
+
+    /// Places the solids with films on the host, and lets the device read the boundary particles of these films in the next force pass.
+    fn update_films(&mut self, system: &mut System<D>) -> Result<()> {
+        match device_films::update(system, &mut self.poses_of_films) {
+            Some(particles) => self.device.set_film_particles(particles),
+            None => Ok(()),
+        }
     }
 
     /// Whether a state for a rollback is due after `steps` steps.
@@ -69,10 +85,13 @@ pub(super) fn place<const D: usize>(mut sim: Simulation<D>, name: &str) -> Resul
     watched_solids.dedup();
     let absorbs = |solid: &Solid<D>| matches!(&solid.spec.role, Role::Driven(motion) if motion.absorber().is_some());
     let moored = !sim.bodies.moorings.is_empty();
-    let near = moored || !sim.bodies.added_masses().is_empty() || sim.system.solids().iter().any(absorbs);
-    let device = Device::new(name, &sim.system, &sim.stepper, sim.clock.time, WaterReads { near, watched })?;
+    let pushes = has_thin_faces(&sim.system);
+    let near = moored || pushes || !sim.bodies.added_masses().is_empty() || sim.system.solids().iter().any(absorbs);
+    let offset_rows = if device_state::has_hollows(&sim.system) { D } else { 0 };
+    let reads = WaterReads { near, watched, offset_rows };
+    let device = Device::new(name, &sim.system, &sim.stepper, sim.clock.time, reads)?;
     let all_fixed = sim.system.solids().iter().all(|solid| matches!(solid.spec.role, Role::Fixed));
-    let runs_alone = !moored && all_fixed && !device_state::gravity_changes(&sim.system);
+    let runs_alone = !moored && !pushes && all_fixed && !device_state::gravity_changes(&sim.system);
     device_state::leave_to_device(&mut sim.system);
     let (host_is_current, loads_are_current) = (true, true);
     let own = OnDevice {
@@ -81,6 +100,8 @@ pub(super) fn place<const D: usize>(mut sim: Simulation<D>, name: &str) -> Resul
         loads_are_current,
         runs_alone,
         watched_solids,
+        thin_boxes: thin_faces::boxes(&sim.system),
+        poses_of_films: None,
         next_state: 0,
         host_changed: false,
     };
@@ -107,6 +128,7 @@ fn refuse_unsupported<const D: usize>(sim: &Simulation<D>) -> Result<()> {
 /// water particle, and the largest values that limit a step. For comparisons.
 pub(super) fn rates<const D: usize>(sim: &mut Simulation<D>) -> Result<Option<(Vec<PairSums<D>>, StepLimits)>> {
     let Simulation { device: Some(own), system, .. } = sim else { return Ok(None) };
+    own.update_films(system)?;
     let rates = own.device.rates(system)?;
     let loads = own.device.loads(system)?;
     device_state::set_loads(system, loads);
@@ -119,6 +141,7 @@ pub(super) fn load<const D: usize>(sim: &mut Simulation<D>) -> Result<()> {
     device_state::place_solids(system);
     own.device.load(system, stepper, clock.time)?;
     (own.host_is_current, own.loads_are_current, own.host_changed) = (true, true, false);
+    own.poses_of_films = None;
     own.next_state = own.next_state.min(clock.steps + STATE_EVERY);
     Ok(())
 }
@@ -165,7 +188,7 @@ pub(super) fn steps<const D: usize>(
 }
 
 /// Advances by up to `most` steps until time `pause` (s) is reached, not past `end` (s); the state stays on the device. Makes
-/// only one step if a solid moves, gravity changes or there is a `hook`.
+/// only one step if the host has a part in it, or there is a `hook`.
 fn advance<const D: usize>(
     sim: &mut Simulation<D>,
     (most, pause): (u64, f64),
@@ -191,7 +214,7 @@ fn advance<const D: usize>(
     take_steps(sim, &done)
 }
 
-/// One step of a scene whose solids move or whose gravity changes.
+/// One step of a scene in which the host has a part: solids move, thin parts push water, or gravity changes.
 fn body_step<const D: usize>(
     sim: &mut Simulation<D>,
     request: &StepRequest,
@@ -217,7 +240,10 @@ fn body_step<const D: usize>(
             own.device.write_gravity(system);
         }
         own.watched_solids.iter().for_each(|solid| device_state::place_solid(system, *solid));
-        let ranges = device_state::with_originals(system, bodies.water_ranges(system, over));
+        own.update_films(system)?;
+        let mut ranges = bodies.water_ranges(system, over);
+        ranges.extend(thin_faces::ranges_beside(system, &own.thin_boxes));
+        let ranges = device_state::with_originals(system, ranges);
         if let Some(second) = own.device.second_half(system, request.end, &ranges)? {
             break (over, second);
         }
@@ -229,8 +255,15 @@ fn body_step<const D: usize>(
     if let StepsEnd::Fault(_) | StepsEnd::NoStep = done.end {
         return Ok(Some(done));
     }
-    if bodies.read_water() {
+    let pushes = has_thin_faces(system);
+    if bodies.read_water() || pushes {
         device_state::take_near(system, near);
+        if pushes {
+            thin_faces::find_known_water(system);
+            if let Some((pushed, _)) = thin_faces::repel(system, over.dt, done.weight) {
+                own.device.change_velocities(&device_state::velocity_changes(system, &[pushed]))?;
+            }
+        }
         if reads_all_water(system, bodies) {
             own.device.fetch(system, stepper)?;
         }

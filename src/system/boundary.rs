@@ -389,8 +389,11 @@ impl<const D: usize> System<D> {
         }
         if relaxes {
             self.gap_pressure.update_directions(&fits);
-            film::update_water(self, &fits);
             let place = |system: &Self, i: u32| system.neighbours.boundary_near_fluid().binary_search(&i).ok();
+            film::update_water(self, |system, solid, i| {
+                let fit = &fits[place(system, i)?];
+                Some((system.extrapolated_pressure(fit, solid, i as usize), fit.direction().into()))
+            });
             let around = |fit: &WallExtrapolation<f64, D>| WaterAround {
                 weight: fit.weight_sum,
                 // Offsets point from the water to the wall.

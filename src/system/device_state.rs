@@ -3,7 +3,9 @@
 use std::collections::BTreeMap;
 
 use super::{
-    Fluid, Images, ParticleLimits, System, driving,
+    Fluid, Images, ParticleLimits, System,
+    device_films::{self, BoundaryWater},
+    driving,
     impulses::MomentumTransfer,
     thin_layers::{self, WaterAround},
 };
@@ -22,6 +24,10 @@ pub(crate) struct WaterLoads<const D: usize> {
     pub(crate) loads: Vec<Load<D>>,
     /// Weight (–) of the water around each watched boundary particle that has any.
     pub(crate) weights: Vec<(u32, f64)>,
+    /// Σ V₀ W of the ways (m) from this water to each of these particles; empty unless thin parts are beside hollows.
+    pub(crate) offsets: Vec<Vector<D>>,
+    /// What it does at each boundary particle that films read and that has water near it, in ascending order.
+    pub(crate) at_films: Vec<(u32, BoundaryWater<D>)>,
 }
 
 /// What this system has that no device computes yet, if anything.
@@ -175,15 +181,21 @@ pub(crate) fn place_solids<const D: usize>(system: &mut System<D>) {
     solids.iter().enumerate().for_each(|(i, solid)| boundary.place(i, solid, &fluid.images));
 }
 
-/// Sets the effects of the water on the solids in the force pass: loads, corrected for thin parts, and wet shares.
+/// Sets the effects of the water on the solids in the force pass: loads, with those of films and corrected for thin parts, and wet
+/// shares.
 pub(crate) fn set_loads<const D: usize>(system: &mut System<D>, of: WaterLoads<D>) {
-    let WaterLoads { loads, weights } = of;
-    let weight = |i: u32| weights.binary_search_by_key(&i, |(watched, _)| *watched).ok().map(|place| weights[place].1);
-    let around = |weight| WaterAround { weight, offset: Vector::zeros() };
-    thin_layers::update_water(system, |_, i| weight(i).map(around));
-    let thin = thin_layers::loads(system);
+    let WaterLoads { loads, weights, offsets, at_films } = of;
+    let place = |i: u32| weights.binary_search_by_key(&i, |(watched, _)| *watched).ok();
+    let around = |place: usize| {
+        let weight = weights[place].1;
+        WaterAround { weight, offset: offsets.get(place).map_or_else(Vector::zeros, |sum| -sum / weight) }
+    };
+    thin_layers::update_water(system, |_, i| place(i).map(around));
+    let beside = [device_films::loads(system, &at_films), thin_layers::loads(system)];
     system.solids.iter_mut().zip(loads).for_each(|(solid, load)| solid.load = load);
-    system.solids.iter_mut().zip(thin).for_each(|(solid, load)| solid.load += load);
+    for loads in beside {
+        system.solids.iter_mut().zip(loads).for_each(|(solid, load)| solid.load += load);
+    }
     if let Some(wetness) = &mut system.boundary.wetness {
         *wetness = weights;
     }
@@ -192,6 +204,11 @@ pub(crate) fn set_loads<const D: usize>(system: &mut System<D>, of: WaterLoads<D
 /// The boundary particles in the middle of thin parts.
 pub(crate) fn thin_particles<const D: usize>(system: &System<D>) -> Vec<u32> {
     thin_layers::particles(system).collect()
+}
+
+/// Whether thin parts are beside hollows, so that they need to know on which side water is.
+pub(crate) fn has_hollows<const D: usize>(system: &System<D>) -> bool {
+    thin_layers::has_hollows(system)
 }
 
 /// Places the boundary particles of solid number `solid` on the host.

@@ -30,7 +30,6 @@ use crate::{
     model::{Model, Walls},
     particles::PARTICLES_PER_TASK,
     solid::{Kinematics, Load, Solid},
-    sph::boundary::WallExtrapolation,
 };
 
 /// Gaps over which the film fades, dp: half a row of water flows into the first, a whole row into the last.
@@ -82,12 +81,10 @@ impl<const D: usize> Rim<D> {
 struct FilmParticle<const D: usize> {
     /// Its index.
     boundary: u32,
-    /// Its place among the boundary particles near water, if it is one of them.
-    near_water: Option<u32>,
     rim: Rim<D>,
     /// Share (–) of its face that the other solid sees: less than 1 on a curved or inclined face.
     facing: f64,
-    /// The boundary particles of the other solid below it that see water through the solid, by their places among those near water.
+    /// Indices of the boundary particles of the other solid below it that see water through the solid.
     covered: Vec<u32>,
 }
 
@@ -98,7 +95,7 @@ impl<const D: usize> FilmParticle<D> {
 }
 
 /// One film: a connected part of the gap between two solids.
-struct Film<const D: usize> {
+pub(super) struct Film<const D: usize> {
     solid: usize,
     other: usize,
     particles: Vec<FilmParticle<D>>,
@@ -124,6 +121,9 @@ pub(super) struct Films<const D: usize> {
     possible: bool,
 }
 
+/// The extrapolated pressure (P/ρ₀, m²/s²) of the water near a boundary particle, and the unit vector from that water to it.
+pub(super) type NearWater<const D: usize> = (f64, Vector<D>);
+
 impl<const D: usize> Films<D> {
     pub(super) fn new(model: &Model) -> Self {
         Self { films: Vec::new(), pressures: Vec::new(), possible: model.walls == Walls::RelaxedAdami }
@@ -133,52 +133,100 @@ impl<const D: usize> Films<D> {
     pub(super) fn is_empty(&self) -> bool {
         self.films.is_empty()
     }
-}
 
-/// Finds the films at the positions `r` (m) of all boundary particles for which the neighbour lists were built.
-pub(super) fn find<const D: usize>(system: &mut System<D>, r: &[Vector<D>]) {
-    let mut films = Vec::new();
-    if system.boundary.films.possible {
-        for i in (0..system.solids.len()).filter(|&i| system.solids[i].is_free()) {
-            // Between two free solids the first has the film.
-            let others = (0..system.solids.len()).filter(|&j| j != i && (j > i || !system.solids[j].is_free()));
-            others.for_each(|j| films.extend(films_between(system, i, j, r)));
-        }
+    /// Whether there may be films beside free solids.
+    #[cfg(feature = "gpu")]
+    pub(super) fn are_possible(&self) -> bool {
+        self.possible
     }
-    system.boundary.films.films = films;
-    system.boundary.films.pressures.clear();
+
+    /// The solids with films.
+    #[cfg(feature = "gpu")]
+    pub(super) fn solids(&self) -> impl Iterator<Item = usize> {
+        self.films.iter().flat_map(|film| [film.solid, film.other])
+    }
+
+    /// The boundary particles that films read, in ascending order.
+    #[cfg(feature = "gpu")]
+    pub(super) fn particles(&self) -> Vec<u32> {
+        let all = self.films.iter().flat_map(|film| &film.particles);
+        let mut particles: Vec<u32> = all
+            .flat_map(|particle| std::iter::once(particle.boundary).chain(particle.covered.iter().copied()))
+            .collect();
+        particles.sort_unstable();
+        particles.dedup();
+        particles
+    }
+
+    /// Takes these films, without the pressures of a force pass.
+    pub(super) fn set(&mut self, films: Vec<Film<D>>) {
+        (self.films, self.pressures) = (films, Vec::new());
+    }
 }
 
-/// Reads the water near the films from `fits`, one for each boundary particle near water.
-pub(super) fn update_water<const D: usize>(system: &mut System<D>, fits: &[WallExtrapolation<f64, D>]) {
+/// Each free solid with each solid that may touch it at these `poses`. Of two free solids, the first has the film.
+pub(super) fn touching<const D: usize>(system: &System<D>, poses: &[Pose<D>]) -> impl Iterator<Item = [usize; 2]> {
+    let solids = &system.solids;
+    let free = (0..solids.len()).filter(|&i| system.boundary.films.possible && solids[i].is_free());
+    let pairs = free.flat_map(move |i| {
+        let others = (0..solids.len()).filter(move |&j| j != i && (j > i || !solids[j].is_free()));
+        others.map(move |j| [i, j])
+    });
+    pairs.filter(|[i, j]| may_touch(system, [*i, *j], poses))
+}
+
+/// The films at the `poses` of the solids and the positions `r` (m) of all boundary particles. They hold until a solid has moved by the
+/// margin of the neighbour lists.
+pub(super) fn find<const D: usize>(system: &System<D>, poses: &[Pose<D>], r: &[Vector<D>]) -> Vec<Film<D>> {
+    touching(system, poses).flat_map(|pair| films_between(system, pair, poses, r)).collect()
+}
+
+/// Reads the `water` near the particles of the films; it gives nothing where no water is near.
+pub(super) fn update_water<const D: usize>(
+    system: &mut System<D>,
+    water: impl Fn(&System<D>, usize, u32) -> Option<NearWater<D>>,
+) {
     let of = |solid: usize, particle: &FilmParticle<D>| {
-        let fit = &fits[particle.near_water? as usize];
-        let pressure = system.extrapolated_pressure(fit, solid, particle.boundary as usize).max(0.0);
-        Some(pressure * particle.rim.share(&fit.direction().into()))
+        let (pressure, away) = water(system, solid, particle.boundary)?;
+        Some(pressure.max(0.0) * particle.rim.share(&away))
     };
     let of_film =
         |film: &Film<D>| film.particles.iter().map(|particle| of(film.solid, particle).unwrap_or(0.0)).collect();
     system.boundary.films.pressures = system.boundary.films.films.iter().map(of_film).collect();
 }
 
-/// The films between free solid `i` and solid `j`.
-fn films_between<const D: usize>(system: &System<D>, i: usize, j: usize, r: &[Vector<D>]) -> Vec<Film<D>> {
-    let (dp, Some(poses)) = (system.model.dp, &system.boundary.poses_at_rebuild) else { return Vec::new() };
-    let (solid, other) = (&system.solids[i], &system.solids[j]);
-    let reach = FADING[1] * dp + 2.0 * system.neighbours.margin();
+/// Distance (m) at which the faces of two solids may have a film before the next lists.
+fn reach<const D: usize>(system: &System<D>) -> f64 {
+    FADING[1] * system.model.dp + 2.0 * system.neighbours.margin()
+}
+
+/// Whether solids `i` and `j` may have a film at these `poses`, by the boxes around them.
+fn may_touch<const D: usize>(system: &System<D>, [i, j]: [usize; 2], poses: &[Pose<D>]) -> bool {
+    let (dp, reach) = (system.model.dp, reach(system));
     let [pose, other_pose] = [i, j].map(|k| system.home_of(k, &poses[k]));
     let [middle, other_middle] = [(i, &pose), (j, &other_pose)].map(|(k, pose)| system.boundary.middle(k, pose));
     let [radius, other_radius] = [i, j].map(|k| 0.5 * system.boundary.local_bounds[k].size().norm());
     if system.fluid.images.periodic.iter().all(Option::is_none)
         && (middle - other_middle).norm() > radius + other_radius + dp + reach
     {
-        return Vec::new();
+        return false;
     }
+    let middle = other_pose.local(&system.fluid.images.wrapped(&middle));
+    system.solids[j].spec.shape.signed_distance(&middle) <= radius + dp + reach
+}
+
+/// The films between free solid `i` and solid `j`.
+fn films_between<const D: usize>(
+    system: &System<D>,
+    [i, j]: [usize; 2],
+    poses: &[Pose<D>],
+    r: &[Vector<D>],
+) -> Vec<Film<D>> {
+    let (dp, reach) = (system.model.dp, reach(system));
+    let (solid, other) = (&system.solids[i], &system.solids[j]);
+    let [pose, other_pose] = [i, j].map(|k| system.home_of(k, &poses[k]));
     let to_other = |x: &Vector<D>| other_pose.local(&system.fluid.images.wrapped(x));
     let distance = |x: &Vector<D>| other.spec.shape.signed_distance(&to_other(x));
-    if distance(&middle) > radius + dp + reach {
-        return Vec::new();
-    }
     let depths = system.boundary.depths.as_deref().unwrap_or_default();
     let normal = |x: &Vector<D>| other_pose.rotation * other.spec.shape.outward_normal(&to_other(x), 0.05 * dp);
     let faces_other = |b: &usize| {
@@ -231,9 +279,6 @@ fn films_between<const D: usize>(system: &System<D>, i: usize, j: usize, r: &[Ve
             _ => Rim::Elsewhere,
         }
     };
-    let wet = system.neighbours.boundary_near_fluid();
-    let places = system.home_boundary_at(j, &poses[j]);
-    let [first, end] = [places.start, places.end].map(|end| wet.partition_point(|&b| (b as usize) < end));
     let support = system.model.support_radius();
     // The height of the solid above each point of the film, where its faces are parallel and nearer than the support.
     let height = |&b: &usize| {
@@ -258,16 +303,15 @@ fn films_between<const D: usize>(system: &System<D>, i: usize, j: usize, r: &[Ve
     let mut covered = vec![Vec::new(); points.len()];
     if heights.iter().any(Option::is_some) {
         let near = Bounds::around(&points).grown(support);
-        for place in first..end {
-            let x = &r[wet[place] as usize];
-            if let Some(by) = near.contains(x).then(|| covers(x)).flatten() {
-                covered[by].push(place as u32);
+        let below = system.home_boundary_at(j, &poses[j]).into_par_iter().with_min_len(PARTICLES_PER_TASK);
+        for b in below.filter(|b| near.contains(&r[*b])).collect::<Vec<_>>() {
+            if let Some(by) = covers(&r[b]) {
+                covered[by].push(b as u32);
             }
         }
     }
     let mut particle = |k: usize| FilmParticle {
         boundary: found[k] as u32,
-        near_water: wet.binary_search(&(found[k] as u32)).ok().map(|place| place as u32),
         rim: rim(k),
         facing: facing(k),
         covered: std::mem::take(&mut covered[k]),
@@ -291,6 +335,15 @@ fn has_room<const D: usize>(system: &System<D>, x: &Vector<D>, poses: &[Pose<D>]
 /// The loads of the films on the computed part of each solid, about its centre; an empty list without a film. `sums` are those of the
 /// boundary particles near water.
 pub(crate) fn loads<const D: usize>(system: &System<D>, sums: &[PairSums<D>]) -> Vec<Load<D>> {
+    let near = system.neighbours.boundary_near_fluid();
+    loads_by(system, |i| near.binary_search(&i).ok().map(|place| sums[place].acceleration))
+}
+
+/// The same by the `acceleration` (m/s²) of each boundary particle with water near it.
+pub(super) fn loads_by<const D: usize>(
+    system: &System<D>,
+    acceleration: impl Fn(u32) -> Option<Vector<D>> + Sync,
+) -> Vec<Load<D>> {
     if system.boundary.films.films.is_empty() {
         return Vec::new();
     }
@@ -301,29 +354,29 @@ pub(crate) fn loads<const D: usize>(system: &System<D>, sums: &[PairSums<D>]) ->
             loads[film.solid] += Load::from_force_at(&(at[0] - solid.kinematics.centre), force);
             loads[film.other] += Load::from_force_at(&(at[1] - other.kinematics.centre), -force);
         };
-        let (r, mass, near) =
-            (&system.boundary.particles.r, system.particle_mass(), system.neighbours.boundary_near_fluid());
+        let (r, mass) = (&system.boundary.particles.r, system.particle_mass());
         for (particle, FilmForce { at, force, share }) in
-            film.particles.iter().zip(forces(system, film, pressures, sums))
+            film.particles.iter().zip(forces(system, film, pressures, &acceleration))
         {
             act(at, force);
             // What lies below the rim sees as much water beside the film as through the solid.
             let share = if particle.at_rim() { 0.5 * share } else { share };
-            for &place in &particle.covered {
-                let aside = r[near[place as usize] as usize] - r[particle.boundary as usize];
-                act(at.map(|at| at + aside), sums[place as usize].acceleration * (mass * share));
+            for &below in &particle.covered {
+                let Some(by_water) = acceleration(below) else { continue };
+                let aside = r[below as usize] - r[particle.boundary as usize];
+                act(at.map(|at| at + aside), by_water * (mass * share));
             }
         }
     }
     loads
 }
 
-/// What `film` does at each of its particles; an empty list if its rim is dry. `sums` are those of the boundary particles near water.
+/// What `film` does at each of its particles; an empty list if its rim is dry.
 fn forces<const D: usize>(
     system: &System<D>,
     film: &Film<D>,
     pressures: &[f64],
-    sums: &[PairSums<D>],
+    acceleration: &(impl Fn(u32) -> Option<Vector<D>> + Sync),
 ) -> Vec<FilmForce<D>> {
     let (dp, rho0, gravity) = (system.model.dp, system.properties.rho0, system.properties.gravity);
     let mass = system.particle_mass();
@@ -362,7 +415,7 @@ fn forces<const D: usize>(
         let still = if particle.at_rim() { *own } else { inside(&x) };
         // The water's particles do a part of it already.
         let size = dp.powi(D as i32 - 1);
-        let pushed = particle.near_water.map_or(0.0, |place| sums[place as usize].acceleration.dot(&normal)) * mass;
+        let pushed = acceleration(particle.boundary).map_or(0.0, |by_water| by_water.dot(&normal)) * mass;
         let full = rho0 * still * size * particle.facing * system.boundary.coverage.row_share(depths[i], dp);
         let flowing = (pushed / full.max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
         let share = thin * (1.0 - flowing) * particle.facing * system.computed_share(solid, &x);

@@ -7,6 +7,8 @@ mod boundary_extension;
 mod change;
 mod checkpoint;
 #[cfg(feature = "gpu")]
+pub(crate) mod device_films;
+#[cfg(feature = "gpu")]
 pub(crate) mod device_state;
 mod driving;
 pub(crate) mod film;
@@ -24,7 +26,7 @@ mod sponge_layer;
 mod step_check;
 mod symmetric_setup;
 pub(crate) mod symmetry;
-mod thin_faces;
+pub(crate) mod thin_faces;
 mod thin_layers;
 mod view;
 mod water_column;
@@ -50,7 +52,7 @@ pub use sponge_layer::SpongeLayer;
 pub use step_check::{Escape, ExitPath, ParticleLimits, RemovedParticle};
 pub(crate) use step_check::{LimitViolation, StepCheck};
 pub(crate) use symmetry::{AxisSet, reflected};
-pub(crate) use thin_faces::{has_thin_faces, repel as repel_from_thin_faces};
+pub(crate) use thin_faces::repel as repel_from_thin_faces;
 
 use own_water::StateAtStart;
 use slip_rates::SlipRates;
@@ -367,16 +369,19 @@ impl<const D: usize> System<D> {
 
     /// Whether particles have moved so far that the lists may miss a pair.
     pub(crate) fn needs_rebuild(&self) -> bool {
+        let Some(then) = &self.boundary.poses_at_rebuild else { return true };
+        let moved = self.status.step_check.max_displacement2.sqrt() + self.solids_displacement(then);
+        moved.is_nan() || moved >= self.neighbours.margin()
+    }
+
+    /// How far (m) a boundary particle of a solid may have moved since the solids had the poses `then`.
+    fn solids_displacement(&self, then: &[Pose<D>]) -> f64 {
         let moved = |(solid, (then, bounds)): (&Solid<D>, (&Pose<D>, &Bounds<D>))| {
             // A rigid motion moves no point of a box further than its furthest corner.
             let now = &solid.kinematics.pose;
             bounds.corners().map(|x| (now.point(&x) - then.point(&x)).norm()).fold(0.0, f64::max)
         };
-        let Some(then) = &self.boundary.poses_at_rebuild else { return true };
-        let boundary =
-            self.solids.iter().zip(then.iter().zip(&self.boundary.local_bounds)).map(moved).fold(0.0, f64::max);
-        let moved = self.status.step_check.max_displacement2.sqrt() + boundary;
-        moved.is_nan() || moved >= self.neighbours.margin()
+        self.solids.iter().zip(then.iter().zip(&self.boundary.local_bounds)).map(moved).fold(0.0, f64::max)
     }
 
     /// Rebuilds the neighbour lists and resets boundary particles without water near them to ρ₀. Returns those that had water
@@ -473,7 +478,10 @@ impl<const D: usize> System<D> {
     fn find_gaps(&mut self, r: &[Vector<D>]) {
         let Self { gap_pressure, neighbours, solids, .. } = self;
         gap_pressure.find(solids, r, neighbours.boundary_near_fluid(), neighbours.margin());
-        film::find(self, r);
+        if let Some(poses) = &self.boundary.poses_at_rebuild {
+            let films = film::find(self, poses, r);
+            self.boundary.films.set(films);
+        }
         slip_rates::find(self, r);
         self.boundary.thin.faces.forget_water();
     }

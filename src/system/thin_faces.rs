@@ -15,6 +15,8 @@
 use rayon::prelude::*;
 
 use super::{MomentumTransfer, System, impulses::change_velocities, own_water};
+#[cfg(feature = "gpu")]
+use crate::math::Bounds;
 use crate::{
     geometry::{
         BoundaryPoint, Shape,
@@ -36,6 +38,10 @@ const RANGE: f64 = Repulsion::RANGE - 0.5;
 /// Largest distance, dp, of water that is pushed from the nearest of the places that mark a thin part: up to 1½ dp across, and the
 /// diagonal of a cell of edge dp.
 const REACH: f64 = 2.0;
+
+/// Edge, dp, of the cubes whose places have a box in common in which a device finds water.
+#[cfg(feature = "gpu")]
+const BOX: f64 = 16.0;
 
 /// Depth, dp, beyond which the push does not grow: half of the largest thickness.
 const DEEPEST: f64 = 0.5 * THIN;
@@ -131,25 +137,65 @@ fn copies<const D: usize>(system: &System<D>) -> impl Iterator<Item = (usize, &P
 
 /// The water of this rank that may come near thin parts before the next lists, for each of [`copies`].
 fn water_beside<const D: usize>(system: &System<D>) -> Vec<Vec<u32>> {
-    let r = &system.fluid.particles.r;
     // Water and solids may both have moved by the margin, and a step may pass it.
     let reach = REACH * system.model.dp + 3.0 * system.neighbours.margin();
     let (these, own) = own_water::own(&system.neighbours, system.own_count());
+    let water = (these.start as u32..these.end as u32).into_par_iter().with_min_len(PARTICLES_PER_TASK);
+    water_within(system, reach, water.filter(|i| own.is_none_or(|own| own[*i as usize])))
+}
+
+/// The particles among the `water` that are within `reach` (m) of the places that mark thin parts, for each of [`copies`].
+fn water_within<const D: usize>(
+    system: &System<D>,
+    reach: f64,
+    water: impl ParallelIterator<Item = u32> + Clone,
+) -> Vec<Vec<u32>> {
+    let r = &system.fluid.particles.r;
     let beside = |(number, faces, way): (usize, &PointCells<D>, Vector<D>)| {
         let (pose, bounds) = (&system.solids[number].kinematics.pose, &system.boundary.local_bounds[number]);
         let bounds = bounds.grown(reach);
         let is_near = |i: &u32| {
             let x = pose.local(&(r[*i as usize] - way));
             let mut near = false;
-            if own.is_none_or(|own| own[*i as usize]) && bounds.contains(&x) {
+            if bounds.contains(&x) {
                 faces.visit_near(&x, reach, |_, y| near |= (x - y).norm_squared() < reach * reach);
             }
             near
         };
-        let water = (these.start as u32..these.end as u32).into_par_iter().with_min_len(PARTICLES_PER_TASK);
-        water.filter(is_near).collect()
+        water.clone().filter(is_near).collect()
     };
     copies(system).map(beside).collect()
+}
+
+/// Boxes (m), in the frame of each solid, around the places that mark its thin parts.
+#[cfg(feature = "gpu")]
+pub(crate) fn boxes<const D: usize>(system: &System<D>) -> Vec<Vec<Bounds<D>>> {
+    let of = |faces: &Option<PointCells<D>>| {
+        faces.as_ref().map_or_else(Vec::new, |faces| faces.boxes(BOX * system.model.dp))
+    };
+    system.boundary.thin.faces.of_solid.iter().map(of).collect()
+}
+
+/// The boxes (m) in which thin parts at their present places may push water, from those [around them](boxes).
+#[cfg(feature = "gpu")]
+pub(crate) fn ranges_beside<const D: usize>(system: &System<D>, boxes: &[Vec<Bounds<D>>]) -> Vec<Bounds<D>> {
+    let of_copy = |(number, _, way): (usize, &PointCells<D>, Vector<D>)| {
+        let pose = system.solids[number].kinematics.pose;
+        let placed = move |range: &Bounds<D>| {
+            let corners: Vec<Vector<D>> = range.corners().map(|x| pose.point(&x) + way).collect();
+            Bounds::around(&corners).grown(REACH * system.model.dp)
+        };
+        boxes[number].iter().map(placed)
+    };
+    copies(system).flat_map(of_copy).collect()
+}
+
+/// Lets the next step push the water that a device has told alone, where it is near thin parts.
+#[cfg(feature = "gpu")]
+pub(crate) fn find_known_water<const D: usize>(system: &mut System<D>) {
+    let (count, known) = (system.own_count(), system.neighbours.known_water().unwrap_or_default());
+    let water = known.par_iter().with_min_len(PARTICLES_PER_TASK).copied().filter(|i| (*i as usize) < count);
+    system.boundary.thin.faces.beside = Some(water_within(system, REACH * system.model.dp, water));
 }
 
 /// Pushes the water beside thin parts over a step `dt` (s), and adds the loads on the solids; they act on bodies by the factor `weight`

@@ -186,6 +186,13 @@ pub(super) fn particles<const D: usize>(system: &System<D>) -> impl Iterator<Ite
     each.flat_map(|(_, start, particles)| particles.iter().map(move |particle| start as u32 + particle.place))
 }
 
+/// Whether a thin part is beside a hollow.
+#[cfg(feature = "gpu")]
+pub(super) fn has_hollows<const D: usize>(system: &System<D>) -> bool {
+    let all = system.boundary.thin.of_solid.iter().flatten();
+    all.flat_map(|particle| particle.hollows).any(|hollow| hollow.is_some())
+}
+
 /// Reads the `water` around the thin parts, if there is any around a boundary particle, and finds the ends of parts that have turned.
 pub(super) fn update_water<const D: usize>(
     system: &mut System<D>,

@@ -17,7 +17,7 @@ struct Change { velocity: vec3<f32>, particle: u32 };
 @group(0) @binding(11) var<storage, read> watched: array<u32>;
 @group(0) @binding(12) var<storage, read_write> weights: array<f32>;
 @group(0) @binding(13) var<storage, read> changes: array<Change>;
-
+{{SUMS}}
 fn holds(range: Range, hi: vec4<i32>) -> bool {
     return all(hi.xyz >= range.low.xyz) && all(hi.xyz <= range.high.xyz);
 }
@@ -38,14 +38,15 @@ fn find_near(@builtin(global_invocation_id) id: vec3<u32>) {
     }
 }
 
-// The weights of the water around the boundary particles that the host watches, from the last force pass.
+// The weights of the water around the boundary particles that the host watches, from the last force pass; then the weighted sums of the
+// ways from this water to them, if the host reads them.
 @compute @workgroup_size(128)
 fn weigh(@builtin(global_invocation_id) id: vec3<u32>) {
     let i = index(id);
     if (i >= arrayLength(&watched) || watched[i] == NONE) { return; }
     let k = slot[params.water + watched[i]];
     weights[i] = select(0.0f, aways[k - params.water].w, spans[k].x > 0u);
-}
+{{OFFSETS}}}
 
 // Adds to the velocities of water particles; none comes twice.
 @compute @workgroup_size(128)
