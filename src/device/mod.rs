@@ -14,6 +14,7 @@ mod layout;
 mod near;
 mod passes;
 mod periodic;
+mod powers;
 mod shaders;
 mod solids;
 mod text;
@@ -27,14 +28,16 @@ use layout::Layout;
 use near::{Answer, Near};
 use passes::{Passes, Shaders};
 use periodic::Sides;
+use powers::Powers;
 use shaders::{ShaderInput, TICKS, entries};
 use solids::SolidChunks;
 
 use crate::{
+    coupling::{DevicePass, pressure_models},
     error::{Error, ErrorCode, ErrorKind, Result},
     interaction::{PairSums, StepLimits},
     math::{Bounds, Matrix, Vector},
-    model::{TimeScheme, Walls},
+    model::{Model, TimeScheme, Walls},
     sph::Units,
     system::{
         System,
@@ -67,13 +70,13 @@ pub(crate) struct Device<const D: usize> {
     passes: Passes,
     /// The arrays and passes with which the host reads water between two outputs, if it does.
     near: Option<Near>,
+    /// The arrays and passes with which powers are measured, if they are.
+    powers: Option<Powers>,
     /// Time (s) at tick 0, and the ticks since.
     start: f64,
     ticks: u64,
     /// Steps of the next submission.
     steps: usize,
-    /// Whether steps are Verlet's, and not symplectic.
-    verlet: bool,
 }
 
 /// Rows of additional inputs of the pair loop, and the first of them with the stress of the water, if it is kept.
@@ -133,6 +136,16 @@ pub(crate) enum StepsEnd {
     Escape,
 }
 
+/// The powers that a step measures in its force pass.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum MeasuredPowers {
+    None,
+    /// The power on the water.
+    Total,
+    /// The same, and what the pressure alone does.
+    Breakdown,
+}
+
 /// What the host reads of the water between two outputs.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct WaterReads {
@@ -140,6 +153,8 @@ pub(crate) struct WaterReads {
     pub(crate) near: bool,
     /// The boundary particles for which it reads the weight of the surrounding water, in ascending order.
     pub(crate) watched: Vec<u32>,
+    /// Whether it measures powers.
+    pub(crate) powers: bool,
 }
 
 /// A step up to its middle.
@@ -154,6 +169,8 @@ pub(crate) struct FirstHalf<const D: usize> {
 pub(crate) struct SecondHalf<const D: usize> {
     pub(crate) done: DeviceSteps,
     pub(crate) loads: WaterLoads<D>,
+    /// The powers, if the step measured them.
+    pub(crate) powers: Option<DevicePass<D>>,
     /// The water near the requested places at the end of the step.
     pub(crate) near: Vec<NearParticle<D>>,
 }
@@ -190,13 +207,13 @@ fn sponge_statements<const D: usize>(system: &System<D>, layout: &Layout, units:
 }
 
 /// The texts of the shaders for `system`, without a device. If `reads` is true, they include those with which the host reads
-/// water.
+/// water and measures powers.
 ///
 /// # Errors
 /// `Usage` if no device computes the system yet.
 #[doc(hidden)]
 pub fn shaders_of<const D: usize>(system: &System<D>, reads: bool) -> Result<ShaderTexts> {
-    let reads = WaterReads { near: reads, watched: if reads { vec![0] } else { Vec::new() } };
+    let reads = WaterReads { near: reads, watched: if reads { vec![0] } else { Vec::new() }, powers: reads };
     let layout = Layout::new::<D>(system.model());
     shader_texts(system, (&layout, &Sides::new(system, &layout)), &SolidChunks::new(system), &reads)
 }
@@ -214,6 +231,12 @@ fn shader_texts<const D: usize>(
     let model = system.model();
     let gravity_changes = device_state::gravity_changes(system);
     let (traces, units) = model.pair_traces::<D>(gravity_changes).ok_or_else(|| refused("this pair loop"))?;
+    let mut pressure = Vec::new();
+    if reads.powers {
+        let (alone, plain) = pressure_models(model);
+        let traced = |model: &Model| model.pair_traces::<D>(gravity_changes).map(|(traces, _)| traces);
+        pressure.extend(std::iter::once(&alone).chain(&plain).filter_map(traced));
+    }
     let domain = system.domain();
     let input = ShaderInput::<D> {
         model,
@@ -232,6 +255,7 @@ fn shader_texts<const D: usize>(
         gravity_changes,
         sponge: sponge_statements(system, layout, &units)?,
         gaps: device_state::has_free_solids(system) && model.walls == Walls::RelaxedAdami,
+        pressure: &pressure,
     };
     input.texts().ok_or_else(|| refused("numbers of this size in single precision"))
 }
@@ -260,6 +284,7 @@ impl<const D: usize> Device<D> {
         let buffers = Buffers::new(&gpu, &counts, &chunks, &texts, verlet)?;
         let passes = Passes::new(&gpu, &shaders, &counts, &chunks, &buffers)?;
         let near = Near::new(&gpu, &texts, &counts, &buffers, reads.watched)?;
+        let powers = Powers::new(&gpu, &texts, &shaders, (&counts, &chunks), &buffers)?;
         let (units, rows) =
             (model.single_precision_units::<D>(), RowCounts { stress: texts.stress, inputs: texts.rows[1] });
         let (start, ticks, steps) = (time, 0, FIRST_STEPS);
@@ -275,10 +300,10 @@ impl<const D: usize> Device<D> {
             buffers,
             passes,
             near,
+            powers,
             start,
             ticks,
             steps,
-            verlet,
         };
         device.load(system, stepper, time)?;
         Ok(device)
@@ -296,7 +321,8 @@ impl<const D: usize> Device<D> {
 
     /// Memory of the arrays, B: all, and of these the neighbour lists.
     pub(crate) fn memory_bytes(&self) -> [u64; 2] {
-        [self.buffers.bytes() + self.near.as_ref().map_or(0, Near::bytes), self.buffers.list_bytes()]
+        let others = self.near.as_ref().map_or(0, Near::bytes) + self.powers.as_ref().map_or(0, Powers::bytes);
+        [self.buffers.bytes() + others, self.buffers.list_bytes()]
     }
 
     /// Takes the state of `system` at `time` (s).
@@ -423,8 +449,11 @@ impl<const D: usize> Device<D> {
     /// Makes the passes for the present arrays and numbers of particles.
     fn make_passes(&mut self) -> Result<()> {
         self.passes = Passes::new(&self.gpu, &self.shaders, &self.counts, &self.chunks, &self.buffers)?;
-        match &mut self.near {
-            Some(near) => near.make_passes(&self.gpu, &self.counts, &self.buffers),
+        if let Some(near) = &mut self.near {
+            near.make_passes(&self.gpu, &self.counts, &self.buffers)?;
+        }
+        match &mut self.powers {
+            Some(powers) => powers.make_passes(&self.gpu, &self.shaders, (&self.counts, &self.chunks), &self.buffers),
             None => Ok(()),
         }
     }
@@ -453,7 +482,7 @@ impl<const D: usize> Device<D> {
             _ => StepsEnd::Time,
         };
         let dt = f64::from(control.dt()) * self.units.time;
-        let weight = control.weight(self.verlet);
+        let weight = control.weight(self.shaders.verlet);
         DeviceSteps { steps: u64::from(control.steps()), passes: u64::from(control.passes()), time, dt, weight, end }
     }
 
@@ -485,7 +514,7 @@ impl<const D: usize> Device<D> {
     }
 
     /// Completes the step with the solids of `system` at their places halfway through the step. Returns the loads on them, with
-    /// the water in `ranges` (m) at the end.
+    /// the powers that are `measured` and the water in `ranges` (m) at the end.
     ///
     /// `None` if a list was too short: then the state is that before the step, and the caller repeats the step.
     pub(crate) fn second_half(
@@ -493,10 +522,13 @@ impl<const D: usize> Device<D> {
         system: &System<D>,
         end: f64,
         ranges: &[Bounds<D>],
+        measured: MeasuredPowers,
     ) -> Result<Option<SecondHalf<D>>> {
         self.write_solids(system);
         self.prepare_find(ranges)?;
-        let passes = self.passes.second.iter().map(AsRef::as_ref);
+        let [forces, rest] = self.passes.second.each_ref().map(|passes| passes.iter().map(AsRef::as_ref));
+        let [during, after] = self.measure(measured);
+        let passes = forces.chain(during).chain(rest).chain(after);
         self.gpu.run(&[], passes.chain(self.weigh()).chain(self.find(ranges)));
         let mut answer = self.answer(ranges, true)?;
         if self.grow_lists(&answer.control)? {
@@ -509,7 +541,8 @@ impl<const D: usize> Device<D> {
         }
         let Answer { control, loads, weights, near, .. } = answer;
         let loads = WaterLoads { loads: self.chunks.loads(&loads, system, &self.units), weights };
-        Ok(Some(SecondHalf { done: self.outcome(&control, end), loads, near }))
+        let powers = self.measured(measured, system)?;
+        Ok(Some(SecondHalf { done: self.outcome(&control, end), loads, powers, near }))
     }
 
     /// Gives the device the solids of `system` at the end of a step.
@@ -522,9 +555,7 @@ impl<const D: usize> Device<D> {
     pub(crate) fn velocity_sum(&self) -> Result<Vector<D>> {
         self.gpu.run(&[], self.passes.velocities.as_deref());
         let [sums] = self.gpu.read::<f32, 1>([(&self.buffers.pairs.flow, 4 * self.counts.flow_chunks())])?;
-        let unit = self.units.length / self.units.time;
-        let sum = |k: usize| sums.chunks_exact(4).map(|chunk| f64::from(chunk[k])).sum::<f64>() * unit;
-        Ok(Vector::from_fn(|k, _| sum(k)))
+        Ok(powers::vector_of(&sums) * (self.units.length / self.units.time))
     }
 
     /// Makes a force pass at the present state. Returns the acceleration (m/s²) and the rate of ρ/ρ₀ (1/s) of each water

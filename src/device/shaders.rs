@@ -57,6 +57,8 @@ pub(super) struct ShaderInput<'a, const D: usize> {
     pub(super) gravity_changes: bool,
     /// Statements that add the rates of the sponge layers at `place` to `rate`.
     pub(super) sponge: String,
+    /// Traces of the pressure alone, if powers are measured; then with uncorrected gradients, if the model corrects them.
+    pub(super) pressure: &'a [PairTraces],
 }
 
 /// The texts.
@@ -82,6 +84,8 @@ pub struct ShaderTexts {
     pub moments: Option<String>,
     /// Water near places of the host, if it reads any.
     pub near: Option<String>,
+    /// Powers, if they are measured; then the sums over pairs of the pressure alone.
+    pub powers: Vec<String>,
     /// Numbers of rows: of sums, of additional inputs, and of the inputs that are kept from pass to pass.
     pub rows: [usize; 3],
     /// The first row of the stress of the water, if it is kept.
@@ -118,10 +122,8 @@ impl<const D: usize> ShaderInput<'_, D> {
         let step = include_str!("shaders/step.wgsl")
             .replace("{{PRESSURE}}", &indented(&statements(&pressure, "t", str::to_string)?, 4))
             .replace("{{CHANGE}}", &indented(&statements(&wall_change(), "t", wall_input)?, 4))
-            .replace("{{FORCE}}", &force)
-            .replace("{{SHIFT}}", &self.shift(&properties)?)
-            .replace("{{SPONGE}}", &self.sponge)
-            .replace("{{RATE}}", &D.to_string());
+            .replace("{{FORCE}}", &force);
+        let step = self.with_changes(&step, &properties)?;
         let gaps = include_str!("shaders/gaps.wgsl")
             .replace("{{SLOPE}}", &indented(&statements(&self.traces.slope, "t", str::to_string)?, 4))
             .replace(
@@ -134,6 +136,7 @@ impl<const D: usize> ShaderInput<'_, D> {
             gaps: self.gaps.then(|| with_head(&gaps)),
             search: with_head(include_str!("shaders/search.wgsl")),
             lists: with_head(include_str!("shaders/lists.wgsl")),
+            powers: self.powers(&properties, &force)?.iter().map(|text| with_head(text)).collect(),
             sweep: with_head(&self.sweep(&properties, &eos, &coefficients)?),
             step: with_head(&step),
             inputs: (self.traces.rows[0] > 0)
@@ -147,6 +150,27 @@ impl<const D: usize> ShaderInput<'_, D> {
             stress: self.traces.layout.stress,
             solids: with_head(&include_str!("shaders/solids.wgsl").replace("{{FORCE}}", &force)),
         })
+    }
+
+    /// `text` with the functions that shift and damp the water, and with the row of the rate of density.
+    fn with_changes(&self, text: &str, properties: &FluidProperties<D>) -> Option<String> {
+        let text = text.replace("{{SHIFT}}", &self.shift(properties)?).replace("{{SPONGE}}", &self.sponge);
+        Some(text.replace("{{RATE}}", &D.to_string()))
+    }
+
+    /// The shader that measures powers, and the sums over pairs of the pressure alone; none unless powers are measured.
+    fn powers(&self, properties: &FluidProperties<D>, force: &str) -> Option<Vec<String>> {
+        if self.pressure.is_empty() {
+            return Some(Vec::new());
+        }
+        let text = include_str!("shaders/powers.wgsl").replace("{{FORCE}}", force);
+        let mut texts = vec![self.with_changes(&text, properties)?];
+        for traces in self.pressure {
+            let body = |trace, prefix| body_read(trace, prefix, |name| pressure_input(name, [traces, self.traces]));
+            let wall = body(&traces.wall, "u")?;
+            texts.push(sweep_text::<D>(traces.rows[1], [&body(&traces.fluid, "t")?, &wall, &wall], (0, "")));
+        }
+        Some(texts)
     }
 
     fn constants(&self, properties: &FluidProperties<D>) -> String {
@@ -237,21 +261,29 @@ impl<const D: usize> ShaderInput<'_, D> {
                 "aways[k - params.water] = vec4<f32>(0.0f, 0.0f, 0.0f, fit0);\n".into()
             };
         }
-        let zeros =
-            |name: &str, rows: usize| (0..rows).map(|row| format!("var {name}{row} = 0.0f;\n")).collect::<String>();
-        let store: String = (0..sums).map(|row| format!("sums[{row}u * params.n + k] = sum{row};\n")).collect();
-        let text = include_str!("shaders/sweep.wgsl")
-            .replace("{{ZERO_SUMS}}", &indented(&zeros("sum", sums), 8))
-            .replace("{{ZERO_FIT}}", &indented(&zeros("fit", fit_rows), 8))
-            .replace("{{NEIGHBOUR}}", &indented(include_str!("shaders/neighbour.wgsl"), 12))
-            .replace("{{FLUID}}", &indented(&fluid, 12))
-            .replace("{{WALL}}", &indented(&wall, 12))
-            .replace("{{BESIDE}}", &indented(&beside, 12))
-            .replace("{{STORE}}", &indented(&store, 8))
-            .replace("{{TARGET}}", &indented(&target, 8))
-            .replace("{{FORCE}}", &vector::<D>(|k| format!("sum{k}"), "0.0f"));
-        Some(text)
+        Some(sweep_text::<D>(sums, [&fluid, &wall, &beside], (fit_rows, &target)))
     }
+}
+
+/// The sums over pairs in `sums` rows, from the bodies of the loops over water and boundary particles beside water, and over water
+/// beside boundary particles. For those there are the rows of an extrapolation, too, and statements that follow from it.
+fn sweep_text<const D: usize>(
+    sums: usize,
+    [fluid, wall, beside]: [&str; 3],
+    (fit_rows, target): (usize, &str),
+) -> String {
+    let zeros = |name: &str, rows: usize| (0..rows).map(|row| format!("var {name}{row} = 0.0f;\n")).collect::<String>();
+    let store: String = (0..sums).map(|row| format!("sums[{row}u * params.n + k] = sum{row};\n")).collect();
+    include_str!("shaders/sweep.wgsl")
+        .replace("{{ZERO_SUMS}}", &indented(&zeros("sum", sums), 8))
+        .replace("{{ZERO_FIT}}", &indented(&zeros("fit", fit_rows), 8))
+        .replace("{{NEIGHBOUR}}", &indented(include_str!("shaders/neighbour.wgsl"), 12))
+        .replace("{{FLUID}}", &indented(fluid, 12))
+        .replace("{{WALL}}", &indented(wall, 12))
+        .replace("{{BESIDE}}", &indented(beside, 12))
+        .replace("{{STORE}}", &indented(&store, 8))
+        .replace("{{TARGET}}", &indented(target, 8))
+        .replace("{{FORCE}}", &vector::<D>(|k| format!("sum{k}"), "0.0f"))
 }
 
 /// The entries of a symmetric tensor that are kept, by row and column.
@@ -371,7 +403,12 @@ impl<const D: usize> ShaderInput<'_, D> {
 
 /// What the loop over neighbours `j` of particle `k` does with a pair.
 fn pair_body(trace: &Trace, prefix: &str) -> Option<String> {
-    let mut text = statements(trace, prefix, pair_input)?;
+    body_read(trace, prefix, pair_input)
+}
+
+/// The same, with inputs as `read` says.
+fn body_read(trace: &Trace, prefix: &str, read: impl Fn(&str) -> String) -> Option<String> {
+    let mut text = statements(trace, prefix, read)?;
     for (name, _) in &trace.results {
         text += &format!("{name} = out_{name};\n");
     }
@@ -398,6 +435,15 @@ fn pair_input(name: &str) -> String {
             _ => name.into(),
         },
     }
+}
+
+/// How the inputs of a pair under the pressure alone are read: its rows of additional inputs are among those of all terms.
+fn pressure_input(name: &str, [own, all]: [&PairTraces; 2]) -> String {
+    let Some((who, row)) = name.split_once("_row") else { return pair_input(name) };
+    let (own, all, row) = (&own.layout, &all.layout, row.parse::<usize>().unwrap_or(0));
+    let firsts = [(own.correction, all.correction), (own.repulsion, all.repulsion)];
+    let among = firsts.into_iter().find_map(|(own, all)| Some(row.checked_sub(own?)? + all?));
+    pair_input(&format!("{who}_row{}", among.unwrap_or(row)))
 }
 
 /// How the inputs of an extrapolation are read.

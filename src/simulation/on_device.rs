@@ -2,10 +2,10 @@
 
 use std::time::Instant;
 
-use super::{Simulation, change_gravity};
+use super::{Simulation, change_gravity_of_bodies};
 use crate::{
-    coupling::{AcousticAddedMass, Bodies, Hook, Interval, drift_half_step},
-    device::{Adapter, Device, DeviceSteps, SecondHalf, StepRequest, StepsEnd, WaterReads, refused},
+    coupling::{Accounting, AcousticAddedMass, Bodies, DevicePass, Hook, Interval, drift_half_step},
+    device::{Adapter, Device, DeviceSteps, MeasuredPowers, SecondHalf, StepRequest, StepsEnd, WaterReads, refused},
     error::{ErrorCode, Result},
     interaction::{PairSums, StepLimits},
     model::TimeScheme,
@@ -60,6 +60,14 @@ const STATE_EVERY: u64 = 500;
 /// and the remedy.
 pub(super) fn place<const D: usize>(mut sim: Simulation<D>, name: &str) -> Result<Simulation<D>> {
     refuse_unsupported(&sim)?;
+    let own = own_device(&sim, name)?;
+    device_state::leave_to_device(&mut sim.system);
+    sim.device = Some(own);
+    Ok(sim)
+}
+
+/// The water of `sim` on the device `name`.
+fn own_device<const D: usize>(sim: &Simulation<D>, name: &str) -> Result<OnDevice<D>> {
     let light = sim.bodies.added_masses().iter().flat_map(AcousticAddedMass::outer_particles);
     let mut watched: Vec<u32> = light.chain(device_state::thin_particles(&sim.system)).collect();
     watched.sort_unstable();
@@ -70,12 +78,12 @@ pub(super) fn place<const D: usize>(mut sim: Simulation<D>, name: &str) -> Resul
     let absorbs = |solid: &Solid<D>| matches!(&solid.spec.role, Role::Driven(motion) if motion.absorber().is_some());
     let moored = !sim.bodies.moorings.is_empty();
     let near = moored || !sim.bodies.added_masses().is_empty() || sim.system.solids().iter().any(absorbs);
-    let device = Device::new(name, &sim.system, &sim.stepper, sim.clock.time, WaterReads { near, watched })?;
+    let powers = sim.bodies.accounting.as_ref().is_some_and(Accounting::reads_water);
+    let device = Device::new(name, &sim.system, &sim.stepper, sim.clock.time, WaterReads { near, watched, powers })?;
     let all_fixed = sim.system.solids().iter().all(|solid| matches!(solid.spec.role, Role::Fixed));
     let runs_alone = !moored && all_fixed && !device_state::gravity_changes(&sim.system);
-    device_state::leave_to_device(&mut sim.system);
     let (host_is_current, loads_are_current) = (true, true);
-    let own = OnDevice {
+    Ok(OnDevice {
         device,
         host_is_current,
         loads_are_current,
@@ -83,9 +91,7 @@ pub(super) fn place<const D: usize>(mut sim: Simulation<D>, name: &str) -> Resul
         watched_solids,
         next_state: 0,
         host_changed: false,
-    };
-    sim.device = Some(own);
-    Ok(sim)
+    })
 }
 
 /// Refuses a simulation with something that no device computes yet.
@@ -95,7 +101,6 @@ fn refuse_unsupported<const D: usize>(sim: &Simulation<D>) -> Result<()> {
     let other_count = sim.device.as_ref().is_some_and(|own| own.device.particle_count() != count);
     let cases = [
         (sim.custom_terms, "pair terms of your own"),
-        (bodies.accounting.is_some(), "load breakdowns and energy budgets"),
         (bodies.has_external_bodies(), "bodies that an external program moves"),
         (bodies.constraints().due_removals(f64::MAX).next().is_some(), "solids that are removed during the run"),
         (other_count, "solids that are added or removed during the run"),
@@ -155,6 +160,7 @@ pub(super) fn steps<const D: usize>(
 ) -> Result<()> {
     let start = Instant::now();
     refuse_unsupported(sim)?;
+    measure_powers(sim)?;
     if sim.device.as_ref().is_some_and(|own| own.host_changed) {
         load(sim)?;
     }
@@ -164,8 +170,43 @@ pub(super) fn steps<const D: usize>(
     outcome
 }
 
+/// Lets the device measure powers, if an accounting that reads the water has begun since the water went to the device.
+fn measure_powers<const D: usize>(sim: &mut Simulation<D>) -> Result<()> {
+    let reads_water = sim.bodies.accounting.as_ref().is_some_and(Accounting::reads_water);
+    let without = sim.device.as_ref().filter(|own| reads_water && !own.device.measures_powers());
+    if let Some(number) = without.map(|own| own.adapter().number) {
+        fetch(sim)?;
+        sim.device = Some(own_device(sim, &number.to_string())?);
+    }
+    Ok(())
+}
+
+/// The powers that the next step of `bodies` measures.
+fn due_powers<const D: usize>(bodies: &Bodies<D>) -> MeasuredPowers {
+    match &bodies.accounting {
+        Some(accounting) if accounting.needs_breakdown() => MeasuredPowers::Breakdown,
+        Some(accounting) if accounting.has_energy_budget() => MeasuredPowers::Total,
+        _ => MeasuredPowers::None,
+    }
+}
+
+/// Sets gravity to that of time `t` (s), if it changes.
+fn change_gravity<const D: usize>(
+    device: &Device<D>,
+    system: &mut System<D>,
+    bodies: &mut Bodies<D>,
+    t: f64,
+) -> Result<()> {
+    let Some(change) = change_gravity_of_bodies(system, bodies, t) else { return Ok(()) };
+    if let Some(accounting) = bodies.accounting.as_mut().filter(|accounting| accounting.has_energy_budget()) {
+        let water = system.non_periodic(&change).dot(&device.place_sum()?);
+        accounting.add_gravity_change(system, &change, || water);
+    }
+    Ok(())
+}
+
 /// Advances by up to `most` steps until time `pause` (s) is reached, not past `end` (s); the state stays on the device. Makes
-/// only one step if a solid moves, gravity changes or there is a `hook`.
+/// only one step if a solid moves, gravity changes, there is a `hook` or an accounting.
 fn advance<const D: usize>(
     sim: &mut Simulation<D>,
     (most, pause): (u64, f64),
@@ -175,7 +216,7 @@ fn advance<const D: usize>(
     let runs_alone = sim.device.as_ref().is_some_and(|own| own.runs_alone);
     let factor = sim.rollback.step_factor(sim.clock.time);
     let request = StepRequest { longest: sim.host_step_limit(), factor, pause, end };
-    let done = if runs_alone && hook.is_none() {
+    let done = if runs_alone && hook.is_none() && sim.bodies.accounting.is_none() {
         let Some(own) = &mut sim.device else { return Ok(()) };
         (own.host_is_current, own.loads_are_current) = (false, false);
         own.device.run(most, &request)?
@@ -191,7 +232,7 @@ fn advance<const D: usize>(
     take_steps(sim, &done)
 }
 
-/// One step of a scene whose solids move or whose gravity changes.
+/// One step between whose halves the host acts.
 fn body_step<const D: usize>(
     sim: &mut Simulation<D>,
     request: &StepRequest,
@@ -201,7 +242,8 @@ fn body_step<const D: usize>(
     (own.host_is_current, own.loads_are_current) = (false, true);
     let start: Vec<_> = system.solids.iter().map(|solid| solid.kinematics).collect();
     let gauges = device_state::with_originals(system, system.absorption_ranges(clock.time));
-    let (over, SecondHalf { done, loads, near }) = loop {
+    let measured = due_powers(bodies);
+    let (over, SecondHalf { done, loads, powers, near }) = loop {
         let first = match own.device.first_half(request, &gauges)? {
             Ok(first) => first,
             Err(done) => return Ok(Some(done)),
@@ -211,23 +253,29 @@ fn body_step<const D: usize>(
             device_state::take_near(system, first.near);
             system.update_absorption(over.t);
         }
-        change_gravity(system, bodies, over.t + 0.5 * over.dt);
+        change_gravity(&own.device, system, bodies, over.t + 0.5 * over.dt)?;
         if system.model().scheme == TimeScheme::Symplectic {
             drift_half_step(system, over);
             own.device.write_gravity(system);
         }
         own.watched_solids.iter().for_each(|solid| device_state::place_solid(system, *solid));
         let ranges = device_state::with_originals(system, bodies.water_ranges(system, over));
-        if let Some(second) = own.device.second_half(system, request.end, &ranges)? {
+        if let Some(second) = own.device.second_half(system, request.end, &ranges, measured)? {
             break (over, second);
         }
         system.solids.iter_mut().zip(&start).for_each(|(solid, start)| solid.kinematics = *start);
-        change_gravity(system, bodies, over.t);
+        change_gravity(&own.device, system, bodies, over.t)?;
         own.device.move_solids(system);
     };
     device_state::set_loads(system, loads);
     if let StepsEnd::Fault(_) | StepsEnd::NoStep = done.end {
         return Ok(Some(done));
+    }
+    if let Some(accounting) = &mut bodies.accounting {
+        let mut pass = powers.unwrap_or_else(DevicePass::unmeasured);
+        let pressure = pass.pressure.iter_mut().chain(&mut pass.plain);
+        pressure.for_each(|(_, loads)| device_state::add_thin_loads(system, loads));
+        accounting.add_device_pass(system, over.dt, pass);
     }
     if bodies.read_water() {
         device_state::take_near(system, near);
@@ -241,7 +289,7 @@ fn body_step<const D: usize>(
         let sum = own.device.velocity_sum()?;
         device_state::adapt_current(system, &sum, over.dt);
     }
-    change_gravity(system, bodies, done.time);
+    change_gravity(&own.device, system, bodies, done.time)?;
     bodies.update_masses(system, done.time, over.dt)?;
     own.device.write_gravity(system);
     own.device.move_solids(system);

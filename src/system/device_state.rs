@@ -177,16 +177,20 @@ pub(crate) fn place_solids<const D: usize>(system: &mut System<D>) {
 
 /// Sets the effects of the water on the solids in the force pass: loads, corrected for thin parts, and wet shares.
 pub(crate) fn set_loads<const D: usize>(system: &mut System<D>, of: WaterLoads<D>) {
-    let WaterLoads { loads, weights } = of;
+    let WaterLoads { mut loads, weights } = of;
     let weight = |i: u32| weights.binary_search_by_key(&i, |(watched, _)| *watched).ok().map(|place| weights[place].1);
     let around = |weight| WaterAround { weight, offset: Vector::zeros() };
     thin_layers::update_water(system, |_, i| weight(i).map(around));
-    let thin = thin_layers::loads(system);
+    add_thin_loads(system, &mut loads);
     system.solids.iter_mut().zip(loads).for_each(|(solid, load)| solid.load = load);
-    system.solids.iter_mut().zip(thin).for_each(|(solid, load)| solid.load += load);
     if let Some(wetness) = &mut system.boundary.wetness {
         *wetness = weights;
     }
+}
+
+/// Adds the loads of the water on thin parts, as [`set_loads`] knows it, to the `loads` on the solids.
+pub(crate) fn add_thin_loads<const D: usize>(system: &System<D>, loads: &mut [Load<D>]) {
+    loads.iter_mut().zip(thin_layers::loads(system)).for_each(|(load, thin)| *load += thin);
 }
 
 /// The boundary particles in the middle of thin parts.
