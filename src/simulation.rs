@@ -28,6 +28,7 @@ pub use rollback::Rollback;
 
 use serde::{Deserialize, Serialize};
 
+use accounting::change_gravity;
 pub use add_remove::AddedSolid;
 use dimension::OwnPairLoop;
 pub use dimension::{Compiled, Dimension};
@@ -651,29 +652,6 @@ impl<const D: usize> Simulation<D> {
         self.system.check_state(&kept.system, &planned)?;
         Ok(planned)
     }
-}
-
-/// Sets gravity to that of time `t` (s), if it changes.
-fn change_gravity<const D: usize>(system: &mut System<D>, bodies: &mut Bodies<D>, t: f64) {
-    let Some(change) = change_gravity_of_bodies(system, bodies, t) else { return };
-    if let Some(accounting) = &mut bodies.accounting {
-        accounting.add_gravity_change(system, &change, || {
-            system.fluid().r.iter().map(|r| system.non_periodic(&change).dot(r)).sum()
-        });
-    }
-}
-
-/// Sets gravity to that of time `t` (s), without an entry in the energy budget. Returns the change, m/s², if it changes.
-fn change_gravity_of_bodies<const D: usize>(
-    system: &mut System<D>,
-    bodies: &mut Bodies<D>,
-    t: f64,
-) -> Option<Vector<D>> {
-    let change = set_gravity_at(system, t)?;
-    if let Some(engine) = bodies.engine_mut() {
-        engine.set_gravity(&system.gravity());
-    }
-    Some(change)
 }
 
 const NO_STEP: &str = "The accelerations are not finite, or the end lies in the past.";

@@ -17,7 +17,9 @@ mod periodic;
 mod powers;
 mod shaders;
 mod solids;
+mod sponge;
 mod text;
+mod wall_shaders;
 
 pub use gpu::{Adapter, adapters};
 pub use shaders::ShaderTexts;
@@ -31,6 +33,7 @@ use periodic::Sides;
 use powers::Powers;
 use shaders::{ShaderInput, TICKS, entries};
 use solids::SolidChunks;
+use sponge::sponge_statements;
 
 use crate::{
     coupling::{DevicePass, pressure_models},
@@ -42,6 +45,7 @@ use crate::{
     system::{
         System,
         device_state::{self, NearParticle, WaterLoads},
+        reflected,
     },
     time_integration::{Stepper, VerletHistory},
 };
@@ -182,30 +186,6 @@ pub(crate) fn refused(what: &str) -> Error {
         .help("leave --device (model.device) out: the processor computes all of this scene")
 }
 
-/// Statements that add the rates of the sponge layers at `place` to `rate`.
-fn sponge_statements<const D: usize>(system: &System<D>, layout: &Layout, units: &Units) -> Result<String> {
-    let mut text = String::new();
-    for layer in system.sponge_layers() {
-        if !layout.reaches(&layer.from) {
-            return Err(refused("a sponge layer a million kernel supports from the origin"));
-        }
-        let from = layout.place(&layer.from, 0, 0);
-        let words =
-            |part: &[u32], cast: fn(u32) -> String| part.iter().map(|x| cast(*x)).collect::<Vec<_>>().join(", ");
-        let (hi, lo) = (words(&from[..4], |x| format!("{}", x as i32)), words(&from[4..], |x| format!("{x}u")));
-        let way = layer.to - layer.from;
-        let way = way * (units.length / way.norm_squared());
-        let way: Vec<String> = (0..3).map(|k| format!("{:?}f", if k < D { way[k] as f32 } else { 0.0 })).collect();
-        let (strength, power) = ((layer.strength * units.time) as f32, layer.power as f32);
-        text += &format!(
-            "    rate += {strength:?}f * pow(clamp(dot(between(place, Place(vec4<i32>({hi}), vec4<u32>({lo}))), \
-             vec3<f32>({})), 0.0f, 1.0f), {power:?}f);\n",
-            way.join(", ")
-        );
-    }
-    Ok(text)
-}
-
 /// The texts of the shaders for `system`, without a device. If `reads` is true, they include those with which the host reads
 /// water and measures powers.
 ///
@@ -333,7 +313,7 @@ impl<const D: usize> Device<D> {
         let count = water.len();
         let of_water = (0..count).map(|i| (water.r[i], water.v[i], water.rho[i], u32::MAX));
         let of_boundary = (0..boundary.len())
-            .zip(self.chunks.set_of_each(system))
+            .zip(self.chunks.set_of_each())
             .map(|(i, set)| (boundary.r[i], boundary.v[i], boundary.rho[i], set));
         let all: Vec<_> = of_water.chain(of_boundary).collect();
         let places: Vec<_> =
@@ -368,6 +348,11 @@ impl<const D: usize> Device<D> {
             .map(|[depth, weight]| [(depth / self.units.length) as f32, weight as f32])
             .collect();
         self.gpu.write(&self.buffers.depths, 0, &constants);
+        if let Some(normals) = device_state::wall_normals(system) {
+            let words = |normal: &Vector<D>| std::array::from_fn(|k| if k < D { normal[k] as f32 } else { 0.0 });
+            let normals: Vec<[f32; 4]> = normals.iter().map(words).collect();
+            self.gpu.write(&self.buffers.pairs.normals, 0, &normals);
+        }
         self.gpu.run(&[], [self.passes.derive.as_ref()]);
         self.gpu.check()
     }
@@ -617,10 +602,10 @@ impl<const D: usize> Device<D> {
             let control = self.control()?;
             let of = |i: usize| &before[4 * slot[i]..][..4];
             if control.has_history() {
-                let all = || (0..water).chain(device_state::originals(system));
+                let all = || (0..water).map(|i| (i, 0)).chain(device_state::originals(system));
                 verlet.set_history(VerletHistory {
-                    velocity: all().map(|i| layout.velocity(of(i))).collect(),
-                    density: all().map(|i| layout.density(of(i))).collect(),
+                    velocity: all().map(|(i, axes)| reflected(axes, layout.velocity(of(i)))).collect(),
+                    density: all().map(|(i, _)| layout.density(of(i))).collect(),
                     boundary_density: (water..n).map(|i| layout.density(of(i))).collect(),
                     dt: f64::from(control.dt_before()) * self.units.time,
                     steps: control.since_euler(),

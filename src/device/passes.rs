@@ -41,6 +41,7 @@ pub(super) struct Shaders {
     inputs: Option<Shader>,
     moments: Option<Shader>,
     images: Option<Shader>,
+    sticks: Option<Shader>,
     /// Whether the stress of the water is kept.
     stress: bool,
     /// Whether steps are Verlet's, and not symplectic.
@@ -71,6 +72,7 @@ impl Shaders {
             inputs: optional(&texts.inputs, &["fill_rows", "close_stress"])?,
             moments: optional(&texts.moments, &["sweep_moments"])?,
             images: optional(&texts.images, &["place_images", "copy_rows", "update_copies", "add_velocities"])?,
+            sticks: optional(&texts.sticks, &["find_slips"])?,
             stress: texts.stress.is_some(),
             verlet,
         })
@@ -119,6 +121,7 @@ pub(super) fn sweep_bindings<'a>(
         &buffers.depths,
         &b.aways,
         &b.rows,
+        &b.slips,
     ]
 }
 
@@ -309,6 +312,12 @@ fn rates(
             sweeps.push(sweep.pass("sweep_water", water)?);
         }
         if start + threads > counts.water {
+            if let Some(text) = &shaders.sticks {
+                let own = [&b.spans, &buffers.places, &buffers.solids, &buffers.depths, &b.normals, &b.slips];
+                let before = [params, &buffers.control, &first, &b.positions, &b.velocities, list];
+                let sticks = Maker::new(gpu, text, before.into_iter().chain(own).collect());
+                corrections.push(sticks.pass("find_slips", threads)?);
+            }
             sweeps.push(sweep.pass("sweep_boundary", threads)?);
         }
     }
@@ -379,6 +388,7 @@ fn images(
             &b.rows,
             &b.copied,
             &b.flow,
+            &b.slips,
         ],
     );
     let mut before_sums = Vec::new();

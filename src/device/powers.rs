@@ -165,7 +165,8 @@ impl<const D: usize> Device<D> {
     /// The powers in the last force pass, with loads that leave out thin parts, and what the last step adds up over the water.
     pub(super) fn measured(&self, measured: MeasuredPowers, system: &System<D>) -> Result<Option<DevicePass<D>>> {
         let Some(powers) = self.powers.as_ref().filter(|_| measured != MeasuredPowers::None) else { return Ok(None) };
-        let (length, time, mass) = (self.units.length, self.units.time, system.particle_mass());
+        let (length, time) = (self.units.length, self.units.time);
+        let mass = system.particle_mass() * system.water_multiplicity();
         let words = 4 * self.counts.water.div_ceil(GROUP);
         let [gains, shifts, absorbed, _] = &powers.parts;
         let [gains, shifts, absorbed, flow] = self.gpu.read::<f32, 4>([

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use super::{Simulation, change_gravity_of_bodies};
+use super::{Simulation, accounting::change_gravity_of_bodies};
 use crate::{
     coupling::{Accounting, AcousticAddedMass, Bodies, DevicePass, Hook, Interval, drift_half_step},
     device::{Adapter, Device, DeviceSteps, MeasuredPowers, SecondHalf, StepRequest, StepsEnd, WaterReads, refused},
@@ -274,7 +274,7 @@ fn body_step<const D: usize>(
     if let Some(accounting) = &mut bodies.accounting {
         let mut pass = powers.unwrap_or_else(DevicePass::unmeasured);
         let pressure = pass.pressure.iter_mut().chain(&mut pass.plain);
-        pressure.for_each(|(_, loads)| device_state::add_thin_loads(system, loads));
+        pressure.for_each(|(_, loads)| device_state::complete_loads(system, loads));
         accounting.add_device_pass(system, over.dt, pass);
     }
     if bodies.read_water() {

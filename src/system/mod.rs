@@ -49,12 +49,16 @@ pub use setup::Setup;
 pub use sponge_layer::SpongeLayer;
 pub use step_check::{Escape, ExitPath, ParticleLimits, RemovedParticle};
 pub(crate) use step_check::{LimitViolation, StepCheck};
+#[cfg(feature = "gpu")]
+pub(crate) use symmetry::reflected_tensor;
 pub(crate) use symmetry::{AxisSet, reflected};
 pub(crate) use thin_faces::{has_thin_faces, repel as repel_from_thin_faces};
 
 use own_water::StateAtStart;
 use slip_rates::SlipRates;
-use symmetry::{reflected_auxiliary, reflected_sums, reflected_tensor};
+#[cfg(not(feature = "gpu"))]
+use symmetry::reflected_tensor;
+use symmetry::{reflected_auxiliary, reflected_sums};
 
 pub use crate::interaction::StepLimits;
 

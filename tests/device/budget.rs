@@ -10,11 +10,7 @@ use pontoon::{
     system::SpongeLayer,
 };
 
-use super::{
-    Shape, dam, dam_with, device,
-    forces::{law, shaken},
-    run, under,
-};
+use super::{Shape, dam, dam_with, device, forces::shaken, run, under};
 
 fn entries<const D: usize>(sim: &Simulation<D>) -> Vec<(&'static str, f64)> {
     sim.energy_budget().map(EnergyBudget::entries).unwrap().to_vec()
@@ -22,7 +18,7 @@ fn entries<const D: usize>(sim: &Simulation<D>) -> Vec<(&'static str, f64)> {
 
 /// Asserts that after `steps` steps from `start` (s) each entry of the budget on the device is that of the reference within `bound`, as
 /// a part of the largest entry, that the entries `acting` are larger than the bound, and that a repetition has the same bits.
-fn assert_budgets_agree<const D: usize>(
+pub fn assert_budgets_agree<const D: usize>(
     name: &str,
     setup: &Setup<D>,
     (start, steps): (f64, usize),
