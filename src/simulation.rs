@@ -28,6 +28,7 @@ pub use rollback::Rollback;
 
 use serde::{Deserialize, Serialize};
 
+use accounting::change_gravity;
 pub use add_remove::AddedSolid;
 use dimension::OwnPairLoop;
 pub use dimension::{Compiled, Dimension};
@@ -650,17 +651,6 @@ impl<const D: usize> Simulation<D> {
         }
         self.system.check_state(&kept.system, &planned)?;
         Ok(planned)
-    }
-}
-
-/// Sets gravity to that of time `t` (s), if it changes.
-fn change_gravity<const D: usize>(system: &mut System<D>, bodies: &mut Bodies<D>, t: f64) {
-    let Some(change) = set_gravity_at(system, t) else { return };
-    if let Some(engine) = bodies.engine_mut() {
-        engine.set_gravity(&system.gravity());
-    }
-    if let Some(accounting) = &mut bodies.accounting {
-        accounting.add_gravity_change(system, &change);
     }
 }
 

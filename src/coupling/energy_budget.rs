@@ -7,9 +7,11 @@
 
 use serde::{Deserialize, Serialize};
 
+#[cfg(feature = "gpu")]
+use super::power_breakdown::{PressurePass, breakdown};
 use super::{
     load_breakdown::{BodyLoads, LoadBreakdown, locked},
-    power_breakdown::{PowerBreakdown, PowerMeter, total_power},
+    power_breakdown::{PowerBreakdown, PowerMeter, gains_of_last_pass, total_power},
 };
 use crate::{
     math::Vector,
@@ -96,6 +98,32 @@ pub(crate) struct Accounting<const D: usize> {
     meter: Option<PowerMeter<D>>,
 }
 
+/// The powers that a device measures in a force pass, and what it adds up over the water in the step that follows.
+#[cfg(feature = "gpu")]
+pub(crate) struct DevicePass<const D: usize> {
+    /// Powers on the motion, without weight, and on the compression of the water, W.
+    pub(crate) gains: [f64; 2],
+    /// The pass with the pressure alone, if there is a power breakdown.
+    pub(crate) pressure: Option<PressurePass<D>>,
+    /// The same with uncorrected gradients, if the model corrects them.
+    pub(crate) plain: Option<PressurePass<D>>,
+    /// Sum of the velocities of the water, m/s; zero without periodic sides.
+    pub(crate) velocity_sum: Vector<D>,
+    /// Sum of the displacements by shifting, m.
+    pub(crate) shift_sum: Vector<D>,
+    /// Energy that sponge layers absorb, J.
+    pub(crate) absorbed: f64,
+}
+
+#[cfg(feature = "gpu")]
+impl<const D: usize> DevicePass<D> {
+    /// A pass without measured powers.
+    pub(crate) fn unmeasured() -> Self {
+        let [velocity_sum, shift_sum] = [Vector::zeros(); 2];
+        Self { gains: [0.0; 2], pressure: None, plain: None, velocity_sum, shift_sum, absorbed: 0.0 }
+    }
+}
+
 /// The state of an [`Accounting`] in a checkpoint.
 pub(crate) type AccountingState<const D: usize> = Accounting<D>;
 
@@ -173,15 +201,48 @@ impl<const D: usize> Accounting<D> {
         self.breakdown.push(LoadBreakdown::zero());
     }
 
+    /// Whether the next force pass is to have a power breakdown.
+    pub(crate) fn needs_breakdown(&self) -> bool {
+        self.interval.is_some() && self.since == 0
+    }
+
     /// Adds the work of a force pass whose rates apply for `dt` (s).
     pub(crate) fn add_force_pass(&mut self, system: &System<D>, dt: f64) {
-        if let (Some(interval), Some(meter)) = (self.interval, &mut self.meter) {
-            if self.since == 0 {
-                let (powers, pressure) = meter.decompose(system);
-                self.powers = powers;
-                let solids = system.solids().iter().zip(pressure);
-                self.viscous = solids.map(|(solid, pressure)| solid.load - pressure).collect();
-            }
+        let due = self.needs_breakdown();
+        let breakdown = self.meter.as_mut().filter(|_| due).map(|meter| meter.decompose(system));
+        let of_energy = || [total_power(system, gains_of_last_pass(system)), system.periodic_gravity_power()];
+        let powers = if self.energy { of_energy() } else { [0.0; 2] };
+        self.add_powers(system, dt, breakdown, powers);
+    }
+
+    /// Adds the work of a force pass of a device whose rates apply for `dt` (s), and of the step that follows from it.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn add_device_pass(&mut self, system: &System<D>, dt: f64, pass: DevicePass<D>) {
+        let DevicePass { gains, pressure, plain, velocity_sum, shift_sum, absorbed } = pass;
+        let breakdown = pressure.map(|pressure| breakdown(system, gains, pressure, plain));
+        let mass = system.particle_mass() * system.water_multiplicity();
+        let along_sides = system.gravity() - system.non_periodic_gravity();
+        let powers = [total_power(system, gains), mass * along_sides.dot(&velocity_sum)];
+        self.add_powers(system, dt, breakdown, powers);
+        self.budget.shifting -= mass * system.gravity().dot(&shift_sum);
+        self.budget.damping -= absorbed;
+    }
+
+    /// Adds the work of a force pass whose rates apply for `dt` (s): with its power breakdown, if there is one, with its power on the
+    /// water without the work of the solids, and with that of gravity along periodic sides (W).
+    fn add_powers(
+        &mut self,
+        system: &System<D>,
+        dt: f64,
+        breakdown: Option<(PowerBreakdown, Vec<Load<D>>)>,
+        [total, along_sides]: [f64; 2],
+    ) {
+        if let Some((powers, pressure)) = breakdown {
+            self.powers = powers;
+            let solids = system.solids().iter().zip(pressure);
+            self.viscous = solids.map(|(solid, pressure)| solid.load - pressure).collect();
+        }
+        if let Some(interval) = self.interval {
             self.since = (self.since + 1) % interval;
         }
         if self.energy {
@@ -189,8 +250,8 @@ impl<const D: usize> Accounting<D> {
             self.budget.viscous += viscous * dt;
             self.budget.diffusion += diffusion * dt;
             self.budget.gradient += gradient * dt;
-            self.budget.walls += (total_power(system) - viscous - diffusion - gradient) * dt;
-            self.budget.driven += system.periodic_gravity_power() * dt;
+            self.budget.walls += (total - viscous - diffusion - gradient) * dt;
+            self.budget.driven += along_sides * dt;
         }
         self.work.fill(0.0);
         for (i, solid) in system.solids().iter().enumerate() {
@@ -206,10 +267,11 @@ impl<const D: usize> Accounting<D> {
         }
     }
 
-    /// Adds the change of potential energy by a `change` of gravity (m/s²) where water and bodies are.
-    pub(crate) fn add_gravity_change(&mut self, system: &System<D>, change: &Vector<D>) {
+    /// Adds the change of potential energy by a `change` of gravity (m/s²) where water and bodies are; `water` computes the sum of
+    /// its products with the places of the water, along the axes that are not periodic (m²/s²).
+    pub(crate) fn add_gravity_change(&mut self, system: &System<D>, change: &Vector<D>, water: impl FnOnce() -> f64) {
         if self.energy {
-            let water: f64 = system.fluid().r.iter().map(|r| system.non_periodic(change).dot(r)).sum();
+            let water = water();
             let body = |(i, solid): (usize, &Solid<D>)| -solid.potential_energy(change) * system.solid_multiplicity(i);
             let bodies: f64 = system.solids().iter().enumerate().map(body).sum();
             self.budget.driven -= system.particle_mass() * system.water_multiplicity() * water + bodies;

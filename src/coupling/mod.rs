@@ -12,10 +12,14 @@ pub use acoustic_added_mass::stiffest_frequency;
 pub(crate) use acoustic_added_mass::{AcousticAddedMass, AddedMassState};
 pub use body_step::BodyStep;
 pub(crate) use body_step::{Bodies, BodiesState, Hook};
+#[cfg(feature = "gpu")]
+pub(crate) use energy_budget::DevicePass;
 pub use energy_budget::EnergyBudget;
 pub(crate) use energy_budget::{Accounting, AccountingState};
 pub use load_breakdown::LoadBreakdown;
 pub(crate) use moorings::Moorings;
+#[cfg(feature = "gpu")]
+pub(crate) use power_breakdown::{PressurePass, pressure_models};
 
 use crate::{
     math::{Pose, Vector},

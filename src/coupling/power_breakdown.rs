@@ -37,6 +37,9 @@ pub(super) struct PowerBreakdown {
     pub(super) gradient: f64,
 }
 
+/// A pass with the pressure alone: the powers on the motion and on the compression of the water, W, and the loads on the solids.
+pub(crate) type PressurePass<const D: usize> = ([f64; 2], Vec<Load<D>>);
+
 /// The force passes with the pressure alone.
 pub(super) struct PowerMeter<const D: usize> {
     pressure: Box<dyn PairLoop<D>>,
@@ -50,11 +53,8 @@ impl<const D: usize> PowerMeter<D> {
     where
         Dim<D>: HasPairLoop<D>,
     {
-        let pressure =
-            Model { viscosity: Viscosity::None, diffusion: Diffusion::None, shifting: Shifting::None, ..model.clone() };
-        let plain = Model { gradient: PressureGradient::Plain, ..pressure.clone() };
-        let plain = (model.gradient != PressureGradient::Plain).then(|| Dim::<D>::pair_loop(&plain));
-        Self { pressure: Dim::<D>::pair_loop(&pressure), plain }
+        let (pressure, plain) = pressure_models(model);
+        Self { pressure: Dim::<D>::pair_loop(&pressure), plain: plain.map(|plain| Dim::<D>::pair_loop(&plain)) }
     }
 
     /// Returns the powers at the last force pass, and the loads of the pressure alone on the solids. The state of
@@ -65,30 +65,53 @@ impl<const D: usize> PowerMeter<D> {
             let loads = system.loads_of_pair_loop(pair_loop);
             (gains(system, system.fluid_rates_of(pair_loop)), loads)
         };
-        let (gained, loads) = pass(&mut **pressure);
-        let before = plain.as_mut().map(|plain| pass(&mut **plain));
-        let all = gains(system, system.fluid_rates());
-        let on_solids = |more: &dyn Fn(usize) -> Load<D>| -> f64 {
-            let power =
-                |(i, solid): (usize, &Solid<D>)| more(i).power(&solid.kinematics) * system.solid_multiplicity(i);
-            system.solids.iter().enumerate().map(power).sum()
-        };
-        let powers = PowerBreakdown {
-            viscous: all[0] - gained[0] + on_solids(&|i| system.solids[i].load - loads[i]),
-            diffusion: all[1] - gained[1],
-            gradient: before
-                .map_or(0.0, |(plain, plain_loads)| gained[0] - plain[0] + on_solids(&|i| loads[i] - plain_loads[i])),
-        };
-        (powers, loads)
+        let gained = pass(&mut **pressure);
+        let plain = plain.as_mut().map(|plain| pass(&mut **plain));
+        breakdown(system, gains_of_last_pass(system), gained, plain)
     }
 }
 
+/// The model with the pressure alone, and the same with uncorrected gradients if `model` corrects them.
+pub(crate) fn pressure_models(model: &Model) -> (Model, Option<Model>) {
+    let pressure =
+        Model { viscosity: Viscosity::None, diffusion: Diffusion::None, shifting: Shifting::None, ..model.clone() };
+    let plain = Model { gradient: PressureGradient::Plain, ..pressure.clone() };
+    (pressure, (model.gradient != PressureGradient::Plain).then_some(plain))
+}
+
+/// Returns the powers at the last force pass, which gave the water the powers `all` (W), and the loads of the pressure alone, from the
+/// passes with the pressure alone and with uncorrected gradients.
+pub(super) fn breakdown<const D: usize>(
+    system: &System<D>,
+    all: [f64; 2],
+    (gained, loads): PressurePass<D>,
+    plain: Option<PressurePass<D>>,
+) -> (PowerBreakdown, Vec<Load<D>>) {
+    let powers = PowerBreakdown {
+        viscous: all[0] - gained[0] + power_on_solids(system, |i| system.solids[i].load - loads[i]),
+        diffusion: all[1] - gained[1],
+        gradient: plain.map_or(0.0, |(plain, plain_loads)| {
+            gained[0] - plain[0] + power_on_solids(system, |i| loads[i] - plain_loads[i])
+        }),
+    };
+    (powers, loads)
+}
+
+/// Returns the power (W) of these loads on all solids.
+fn power_on_solids<const D: usize>(system: &System<D>, load: impl Fn(usize) -> Load<D>) -> f64 {
+    let power = |(i, solid): (usize, &Solid<D>)| load(i).power(&solid.kinematics) * system.solid_multiplicity(i);
+    system.solids.iter().enumerate().map(power).sum()
+}
+
 /// Returns the power on the water at the last force pass, without the work of the solids: viscous + diffusion + gradient +
-/// walls, W.
-pub(super) fn total_power<const D: usize>(system: &System<D>) -> f64 {
-    let power = |(i, solid): (usize, &Solid<D>)| solid.load.power(&solid.kinematics) * system.solid_multiplicity(i);
-    let on_solids: f64 = system.solids.iter().enumerate().map(power).sum();
-    gains(system, system.fluid_rates()).iter().sum::<f64>() + on_solids
+/// walls, W. The pass gave the water the powers `gains` (W).
+pub(super) fn total_power<const D: usize>(system: &System<D>, gains: [f64; 2]) -> f64 {
+    gains.iter().sum::<f64>() + power_on_solids(system, |i| system.solids[i].load)
+}
+
+/// Returns the powers (W) on the motion and on the compression of the water by the last force pass, without the weight of the water.
+pub(super) fn gains_of_last_pass<const D: usize>(system: &System<D>) -> [f64; 2] {
+    gains(system, system.fluid_rates())
 }
 
 /// Returns the powers (W) on the motion and on the compression of the water by its `rates`, without the weight

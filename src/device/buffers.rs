@@ -15,6 +15,13 @@ use crate::{
 /// Control words.
 pub(super) const WORDS: usize = 36;
 
+/// The time that the water has reached: that of tick 0, s, and the ticks since.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Clock {
+    pub(super) start: f64,
+    pub(super) ticks: u64,
+}
+
 /// The control words: `Control` of `shaders/common.wgsl`.
 pub(super) struct Control(pub(super) [u32; WORDS]);
 
@@ -269,6 +276,9 @@ pub(super) struct PairBuffers {
     pub(super) chunks: wgpu::Buffer,
     pub(super) copied: wgpu::Buffer,
     pub(super) flow: wgpu::Buffer,
+    /// If water sticks to faces: their normals, and the velocities past the solids with which boundary particles act.
+    pub(super) normals: wgpu::Buffer,
+    pub(super) slips: wgpu::Buffer,
 }
 
 /// The arrays of the search.
@@ -294,9 +304,10 @@ impl Buffers {
         let ([rows, input_rows, kept_rows], gaps) = (texts.rows, texts.gaps.is_some());
         let (n, boundary) = (counts.n, counts.n - counts.water);
         let history = if verlet { 16 * n } else { 16 };
-        let solids = chunks.copies.len().max(1);
+        let solids = chunks.sets.len().max(1);
         let (slots, total) = (counts.slots(), counts.all_cells() + 1);
         let if_gaps = |bytes: usize| if gaps { bytes } else { 16 };
+        let if_sticks = |bytes: usize| if texts.sticks.is_some() { bytes } else { 16 };
         let aways = if gaps || texts.near.is_some() { 16 * boundary } else { 16 };
         let pairs = PairBuffers {
             positions: gpu.buffer(16 * slots)?,
@@ -312,6 +323,8 @@ impl Buffers {
             chunks: gpu.buffer(4 * chunks.members.len())?,
             copied: gpu.buffer(16 * chunks.copied.len())?,
             flow: gpu.buffer(16 * counts.flow_chunks())?,
+            normals: gpu.buffer(if_sticks(16 * boundary))?,
+            slips: gpu.buffer(if_sticks(16 * boundary))?,
         };
         let search = SearchBuffers {
             order: gpu.buffer(4 * slots)?,
@@ -387,13 +400,15 @@ impl Buffers {
             chunks,
             copied,
             flow,
+            normals,
+            slips,
         } = &self.pairs;
         let SearchBuffers { order, count, start, blocks, spare_places, spare, spare_rows } = &self.search;
         let pairs = [positions, velocities, built, sums, rows, spans, walls, aways, gaps, local, chunks, copied, flow];
+        let pairs = pairs.into_iter().chain([normals, slips]);
         let search = [order, count, start, blocks, spare_places, spare, spare_rows];
         let solids = [&self.slot, &self.solids, &self.depths, &self.loads];
-        let all =
-            pairs.into_iter().chain(search).chain(solids).chain(self.state()).chain(&self.backup).chain(&self.lists);
+        let all = pairs.chain(search).chain(solids).chain(self.state()).chain(&self.backup).chain(&self.lists);
         all.map(wgpu::Buffer::size).sum()
     }
 

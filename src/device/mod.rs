@@ -15,32 +15,39 @@ mod layout;
 mod near;
 mod passes;
 mod periodic;
+mod powers;
 mod shaders;
 mod solids;
+mod sponge;
 mod text;
+mod wall_shaders;
 
 pub use gpu::{Adapter, adapters};
 pub use shaders::ShaderTexts;
 
-use buffers::{Buffers, Control, Counts, WORDS};
+use buffers::{Buffers, Clock, Control, Counts, WORDS};
 use film_reads::FilmReads;
 use gpu::Gpu;
 use layout::Layout;
 use near::{Answer, Near};
 use passes::{Passes, Shaders};
 use periodic::Sides;
+use powers::Powers;
 use shaders::{ShaderInput, TICKS, entries};
 use solids::SolidChunks;
+use sponge::sponge_statements;
 
 use crate::{
+    coupling::{DevicePass, pressure_models},
     error::{Error, ErrorCode, ErrorKind, Result},
     interaction::{PairSums, StepLimits},
     math::{Bounds, Matrix, Vector},
-    model::{TimeScheme, Walls},
+    model::{Model, TimeScheme, Walls},
     sph::Units,
     system::{
         System,
         device_state::{self, NearParticle, WaterLoads},
+        reflected,
     },
     time_integration::{Stepper, VerletHistory},
 };
@@ -71,9 +78,9 @@ pub(crate) struct Device<const D: usize> {
     near: Option<Near>,
     /// Those with which it reads the boundary particles of films, if there may be films.
     films: Option<FilmReads>,
-    /// Time (s) at tick 0, and the ticks since.
-    start: f64,
-    ticks: u64,
+    /// The arrays and passes with which powers are measured, if they are.
+    powers: Option<Powers>,
+    clock: Clock,
     /// Steps of the next submission.
     steps: usize,
 }
@@ -135,6 +142,16 @@ pub(crate) enum StepsEnd {
     Escape,
 }
 
+/// The powers that a step measures in its force pass.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum MeasuredPowers {
+    None,
+    /// The power on the water.
+    Total,
+    /// The same, and what the pressure alone does.
+    Breakdown,
+}
+
 /// What the host reads of the water between two outputs.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct WaterReads {
@@ -144,6 +161,8 @@ pub(crate) struct WaterReads {
     pub(crate) watched: Vec<u32>,
     /// Axes along which it reads where that water is: all, or none.
     pub(crate) offset_rows: usize,
+    /// Whether it measures powers.
+    pub(crate) powers: bool,
 }
 
 /// A step up to its middle.
@@ -158,6 +177,8 @@ pub(crate) struct FirstHalf<const D: usize> {
 pub(crate) struct SecondHalf<const D: usize> {
     pub(crate) done: DeviceSteps,
     pub(crate) loads: WaterLoads<D>,
+    /// The powers, if the step measured them.
+    pub(crate) powers: Option<DevicePass<D>>,
     /// The water near the requested places at the end of the step.
     pub(crate) near: Vec<NearParticle<D>>,
 }
@@ -169,39 +190,15 @@ pub(crate) fn refused(what: &str) -> Error {
         .help("leave --device (model.device) out: the processor computes all of this scene")
 }
 
-/// Statements that add the rates of the sponge layers at `place` to `rate`.
-fn sponge_statements<const D: usize>(system: &System<D>, layout: &Layout, units: &Units) -> Result<String> {
-    let mut text = String::new();
-    for layer in system.sponge_layers() {
-        if !layout.reaches(&layer.from) {
-            return Err(refused("a sponge layer a million kernel supports from the origin"));
-        }
-        let from = layout.place(&layer.from, 0, 0);
-        let words =
-            |part: &[u32], cast: fn(u32) -> String| part.iter().map(|x| cast(*x)).collect::<Vec<_>>().join(", ");
-        let (hi, lo) = (words(&from[..4], |x| format!("{}", x as i32)), words(&from[4..], |x| format!("{x}u")));
-        let way = layer.to - layer.from;
-        let way = way * (units.length / way.norm_squared());
-        let way: Vec<String> = (0..3).map(|k| format!("{:?}f", if k < D { way[k] as f32 } else { 0.0 })).collect();
-        let (strength, power) = ((layer.strength * units.time) as f32, layer.power as f32);
-        text += &format!(
-            "    rate += {strength:?}f * pow(clamp(dot(between(place, Place(vec4<i32>({hi}), vec4<u32>({lo}))), \
-             vec3<f32>({})), 0.0f, 1.0f), {power:?}f);\n",
-            way.join(", ")
-        );
-    }
-    Ok(text)
-}
-
 /// The texts of the shaders for `system`, without a device. If `reads` is true, they include those with which the host reads
-/// water.
+/// water and measures powers.
 ///
 /// # Errors
 /// `Usage` if no device computes the system yet.
 #[doc(hidden)]
 pub fn shaders_of<const D: usize>(system: &System<D>, reads: bool) -> Result<ShaderTexts> {
     let watched = if reads { vec![0] } else { Vec::new() };
-    let reads = WaterReads { near: reads, watched, offset_rows: if reads { D } else { 0 } };
+    let reads = WaterReads { near: reads, watched, offset_rows: if reads { D } else { 0 }, powers: reads };
     let layout = Layout::new::<D>(system.model());
     shader_texts(system, (&layout, &Sides::new(system, &layout)), &SolidChunks::new(system), &reads)
 }
@@ -219,6 +216,12 @@ fn shader_texts<const D: usize>(
     let model = system.model();
     let gravity_changes = device_state::gravity_changes(system);
     let (traces, units) = model.pair_traces::<D>(gravity_changes).ok_or_else(|| refused("this pair loop"))?;
+    let mut pressure = Vec::new();
+    if reads.powers {
+        let (alone, plain) = pressure_models(model);
+        let traced = |model: &Model| model.pair_traces::<D>(gravity_changes).map(|(traces, _)| traces);
+        pressure.extend(std::iter::once(&alone).chain(&plain).filter_map(traced));
+    }
     let domain = system.domain();
     let input = ShaderInput::<D> {
         model,
@@ -238,6 +241,7 @@ fn shader_texts<const D: usize>(
         gravity_changes,
         sponge: sponge_statements(system, layout, &units)?,
         gaps: device_state::has_free_solids(system) && model.walls == Walls::RelaxedAdami,
+        pressure: &pressure,
     };
     input.texts().ok_or_else(|| refused("numbers of this size in single precision"))
 }
@@ -267,9 +271,10 @@ impl<const D: usize> Device<D> {
         let passes = Passes::new(&gpu, &shaders, &counts, &chunks, &buffers)?;
         let near = Near::new(&gpu, &texts, &counts, &buffers, reads)?;
         let films = FilmReads::new(&gpu, &texts, &counts, &buffers)?;
+        let powers = Powers::new(&gpu, &texts, &shaders, (&counts, &chunks), &buffers)?;
         let (units, rows) =
             (model.single_precision_units::<D>(), RowCounts { stress: texts.stress, inputs: texts.rows[1] });
-        let (start, ticks, steps) = (time, 0, FIRST_STEPS);
+        let (clock, steps) = (Clock { start: time, ticks: 0 }, FIRST_STEPS);
         let mut device = Self {
             gpu,
             layout,
@@ -283,8 +288,8 @@ impl<const D: usize> Device<D> {
             passes,
             near,
             films,
-            start,
-            ticks,
+            powers,
+            clock,
             steps,
         };
         device.load(system, stepper, time)?;
@@ -303,8 +308,9 @@ impl<const D: usize> Device<D> {
 
     /// Memory of the arrays, B: all, and of these the neighbour lists.
     pub(crate) fn memory_bytes(&self) -> [u64; 2] {
-        let exchanged = self.near.as_ref().map_or(0, Near::bytes) + self.films.as_ref().map_or(0, FilmReads::bytes);
-        [self.buffers.bytes() + exchanged, self.buffers.list_bytes()]
+        let near = self.near.as_ref().map_or(0, Near::bytes) + self.films.as_ref().map_or(0, FilmReads::bytes);
+        let others = near + self.powers.as_ref().map_or(0, Powers::bytes);
+        [self.buffers.bytes() + others, self.buffers.list_bytes()]
     }
 
     /// Takes the state of `system` at `time` (s).
@@ -315,7 +321,7 @@ impl<const D: usize> Device<D> {
         let count = water.len();
         let of_water = (0..count).map(|i| (water.r[i], water.v[i], water.rho[i], u32::MAX));
         let of_boundary = (0..boundary.len())
-            .zip(self.chunks.set_of_each(system))
+            .zip(self.chunks.set_of_each())
             .map(|(i, set)| (boundary.r[i], boundary.v[i], boundary.rho[i], set));
         let all: Vec<_> = of_water.chain(of_boundary).collect();
         let places: Vec<_> =
@@ -343,13 +349,18 @@ impl<const D: usize> Device<D> {
         }
         gpu.write(&buffers.control, 0, &control.0);
         self.write_gravity(system);
-        (self.start, self.ticks) = (time, 0);
+        self.clock = Clock { start: time, ticks: 0 };
         self.write_solids(system);
         let constants: Vec<[f32; 2]> = device_state::wall_constants(system)
             .into_iter()
             .map(|[depth, weight]| [(depth / self.units.length) as f32, weight as f32])
             .collect();
         self.gpu.write(&self.buffers.depths, 0, &constants);
+        if let Some(normals) = device_state::wall_normals(system) {
+            let words = |normal: &Vector<D>| std::array::from_fn(|k| if k < D { normal[k] as f32 } else { 0.0 });
+            let normals: Vec<[f32; 4]> = normals.iter().map(words).collect();
+            self.gpu.write(&self.buffers.pairs.normals, 0, &normals);
+        }
         self.gpu.run(&[], [self.passes.derive.as_ref()]);
         self.gpu.check()
     }
@@ -369,7 +380,7 @@ impl<const D: usize> Device<D> {
 
     /// The ticks from tick 0 to `time` (s).
     fn ticks_at(&self, time: f64) -> u64 {
-        let ticks = (time - self.start) / self.units.time * TICKS;
+        let ticks = (time - self.clock.start) / self.units.time * TICKS;
         if ticks < 9e18 { ticks.round().max(0.0) as u64 } else { u64::MAX / 2 }
     }
 
@@ -434,8 +445,11 @@ impl<const D: usize> Device<D> {
         if let Some(films) = &mut self.films {
             films.make_pass(&self.gpu, &self.counts, &self.buffers)?;
         }
-        match &mut self.near {
-            Some(near) => near.make_passes(&self.gpu, &self.counts, &self.buffers),
+        if let Some(near) = &mut self.near {
+            near.make_passes(&self.gpu, &self.counts, &self.buffers)?;
+        }
+        match &mut self.powers {
+            Some(powers) => powers.make_passes(&self.gpu, &self.shaders, (&self.counts, &self.chunks), &self.buffers),
             None => Ok(()),
         }
     }
@@ -450,11 +464,11 @@ impl<const D: usize> Device<D> {
 
     /// What the control words say of the steps since the last call.
     fn outcome(&mut self, control: &Control, end: f64) -> DeviceSteps {
-        self.ticks = control.time();
-        let time = if self.ticks >= self.ticks_at(end) {
+        self.clock.ticks = control.time();
+        let time = if self.clock.ticks >= self.ticks_at(end) {
             end
         } else {
-            self.start + self.ticks as f64 / TICKS * self.units.time
+            self.clock.start + self.clock.ticks as f64 / TICKS * self.units.time
         };
         let end = match control.halt() {
             0 => StepsEnd::Steps,
@@ -496,7 +510,7 @@ impl<const D: usize> Device<D> {
     }
 
     /// Completes the step with the solids of `system` at their places halfway through the step. Returns the loads on them, with
-    /// the water in `ranges` (m) at the end.
+    /// the powers that are `measured` and the water in `ranges` (m) at the end.
     ///
     /// `None` if a list was too short: then the state is that before the step, and the caller repeats the step.
     pub(crate) fn second_half(
@@ -504,10 +518,13 @@ impl<const D: usize> Device<D> {
         system: &System<D>,
         end: f64,
         ranges: &[Bounds<D>],
+        measured: MeasuredPowers,
     ) -> Result<Option<SecondHalf<D>>> {
         self.write_solids(system);
         self.prepare_find(ranges)?;
-        let passes = self.passes.second.iter().map(AsRef::as_ref);
+        let [forces, rest] = self.passes.second.each_ref().map(|passes| passes.iter().map(AsRef::as_ref));
+        let [during, after] = self.measure(measured);
+        let passes = forces.chain(during).chain(rest).chain(after);
         self.gpu.run(&[], passes.chain(self.read_boundary()).chain(self.find(ranges)));
         let mut answer = self.answer(ranges, true)?;
         if self.grow_lists(&answer.control)? {
@@ -520,7 +537,8 @@ impl<const D: usize> Device<D> {
         }
         let Answer { control, loads, near, .. } = answer;
         let loads = self.water_loads(&loads, system);
-        Ok(Some(SecondHalf { done: self.outcome(&control, end), loads, near }))
+        let powers = self.measured(measured, system)?;
+        Ok(Some(SecondHalf { done: self.outcome(&control, end), loads, powers, near }))
     }
 
     /// Gives the device the solids of `system` at the end of a step.
@@ -533,9 +551,7 @@ impl<const D: usize> Device<D> {
     pub(crate) fn velocity_sum(&self) -> Result<Vector<D>> {
         self.gpu.run(&[], self.passes.velocities.as_deref());
         let [sums] = self.gpu.read::<f32, 1>([(&self.buffers.pairs.flow, 4 * self.counts.flow_chunks())])?;
-        let unit = self.units.length / self.units.time;
-        let sum = |k: usize| sums.chunks_exact(4).map(|chunk| f64::from(chunk[k])).sum::<f64>() * unit;
-        Ok(Vector::from_fn(|k, _| sum(k)))
+        Ok(powers::vector_of(&sums) * (self.units.length / self.units.time))
     }
 
     /// Makes a force pass at the present state. Returns the acceleration (m/s²) and the rate of ρ/ρ₀ (1/s) of each water
@@ -596,10 +612,10 @@ impl<const D: usize> Device<D> {
             let control = self.control()?;
             let of = |i: usize| &before[4 * slot[i]..][..4];
             if control.has_history() {
-                let all = || (0..water).chain(device_state::originals(system));
+                let all = || (0..water).map(|i| (i, 0)).chain(device_state::originals(system));
                 verlet.set_history(VerletHistory {
-                    velocity: all().map(|i| layout.velocity(of(i))).collect(),
-                    density: all().map(|i| layout.density(of(i))).collect(),
+                    velocity: all().map(|(i, axes)| reflected(axes, layout.velocity(of(i)))).collect(),
+                    density: all().map(|(i, _)| layout.density(of(i))).collect(),
                     boundary_density: (water..n).map(|i| layout.density(of(i))).collect(),
                     dt: f64::from(control.dt_before()) * self.units.time,
                     steps: control.since_euler(),

@@ -20,8 +20,8 @@ pub(super) struct Passes {
     pub(super) step: Vec<Arc<Pass>>,
     /// A step up to its middle, where the host moves the solids.
     pub(super) first: Vec<Arc<Pass>>,
-    /// The rest of that step.
-    pub(super) second: Vec<Arc<Pass>>,
+    /// The rest of that step: its force pass, if it has one, and what follows from the sums.
+    pub(super) second: [Vec<Arc<Pass>>; 2],
     /// Places the boundary particles of moving solids.
     pub(super) place: Arc<Pass>,
     /// Adds up the loads.
@@ -36,11 +36,12 @@ pub(super) struct Shaders {
     lists: Shader,
     sweep: Shader,
     step: Shader,
-    solids: Shader,
-    gaps: Option<Shader>,
+    pub(super) solids: Shader,
+    pub(super) gaps: Option<Shader>,
     inputs: Option<Shader>,
     moments: Option<Shader>,
     images: Option<Shader>,
+    sticks: Option<Shader>,
     /// Whether the stress of the water is kept.
     stress: bool,
     /// Whether steps are Verlet's, and not symplectic.
@@ -71,6 +72,7 @@ impl Shaders {
             inputs: optional(&texts.inputs, &["fill_rows", "close_stress"])?,
             moments: optional(&texts.moments, &["sweep_moments"])?,
             images: optional(&texts.images, &["place_images", "copy_rows", "update_copies", "add_velocities"])?,
+            sticks: optional(&texts.sticks, &["find_slips"])?,
             stress: texts.stress.is_some(),
             verlet,
         })
@@ -78,7 +80,7 @@ impl Shaders {
 }
 
 /// Makes passes of one shader with its buffers.
-struct Maker<'a> {
+pub(super) struct Maker<'a> {
     gpu: &'a Gpu,
     shader: &'a Shader,
     /// All buffers of the shader, by their bindings.
@@ -86,14 +88,88 @@ struct Maker<'a> {
 }
 
 impl<'a> Maker<'a> {
-    fn new(gpu: &'a Gpu, shader: &'a Shader, buffers: Vec<&'a wgpu::Buffer>) -> Self {
+    pub(super) fn new(gpu: &'a Gpu, shader: &'a Shader, buffers: Vec<&'a wgpu::Buffer>) -> Self {
         Self { gpu, shader, buffers }
     }
 
     /// The pass by the function `entry`.
-    fn pass(&self, entry: &str, threads: usize) -> Result<Arc<Pass>> {
+    pub(super) fn pass(&self, entry: &str, threads: usize) -> Result<Arc<Pass>> {
         Ok(Arc::new(self.gpu.pass(self.shader, entry, threads, &self.buffers)?))
     }
+}
+
+/// The buffers of the sums over pairs, which go to `sums`, for the particles that share a `list`, beginning with the `first`.
+pub(super) fn sweep_bindings<'a>(
+    params: &'a wgpu::Buffer,
+    buffers: &'a Buffers,
+    [first, list]: [&'a wgpu::Buffer; 2],
+    sums: &'a wgpu::Buffer,
+) -> Vec<&'a wgpu::Buffer> {
+    let b = &buffers.pairs;
+    vec![
+        params,
+        &buffers.control,
+        first,
+        &b.positions,
+        &b.velocities,
+        list,
+        &b.spans,
+        sums,
+        &b.walls,
+        &buffers.places,
+        &buffers.solids,
+        &buffers.depths,
+        &b.aways,
+        &b.rows,
+        &b.slips,
+    ]
+}
+
+/// The buffers of the pressure across gaps, which is added to `sums`.
+pub(super) fn gap_bindings<'a>(
+    params: &'a wgpu::Buffer,
+    buffers: &'a Buffers,
+    sums: &'a wgpu::Buffer,
+) -> Vec<&'a wgpu::Buffer> {
+    let b = &buffers.pairs;
+    vec![
+        params,
+        &buffers.control,
+        &buffers.places,
+        &b.positions,
+        &b.velocities,
+        &buffers.search.start,
+        &b.spans,
+        &buffers.solids,
+        &b.gaps,
+        &b.aways,
+        sums,
+        &b.built,
+    ]
+}
+
+/// The buffers of the solids, whose `loads` follow from `sums`.
+pub(super) fn solid_bindings<'a>(
+    params: &'a wgpu::Buffer,
+    buffers: &'a Buffers,
+    [sums, loads]: [&'a wgpu::Buffer; 2],
+) -> Vec<&'a wgpu::Buffer> {
+    let b = &buffers.pairs;
+    vec![
+        params,
+        &buffers.control,
+        &buffers.places,
+        &b.positions,
+        &b.velocities,
+        &buffers.motion,
+        &buffers.slot,
+        &b.built,
+        &buffers.solids,
+        &b.local,
+        &b.chunks,
+        sums,
+        loads,
+    ]
 }
 
 impl Passes {
@@ -110,25 +186,7 @@ impl Passes {
         let [rates, close_stress] = rates(gpu, shaders, counts, buffers, &params, images)?;
         let n = counts.n;
         let b = &buffers.pairs;
-        let solids = Maker::new(
-            gpu,
-            &shaders.solids,
-            vec![
-                &params,
-                &buffers.control,
-                &buffers.places,
-                &b.positions,
-                &b.velocities,
-                &buffers.motion,
-                &buffers.slot,
-                &b.built,
-                &buffers.solids,
-                &b.local,
-                &b.chunks,
-                &b.sums,
-                &buffers.loads,
-            ],
-        );
+        let solids = Maker::new(gpu, &shaders.solids, solid_bindings(&params, buffers, [&b.sums, &buffers.loads]));
         let place = solids.pass("place_moving", chunks.moving * GROUP)?;
         let loads = solids.pass("add_loads", chunks.owners.len() * GROUP)?;
         let step = Maker::new(
@@ -158,13 +216,14 @@ impl Passes {
             let all = [&rates[..], &close_stress].concat();
             whole = [&all[..], &[limit.clone(), verlet.clone(), finish.clone()]].concat();
             first = [&all[..], &[limit, loads.clone()]].concat();
-            second = vec![verlet, finish];
+            second = [Vec::new(), vec![verlet, finish]];
         } else {
             let first_half = step.pass("first_half", n)?;
             let rest = step.pass("whole_step", n)?;
             first = [&rates[..], &[limit, first_half]].concat();
             whole = [&first[..], &rates, &close_stress, &[rest.clone(), finish.clone()]].concat();
-            second = [std::slice::from_ref(&place), &rates, &close_stress, &[loads.clone(), rest, finish]].concat();
+            let forces = [std::slice::from_ref(&place), &rates, &close_stress, std::slice::from_ref(&loads)].concat();
+            second = [forces, vec![rest, finish]];
         }
         Ok(Self { derive, rates, step: whole, first, second, place, loads, velocities })
     }
@@ -241,26 +300,7 @@ fn rates(
             ],
         );
         passes.push(lists.pass("list_pairs", counts.part.min(n - start))?);
-        let sweep = Maker::new(
-            gpu,
-            &shaders.sweep,
-            vec![
-                params,
-                &buffers.control,
-                &first,
-                &b.positions,
-                &b.velocities,
-                list,
-                &b.spans,
-                &b.sums,
-                &b.walls,
-                &buffers.places,
-                &buffers.solids,
-                &buffers.depths,
-                &b.aways,
-                &b.rows,
-            ],
-        );
+        let sweep = Maker::new(gpu, &shaders.sweep, sweep_bindings(params, buffers, [&first, list], &b.sums));
         let threads = counts.part.min(n - start);
         if start < counts.water {
             let water = threads.min(counts.water - start);
@@ -272,28 +312,17 @@ fn rates(
             sweeps.push(sweep.pass("sweep_water", water)?);
         }
         if start + threads > counts.water {
+            if let Some(text) = &shaders.sticks {
+                let own = [&b.spans, &buffers.places, &buffers.solids, &buffers.depths, &b.normals, &b.slips];
+                let before = [params, &buffers.control, &first, &b.positions, &b.velocities, list];
+                let sticks = Maker::new(gpu, text, before.into_iter().chain(own).collect());
+                corrections.push(sticks.pass("find_slips", threads)?);
+            }
             sweeps.push(sweep.pass("sweep_boundary", threads)?);
         }
     }
     if let Some(text) = &shaders.gaps {
-        let gaps = Maker::new(
-            gpu,
-            text,
-            vec![
-                params,
-                &buffers.control,
-                &buffers.places,
-                &b.positions,
-                &b.velocities,
-                &searched.start,
-                &b.spans,
-                &buffers.solids,
-                &b.gaps,
-                &b.aways,
-                &b.sums,
-                &b.built,
-            ],
-        );
+        let gaps = Maker::new(gpu, text, gap_bindings(params, buffers, &b.sums));
         let boundary = n - counts.water;
         passes.push(gaps.pass("find_gaps", boundary)?);
         sweeps.push(gaps.pass("add_gaps", boundary)?);
@@ -359,6 +388,7 @@ fn images(
             &b.rows,
             &b.copied,
             &b.flow,
+            &b.slips,
         ],
     );
     let mut before_sums = Vec::new();

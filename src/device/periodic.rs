@@ -1,14 +1,16 @@
-//! Periodic sides on a device. As on the host, water near a side has images, which follow all particles in the arrays of places and
-//! velocities that the pair loop reads. The device makes them anew with the lists.
+//! Periodic sides and symmetry planes on a device. As on the host, water near a side has images, which follow all particles in the
+//! arrays of places and velocities that the pair loop reads. The device makes them anew with the lists.
 
 use super::layout::{Layout, Place, place_of};
 use crate::system::{System, device_state};
 
-/// The periodic sides.
+/// The periodic sides and the symmetry planes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sides<const D: usize> {
     /// Where a period begins and ends along each axis, in units of a place, if it has one.
     sides: [Option<[i64; 2]>; D],
+    /// Where there is a symmetry plane, in units of a place, and whether the side of greater coordinates is computed.
+    planes: [Option<(i64, bool)>; D],
     /// Distance to which images reach beyond a side, in 2⁻⁸ of the support.
     width: i32,
 }
@@ -25,11 +27,17 @@ impl<const D: usize> Sides<D> {
     /// Those of `system`.
     pub(super) fn new(system: &System<D>, layout: &Layout) -> Self {
         let sides = system.periodic().map(|side| side.map(|ends| ends.map(|x| layout.fine(x))));
-        Self { sides, width: layout.coarse(device_state::image_width(system), f64::ceil) }
+        let planes = system.symmetry_planes().0.map(|plane| plane.map(|plane| (layout.fine(plane.at), plane.is_upper)));
+        Self { sides, planes, width: layout.coarse(device_state::image_width(system), f64::ceil) }
     }
 
     fn any(&self) -> bool {
-        self.sides.iter().any(Option::is_some)
+        self.sides.iter().any(Option::is_some) || self.has_planes()
+    }
+
+    /// Whether there is a symmetry plane.
+    pub(super) fn has_planes(&self) -> bool {
+        self.planes.iter().any(Option::is_some)
     }
 
     /// The periods along each axis, in units of a place; 0 where there is none.
@@ -49,12 +57,14 @@ impl<const D: usize> Sides<D> {
             Some([from, to]) if (to >> 32) - (from >> 32) >= 2 * i64::from(self.width) => 2,
             Some(_) => 3,
         };
-        self.sides.iter().map(along).product::<usize>() - 1
+        let across = self.planes.iter().map(|plane| if plane.is_some() { 2 } else { 1 });
+        self.sides.iter().map(along).chain(across).product::<usize>() - 1
     }
 
     /// The range of cells along axis number `axis` that images reach, in 2⁻⁸ of the support.
     pub(super) fn reach(&self, axis: usize) -> Option<[i32; 2]> {
-        self.sides[axis].map(|[from, to]| [(from >> 32) as i32 - self.width, (to >> 32) as i32 + self.width])
+        let ends = self.sides[axis].or(self.planes[axis].map(|(at, _)| [at; 2]));
+        ends.map(|[from, to]| [(from >> 32) as i32 - self.width, (to >> 32) as i32 + self.width])
     }
 
     /// The constants of the shaders.
@@ -75,6 +85,29 @@ impl<const D: usize> Sides<D> {
             self.kinds(),
             self.width,
             axes.join(", ")
+        ) + &self.plane_constants()
+    }
+    /// The functions for the ways to images.
+    pub(super) fn functions(&self) -> &'static str {
+        if self.has_planes() { include_str!("shaders/planes.wgsl") } else { include_str!("shaders/periodic.wgsl") }
+    }
+
+    /// The constants of the symmetry planes.
+    fn plane_constants(&self) -> String {
+        if !self.has_planes() {
+            return String::new();
+        }
+        let axes = |of: fn(&(i64, bool)) -> bool| {
+            let axis = |k: usize| self.planes.get(k).is_some_and(|plane| plane.as_ref().is_some_and(of)).to_string();
+            (0..3).map(axis).collect::<Vec<_>>().join(", ")
+        };
+        let at = |times: i64| place_of(self.planes.map(|plane| plane.map_or(0, |(at, _)| times * at)));
+        format!(
+            "const UPPER: vec3<bool> = vec3<bool>({});\nconst LOWER: vec3<bool> = vec3<bool>({});\n{}{}",
+            axes(|(_, is_upper)| *is_upper),
+            axes(|(_, is_upper)| !is_upper),
+            constant("PLANES", &at(1)),
+            constant("TWICE_PLANES", &at(2)),
         )
     }
 }

@@ -3,13 +3,14 @@
 use super::{
     periodic::Sides,
     text::{indented, statements},
+    wall_shaders::{wall_change, wall_input, wall_target},
 };
 use crate::{
     interaction::PairTraces,
     model::{Model, PressureGradient, TimeScheme, Walls},
     sph::{
-        AuxiliarySums, FluidProperties, Num as _, Units,
-        boundary::{Cover, RELAXATION_TIME, WallExtrapolation, WallTarget},
+        AuxiliarySums, FluidProperties, Units,
+        boundary::RELAXATION_TIME,
         equation_of_state::EquationOfState,
         gradient_correction,
         pressure::repulsion,
@@ -32,7 +33,6 @@ pub(super) const TICKS: f64 = (1 << 24) as f64;
 pub(super) const EXCESS: f64 = 1.0 / (1u64 << 31) as f64;
 
 const COMMON: &str = include_str!("shaders/common.wgsl");
-const PERIODIC: &str = include_str!("shaders/periodic.wgsl");
 
 /// The data from which the texts of the shaders are written.
 pub(super) struct ShaderInput<'a, const D: usize> {
@@ -59,6 +59,8 @@ pub(super) struct ShaderInput<'a, const D: usize> {
     pub(super) gravity_changes: bool,
     /// Statements that add the rates of the sponge layers at `place` to `rate`.
     pub(super) sponge: String,
+    /// Traces of the pressure alone, if powers are measured; then with uncorrected gradients, if the model corrects them.
+    pub(super) pressure: &'a [PairTraces],
 }
 
 /// The texts.
@@ -86,6 +88,10 @@ pub struct ShaderTexts {
     pub moments: Option<String>,
     /// Water near places of the host, if it reads any.
     pub near: Option<String>,
+    /// Velocities with which boundary particles act, if water sticks to faces.
+    pub sticks: Option<String>,
+    /// Powers, if they are measured; then the sums over pairs of the pressure alone.
+    pub powers: Vec<String>,
     /// Numbers of rows: of sums, of additional inputs, and of the inputs that are kept from pass to pass.
     pub rows: [usize; 3],
     /// The first row of the stress of the water, if it is kept.
@@ -110,7 +116,7 @@ impl<const D: usize> ShaderInput<'_, D> {
     /// number from 1 to 7.
     pub(super) fn texts(&self) -> Option<ShaderTexts> {
         let properties = self.model.fluid_properties::<D>().in_units(&self.units);
-        let head = format!("{COMMON}{PERIODIC}{}", self.constants(&properties));
+        let head = format!("{COMMON}{}{}", self.sides.functions(), self.constants(&properties));
         let with_head = |text: &str| format!("{head}{text}");
         let sum = |k: usize| format!("sums[{k}u * params.n + k]");
         let force = vector::<D>(sum, "0.0f");
@@ -122,11 +128,11 @@ impl<const D: usize> ShaderInput<'_, D> {
         let step = include_str!("shaders/step.wgsl")
             .replace("{{PRESSURE}}", &indented(&statements(&pressure, "t", str::to_string)?, 4))
             .replace("{{CHANGE}}", &indented(&statements(&wall_change(), "t", wall_input)?, 4))
-            .replace("{{FORCE}}", &force)
-            .replace("{{SHIFT}}", &self.shift(&properties)?)
-            .replace("{{SPONGE}}", &self.sponge)
-            .replace("{{RATE}}", &D.to_string());
+            .replace("{{FORCE}}", &force);
+        let step = self.with_changes(&step, &properties)?;
+        let apart = if self.sides.has_planes() { "solids[a].centre.hi.w != solids[b].centre.hi.w" } else { "a != b" };
         let gaps = include_str!("shaders/gaps.wgsl")
+            .replace("{{APART}}", apart)
             .replace("{{SLOPE}}", &indented(&statements(&self.traces.slope, "t", str::to_string)?, 4))
             .replace(
                 "{{ADD}}",
@@ -139,6 +145,8 @@ impl<const D: usize> ShaderInput<'_, D> {
             films: self.gaps.then(|| with_head(&include_str!("shaders/films.wgsl").replace("{{FORCE}}", &force))),
             search: with_head(include_str!("shaders/search.wgsl")),
             lists: with_head(include_str!("shaders/lists.wgsl")),
+            sticks: if self.sticks() { Some(with_head(&self.slips()?)) } else { None },
+            powers: self.powers(&properties, &force)?.iter().map(|text| with_head(text)).collect(),
             sweep: with_head(&self.sweep(&properties, &eos, &coefficients)?),
             step: with_head(&step),
             inputs: (self.traces.rows[0] > 0)
@@ -147,11 +155,33 @@ impl<const D: usize> ShaderInput<'_, D> {
                 .map(|text| with_head(&text)),
             near: self.near.then(|| with_head(&self.near_text())),
             moments: self.moments(&properties).map(|text| with_head(&text)),
-            images: (self.sides.kinds() > 2).then(|| with_head(include_str!("shaders/images.wgsl"))),
+            images: (self.sides.kinds() > 2).then(|| with_head(&self.images())),
             rows: [self.traces.rows[1] + self.offset_rows(), self.traces.rows[0], self.kept_rows()],
             stress: self.traces.layout.stress,
-            solids: with_head(&include_str!("shaders/solids.wgsl").replace("{{FORCE}}", &force)),
+            solids: with_head(&include_str!("shaders/solids.wgsl").replace("{{FORCE}}", &self.counted(&force))),
         })
+    }
+
+    /// `text` with the functions that shift and damp the water, and with the row of the rate of density.
+    fn with_changes(&self, text: &str, properties: &FluidProperties<D>) -> Option<String> {
+        let text = text.replace("{{SHIFT}}", &self.shift(properties)?).replace("{{SPONGE}}", &self.sponge);
+        Some(text.replace("{{RATE}}", &D.to_string()))
+    }
+
+    /// The shader that measures powers, and the sums over pairs of the pressure alone; none unless powers are measured.
+    fn powers(&self, properties: &FluidProperties<D>, force: &str) -> Option<Vec<String>> {
+        if self.pressure.is_empty() {
+            return Some(Vec::new());
+        }
+        let text = include_str!("shaders/powers.wgsl").replace("{{FORCE}}", force);
+        let mut texts = vec![self.with_changes(&text, properties)?];
+        for traces in self.pressure {
+            let read = |name: &str| pressure_input(name, [traces, self.traces]);
+            let fluid = body_read(&traces.fluid, "t", read)?;
+            let [wall, beside] = self.wall_bodies(&traces.wall, read)?;
+            texts.push(self.with_slips(sweep_text::<D>(traces.rows[1], [&fluid, &wall, &beside], (0, ""))));
+        }
+        Some(texts)
     }
 
     fn constants(&self, properties: &FluidProperties<D>) -> String {
@@ -184,6 +214,7 @@ impl<const D: usize> ShaderInput<'_, D> {
             format!("const MOVING: u32 = {}u;", chunks[0] * GROUP),
             format!("const CHUNKS: u32 = {}u;", chunks[1]),
             self.gravity(properties),
+            self.row_sign(),
             self.sides.constants(),
             format!("const SMOOTHING: f32 = {};", float(properties.h)),
             format!("const SOUND: f32 = {};", float(properties.c0)),
@@ -200,6 +231,22 @@ impl<const D: usize> ShaderInput<'_, D> {
             format!("const DOMAIN_MAX: vec3<i32> = vec3<i32>({});", vector::<D>(|k| domain[1][k].to_string(), "0")),
         ];
         lines.join("\n") + "\n"
+    }
+
+    /// The function for the sign that an additional input of an image has: entries of tensors are reflected.
+    fn row_sign(&self) -> String {
+        let layout = self.traces.layout;
+        let mut odd = String::new();
+        for first in [layout.stress, layout.correction].into_iter().flatten().filter(|_| self.sides.has_planes()) {
+            for (n, (i, j)) in entries(D).enumerate().filter(|(_, (i, j))| i != j) {
+                let [i, j] = [i, j].map(|k| axis(&k.to_string()));
+                odd += &format!(
+                    "    if (row == {}u && flips(way).{i} != flips(way).{j}) {{ return -1.0f; }}\n",
+                    first + n
+                );
+            }
+        }
+        format!("fn row_sign(row: u32, way: u32) -> f32 {{\n{odd}    return 1.0f;\n}}")
     }
 
     /// The functions for gravity, and for the slope g/c₀² of the excess density in water at rest.
@@ -220,8 +267,7 @@ impl<const D: usize> ShaderInput<'_, D> {
         let [_, sums] = self.traces.rows;
         let relaxed = self.model.walls == Walls::RelaxedAdami;
         let fluid = pair_body(&self.traces.fluid, "t")?;
-        let wall = pair_body(&self.traces.wall, "u")?;
-        let mut beside = wall.clone();
+        let [wall, mut beside] = self.wall_bodies(&self.traces.wall, pair_input)?;
         let (mut fit_rows, mut target) = (0, String::new());
         if relaxed || self.weighs {
             let mut trace = self.traces.extrapolation.clone();
@@ -234,7 +280,7 @@ impl<const D: usize> ShaderInput<'_, D> {
             fit_rows = trace.results.len();
             (0..fit_rows).for_each(|row| fit += &format!("fit{row} = out_sum{row};\n"));
             // The results of the extrapolation have the names of those of the pair.
-            beside = format!("{{\n{wall}}}\n{{\n{fit}}}\n");
+            beside = format!("{{\n{beside}}}\n{{\n{fit}}}\n");
             target = if relaxed {
                 let equations = statements(&wall_target(properties, eos, coefficients), "w", read(wall_input))?;
                 let offset = |k: usize| format!("\nsums[{}u * params.n + k] = fit{};", sums + k, 2 + k);
@@ -244,21 +290,51 @@ impl<const D: usize> ShaderInput<'_, D> {
                 "aways[k - params.water] = vec4<f32>(0.0f, 0.0f, 0.0f, fit0);\n".into()
             };
         }
-        let zeros =
-            |name: &str, rows: usize| (0..rows).map(|row| format!("var {name}{row} = 0.0f;\n")).collect::<String>();
-        let store: String = (0..sums).map(|row| format!("sums[{row}u * params.n + k] = sum{row};\n")).collect();
-        let text = include_str!("shaders/sweep.wgsl")
-            .replace("{{ZERO_SUMS}}", &indented(&zeros("sum", sums), 8))
-            .replace("{{ZERO_FIT}}", &indented(&zeros("fit", fit_rows), 8))
-            .replace("{{NEIGHBOUR}}", &indented(include_str!("shaders/neighbour.wgsl"), 12))
-            .replace("{{FLUID}}", &indented(&fluid, 12))
-            .replace("{{WALL}}", &indented(&wall, 12))
-            .replace("{{BESIDE}}", &indented(&beside, 12))
-            .replace("{{STORE}}", &indented(&store, 8))
-            .replace("{{TARGET}}", &indented(&target, 8))
-            .replace("{{FORCE}}", &vector::<D>(|k| format!("sum{k}"), "0.0f"));
-        Some(text)
+        let text = sweep_text::<D>(sums, [&fluid, &wall, &beside], (fit_rows, &target));
+        Some(self.with_slips(text))
     }
+
+    /// The components of the `force` on a boundary particle, as they count for the load: half on a plane that cuts its solid.
+    fn counted(&self, force: &str) -> String {
+        if !self.sides.has_planes() {
+            return force.into();
+        }
+        force.split(", ").map(|x| format!("{x} * local_positions[b].w")).collect::<Vec<_>>().join(", ")
+    }
+
+    /// The shader for images across periodic sides and symmetry planes.
+    fn images(&self) -> String {
+        let mut text: String = include_str!("shaders/images.wgsl").into();
+        let slips = ["slips[j - params.water]", "slips[k - params.water]"];
+        let (mut copy, mut image) = (String::new(), String::new());
+        if self.sticks() {
+            text += "@group(0) @binding(12) var<storage, read_write> slips: array<vec4<f32>>;\n";
+            copy = format!("            {} = {};\n", slips[0], slips[1]);
+            image = format!("        {} = vec4<f32>(reflected({}.xyz, own.z), 0.0f);\n", slips[0], slips[1]);
+        }
+        text.replace("{{SLIP}}", &copy).replace("{{MIRRORED_SLIP}}", &image)
+    }
+}
+
+/// The sums over pairs in `sums` rows, from the bodies of the loops over water and boundary particles beside water, and over water
+/// beside boundary particles. For those there are the rows of an extrapolation, too, and statements that follow from it.
+fn sweep_text<const D: usize>(
+    sums: usize,
+    [fluid, wall, beside]: [&str; 3],
+    (fit_rows, target): (usize, &str),
+) -> String {
+    let zeros = |name: &str, rows: usize| (0..rows).map(|row| format!("var {name}{row} = 0.0f;\n")).collect::<String>();
+    let store: String = (0..sums).map(|row| format!("sums[{row}u * params.n + k] = sum{row};\n")).collect();
+    include_str!("shaders/sweep.wgsl")
+        .replace("{{ZERO_SUMS}}", &indented(&zeros("sum", sums), 8))
+        .replace("{{ZERO_FIT}}", &indented(&zeros("fit", fit_rows), 8))
+        .replace("{{NEIGHBOUR}}", &indented(include_str!("shaders/neighbour.wgsl"), 12))
+        .replace("{{FLUID}}", &indented(fluid, 12))
+        .replace("{{WALL}}", &indented(wall, 12))
+        .replace("{{BESIDE}}", &indented(beside, 12))
+        .replace("{{STORE}}", &indented(&store, 8))
+        .replace("{{TARGET}}", &indented(target, 8))
+        .replace("{{FORCE}}", &vector::<D>(|k| format!("sum{k}"), "0.0f"))
 }
 
 /// The entries of a symmetric tensor that are kept, by row and column.
@@ -395,14 +471,19 @@ impl<const D: usize> ShaderInput<'_, D> {
 
 /// What the loop over neighbours `j` of particle `k` does with a pair.
 fn pair_body(trace: &Trace, prefix: &str) -> Option<String> {
-    let mut text = statements(trace, prefix, pair_input)?;
+    body_read(trace, prefix, pair_input)
+}
+
+/// The same, with inputs as `read` says.
+pub(super) fn body_read(trace: &Trace, prefix: &str, read: impl Fn(&str) -> String) -> Option<String> {
+    let mut text = statements(trace, prefix, read)?;
     for (name, _) in &trace.results {
         text += &format!("{name} = out_{name};\n");
     }
     Some(text)
 }
 
-fn axis(k: &str) -> &'static str {
+pub(super) fn axis(k: &str) -> &'static str {
     match k {
         "0" => "x",
         "1" => "y",
@@ -424,71 +505,19 @@ fn pair_input(name: &str) -> String {
     }
 }
 
+/// How the inputs of a pair under the pressure alone are read: its rows of additional inputs are among those of all terms.
+fn pressure_input(name: &str, [own, all]: [&PairTraces; 2]) -> String {
+    let Some((who, row)) = name.split_once("_row") else { return pair_input(name) };
+    let (own, all, row) = (&own.layout, &all.layout, row.parse::<usize>().unwrap_or(0));
+    let firsts = [(own.correction, all.correction), (own.repulsion, all.repulsion)];
+    let among = firsts.into_iter().find_map(|(own, all)| Some(row.checked_sub(own?)? + all?));
+    pair_input(&format!("{who}_row{}", among.unwrap_or(row)))
+}
+
 /// How the inputs of an extrapolation are read.
-fn extrapolation_input(name: &str) -> String {
+pub(super) fn extrapolation_input(name: &str) -> String {
     match name.split_at(1) {
         ("v", k) if k.len() == 1 => format!("other_velocity.{}", axis(k)),
         _ => pair_input(name),
     }
-}
-
-/// How the inputs of the equations of a wall are read.
-fn wall_input(name: &str) -> String {
-    let component = |of: &str, k: &str| format!("{of}.{}", axis(k));
-    match name {
-        "density" => "wall.x".into(),
-        "increase" => "wall.y".into(),
-        "prompt_decrease" => "wall.z".into(),
-        "prompt_increase" => "wall.w".into(),
-        _ => match (name.strip_prefix("pull"), name.strip_prefix("g"), name.strip_prefix("v")) {
-            (Some(k), ..) => component("pull", k),
-            (_, Some(k), _) => component("gravity()", k),
-            (.., Some(k)) => component("velocity", k),
-            _ => name.into(),
-        },
-    }
-}
-
-/// The target of a boundary particle, its density as excess density: inputs `sum0`… of the extrapolation, `pull0`…, `g0`…, `v0`…,
-/// `depth`, `own`, `full_weight` and `promptness`.
-fn wall_target<const D: usize>(properties: &FluidProperties<D>, eos: &EquationOfState, coefficients: &[f64]) -> Trace {
-    Trace::record(&mut |recorder| {
-        let each = |name: &str| -> [Traced; D] { std::array::from_fn(|k| recorder.input(&format!("{name}{k}"))) };
-        let sum = |row: usize| recorder.input(&format!("sum{row}"));
-        let fit = WallExtrapolation {
-            weight_sum: sum(0),
-            pressure_sum: sum(1),
-            offset_sum: std::array::from_fn(|k| sum(2 + k)),
-            velocity_sum: std::array::from_fn(|k| sum(2 + D + k)),
-        };
-        let pressure = fit.pressure(&each("pull"), &each("g"), recorder.input("depth"));
-        let cover = Cover { share: fit.weight_sum / recorder.input("full_weight") };
-        let density = eos.binomial_compression(coefficients, pressure);
-        let (own, promptness) = (recorder.input("own"), recorder.input("promptness"));
-        let target = WallTarget::new(density, own, fit.approach(&each("v")), cover, promptness, [1.0, properties.c0]);
-        recorder.result("density", target.density);
-        recorder.result("increase", target.increase);
-        recorder.result("prompt_decrease", target.prompt_decrease);
-        recorder.result("prompt_increase", target.prompt_increase);
-        let away = fit.direction();
-        let none = recorder.constant(0.0);
-        (0..3).for_each(|k| {
-            let of = away.get(k).copied().unwrap_or(none);
-            recorder.result(&format!("away{k}"), fit.weight_sum.select_below(recorder.constant(1e-9), none, of));
-        });
-    })
-}
-
-/// The change of density by which a boundary particle relaxes to its target.
-fn wall_change() -> Trace {
-    Trace::record(&mut |recorder| {
-        let input = |name: &str| recorder.input(name);
-        let target = WallTarget {
-            density: input("density"),
-            increase: input("increase"),
-            prompt_decrease: input("prompt_decrease"),
-            prompt_increase: input("prompt_increase"),
-        };
-        recorder.result("change", target.change(input("own"), input("relaxation")));
-    })
 }

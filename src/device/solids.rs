@@ -5,7 +5,7 @@ use crate::{
     math::{Bivector, Matrix, Vector},
     solid::{Load, Role},
     sph::Units,
-    system::{System, device_state},
+    system::{AxisSet, System, device_state, reflected, reflected_tensor},
 };
 
 /// Words of a solid.
@@ -22,13 +22,32 @@ pub(super) struct SolidChunks {
     pub(super) owners: Vec<usize>,
     /// Chunks of moving solids.
     pub(super) moving: usize,
-    /// Number of the solid and of the copy of each set of boundary particles: those of a solid, or of one of its copies beside periodic
-    /// sides. For the device, each set has a solid of its own.
-    pub(super) copies: Vec<[usize; 2]>,
-    /// Index of each boundary particle of a first copy that has others, particles of a copy, and copies.
+    /// The sets of boundary particles: those of a solid, of one of its copies beside periodic sides, or of its image across symmetry
+    /// planes. For the device, each set has a solid of its own.
+    pub(super) sets: Vec<SolidSet>,
+    /// Index of each boundary particle of a first copy that has others, particles of a copy, and copies; or index of each mirror
+    /// image, of its original, the axes along which it is reflected, and 1.
     pub(super) copied: Vec<[u32; 4]>,
-    /// Positions of the boundary particles in the frames of their solids, in the units of the pair loop.
+    /// Positions of the boundary particles in the frames of their solids, in the units of the pair loop; then the share of the load that
+    /// counts beside symmetry planes.
     pub(super) local: Vec<[f32; 4]>,
+}
+
+/// A set of boundary particles.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct SolidSet {
+    /// Numbers of its solid and of its copy.
+    solid: usize,
+    copy: usize,
+    /// Axes along which it is reflected.
+    axes: AxisSet,
+    /// Number of its particles.
+    count: usize,
+}
+
+/// The matrix `m` of a solid, whose image is reflected along `axes`.
+fn reflected_columns<const D: usize>(axes: AxisSet, m: &Matrix<D>) -> Matrix<D> {
+    Matrix::from_fn(|i, j| if axes >> i & 1 == 1 { -m[(i, j)] } else { m[(i, j)] })
 }
 
 impl SolidChunks {
@@ -49,26 +68,35 @@ impl SolidChunks {
         }
         let unit = system.model().single_precision_units::<D>().length;
         let mut local = vec![[0.0; 4]; system.boundary().len()];
-        for &solid in &moving {
-            let own = device_state::local_boundary(system, solid);
-            for (i, r) in system.solids()[solid].boundary.clone().zip(own.iter().cycle()) {
-                (0..D).for_each(|k| local[i][k] = (r[k] / unit) as f32);
+        let mut set = |i: usize, r: &Vector<D>| (0..D).for_each(|k| local[i][k] = (r[k] / unit) as f32);
+        let (mut sets, mut copied) = (Vec::new(), Vec::new());
+        for (number, solid) in system.solids().iter().enumerate() {
+            let (range, mirrored) = device_state::reflected_boundary(system, number);
+            let (copies, first) = (solid.copies(), solid.boundary_of_copy(0));
+            let count = first.len();
+            sets.extend((0..copies).map(|copy| SolidSet { solid: number, copy, axes: 0, count }));
+            copied.extend(first.filter(|_| copies > 1).map(|i| [i as u32, count as u32, copies as u32, 0]));
+            for part in mirrored.chunk_by(|a, b| a.0 == b.0) {
+                sets.push(SolidSet { solid: number, copy: 0, axes: part[0].0, count: part.len() });
+            }
+            let images = (range.end..).zip(&mirrored);
+            copied.extend(images.clone().map(|(i, (axes, own))| [i as u32, *own as u32, u32::from(*axes), 1]));
+            if moves(number) {
+                let own = device_state::local_boundary(system, number);
+                range.clone().zip(own.iter().cycle()).for_each(|(i, r)| set(i, r));
+                images.for_each(|(i, (_, original))| set(i, &own[original - range.start]));
             }
         }
-        let (mut copies, mut copied) = (Vec::new(), Vec::new());
-        for (number, solid) in system.solids().iter().enumerate() {
-            let (count, first) = (solid.copies(), solid.boundary_of_copy(0));
-            copies.extend((0..count).map(|copy| [number, copy]));
-            let length = first.len();
-            copied.extend(first.filter(|_| count > 1).map(|i| [i as u32, length as u32, count as u32, 0]));
+        if system.symmetry_planes().any() {
+            let own = (0..system.solids().len()).flat_map(|number| device_state::reflected_boundary(system, number).0);
+            own.for_each(|i| local[i][3] = device_state::share_of_load(system, i) as f32);
         }
-        Self { members, owners, moving: chunks_of_moving, copies, copied, local }
+        Self { members, owners, moving: chunks_of_moving, sets, copied, local }
     }
 
     /// Number of the set of each boundary particle.
-    pub(super) fn set_of_each<'a, const D: usize>(&'a self, system: &'a System<D>) -> impl Iterator<Item = u32> + 'a {
-        let length = |&[solid, copy]: &[usize; 2]| system.solids()[solid].boundary_of_copy(copy).len();
-        (0u32..).zip(&self.copies).flat_map(move |(set, of)| std::iter::repeat_n(set, length(of)))
+    pub(super) fn set_of_each(&self) -> impl Iterator<Item = u32> {
+        (0u32..).zip(&self.sets).flat_map(|(number, set)| std::iter::repeat_n(number, set.count))
     }
 
     /// The words of all sets of boundary particles.
@@ -79,14 +107,16 @@ impl SolidChunks {
         units: &Units,
     ) -> Vec<[u32; SOLID_WORDS]> {
         let (rate, speed) = (units.time, units.time / units.length);
-        let one = |&[i, copy]: &[usize; 2]| {
+        let planes = system.symmetry_planes();
+        let one = |&SolidSet { solid: i, copy, axes, .. }: &SolidSet| {
             let (solid, mut words) = (&system.solids()[i], [0; SOLID_WORDS]);
             let kinematics = &solid.kinematics;
             let away = device_state::periods_to_copy(system, i, copy);
-            let place = |r: &Vector<D>| layout.place_away(r, sides.periods(), away);
+            let place = |r: &Vector<D>| layout.place_away(&planes.mirrored(axes, r), sides.periods(), away);
             words[..8].copy_from_slice(&place(&kinematics.pose.position));
             words[3] = u32::from(device_state::suppresses_shifting(system, i));
             words[8..16].copy_from_slice(&place(&kinematics.centre));
+            words[11] = 2 * i as u32 + u32::from(!device_state::is_whole(system, i, axes));
             let mut matrix = |at: usize, m: &Matrix<D>, scale: f64| {
                 for column in 0..D {
                     for row in 0..D {
@@ -94,22 +124,22 @@ impl SolidChunks {
                     }
                 }
             };
-            matrix(16, &kinematics.pose.rotation, 1.0);
-            matrix(28, &kinematics.spin.0, rate);
-            matrix(40, &device_state::arm_acceleration(system, i), rate * rate);
+            matrix(16, &reflected_columns(axes, &kinematics.pose.rotation), 1.0);
+            matrix(28, &reflected_tensor(axes, &kinematics.spin.0), rate);
+            matrix(40, &reflected_tensor(axes, &device_state::arm_acceleration(system, i)), rate * rate);
             let mut vector = |at: usize, v: &Vector<D>, scale: f64| {
                 (0..D).for_each(|k| words[at + k] = ((v[k] * scale) as f32).to_bits());
             };
-            vector(52, &kinematics.velocity, speed);
-            vector(56, &solid.acceleration, speed * rate);
+            vector(52, &reflected(axes, kinematics.velocity), speed);
+            vector(56, &reflected(axes, solid.acceleration), speed * rate);
             words[55] = f32::from(u8::from(matches!(solid.spec.role, Role::Free(_)))).to_bits();
             words[59] = (system.wall_promptness(solid) as f32).to_bits();
             words
         };
-        self.copies.iter().map(one).collect()
+        self.sets.iter().map(one).collect()
     }
 
-    /// The loads on all solids from the sums of the chunks, added up in double precision and in order.
+    /// The loads on the computed parts of all solids from the sums of the chunks, added up in double precision and in order.
     pub(super) fn loads<const D: usize>(&self, words: &[u32], system: &System<D>, units: &Units) -> Vec<Load<D>> {
         let force_unit = system.particle_mass() * units.length / units.time.powi(2);
         let mut loads = vec![Load::zero(); system.solids().len()];

@@ -2,10 +2,12 @@
 
 use super::{Dimension, Simulation};
 use crate::{
-    coupling::{Accounting, EnergyBudget, LoadBreakdown},
+    coupling::{Accounting, Bodies, EnergyBudget, LoadBreakdown},
+    math::Vector,
     model::Viscosity,
     solid::Dim,
     sph::boundary::Slip,
+    system::{System, set_gravity_at},
 };
 
 /// Steps between two power breakdowns if only the energy budget is enabled: one additional force pass in sixteen.
@@ -56,4 +58,27 @@ impl<const D: usize> Simulation<D> {
     pub fn energy_budget(&self) -> Option<&EnergyBudget> {
         self.bodies.accounting.as_ref().and_then(Accounting::budget)
     }
+}
+
+/// Sets gravity to that of time `t` (s), if it changes.
+pub(super) fn change_gravity<const D: usize>(system: &mut System<D>, bodies: &mut Bodies<D>, t: f64) {
+    let Some(change) = change_gravity_of_bodies(system, bodies, t) else { return };
+    if let Some(accounting) = &mut bodies.accounting {
+        accounting.add_gravity_change(system, &change, || {
+            system.fluid().r.iter().map(|r| system.non_periodic(&change).dot(r)).sum()
+        });
+    }
+}
+
+/// Sets gravity to that of time `t` (s), without an entry in the energy budget. Returns the change, m/s², if it changes.
+pub(super) fn change_gravity_of_bodies<const D: usize>(
+    system: &mut System<D>,
+    bodies: &mut Bodies<D>,
+    t: f64,
+) -> Option<Vector<D>> {
+    let change = set_gravity_at(system, t)?;
+    if let Some(engine) = bodies.engine_mut() {
+        engine.set_gravity(&system.gravity());
+    }
+    Some(change)
 }

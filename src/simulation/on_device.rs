@@ -2,13 +2,13 @@
 
 use std::time::Instant;
 
-use super::{Simulation, change_gravity};
+use super::{Simulation, accounting::change_gravity_of_bodies};
 use crate::{
-    coupling::{AcousticAddedMass, Bodies, Hook, Interval, drift_half_step},
-    device::{Adapter, Device, DeviceSteps, SecondHalf, StepRequest, StepsEnd, WaterReads, refused},
+    coupling::{Accounting, AcousticAddedMass, Bodies, DevicePass, Hook, Interval, drift_half_step},
+    device::{Adapter, Device, DeviceSteps, MeasuredPowers, SecondHalf, StepRequest, StepsEnd, WaterReads, refused},
     error::{ErrorCode, Result},
     interaction::{PairSums, StepLimits},
-    math::{Bounds, Pose},
+    math::{Bounds, Pose, Vector},
     model::TimeScheme,
     solid::{Role, Solid},
     system::{
@@ -76,6 +76,14 @@ const STATE_EVERY: u64 = 500;
 /// and the remedy.
 pub(super) fn place<const D: usize>(mut sim: Simulation<D>, name: &str) -> Result<Simulation<D>> {
     refuse_unsupported(&sim)?;
+    let own = own_device(&sim, name)?;
+    device_state::leave_to_device(&mut sim.system);
+    sim.device = Some(own);
+    Ok(sim)
+}
+
+/// The water of `sim` on the device `name`.
+fn own_device<const D: usize>(sim: &Simulation<D>, name: &str) -> Result<OnDevice<D>> {
     let light = sim.bodies.added_masses().iter().flat_map(AcousticAddedMass::outer_particles);
     let mut watched: Vec<u32> = light.chain(device_state::thin_particles(&sim.system)).collect();
     watched.sort_unstable();
@@ -88,13 +96,13 @@ pub(super) fn place<const D: usize>(mut sim: Simulation<D>, name: &str) -> Resul
     let pushes = has_thin_faces(&sim.system);
     let near = moored || pushes || !sim.bodies.added_masses().is_empty() || sim.system.solids().iter().any(absorbs);
     let offset_rows = if device_state::has_hollows(&sim.system) { D } else { 0 };
-    let reads = WaterReads { near, watched, offset_rows };
+    let powers = sim.bodies.accounting.as_ref().is_some_and(Accounting::reads_water);
+    let reads = WaterReads { near, watched, offset_rows, powers };
     let device = Device::new(name, &sim.system, &sim.stepper, sim.clock.time, reads)?;
     let all_fixed = sim.system.solids().iter().all(|solid| matches!(solid.spec.role, Role::Fixed));
     let runs_alone = !moored && !pushes && all_fixed && !device_state::gravity_changes(&sim.system);
-    device_state::leave_to_device(&mut sim.system);
     let (host_is_current, loads_are_current) = (true, true);
-    let own = OnDevice {
+    Ok(OnDevice {
         device,
         host_is_current,
         loads_are_current,
@@ -104,9 +112,7 @@ pub(super) fn place<const D: usize>(mut sim: Simulation<D>, name: &str) -> Resul
         poses_of_films: None,
         next_state: 0,
         host_changed: false,
-    };
-    sim.device = Some(own);
-    Ok(sim)
+    })
 }
 
 /// Refuses a simulation with something that no device computes yet.
@@ -116,7 +122,6 @@ fn refuse_unsupported<const D: usize>(sim: &Simulation<D>) -> Result<()> {
     let other_count = sim.device.as_ref().is_some_and(|own| own.device.particle_count() != count);
     let cases = [
         (sim.custom_terms, "pair terms of your own"),
-        (bodies.accounting.is_some(), "load breakdowns and energy budgets"),
         (bodies.has_external_bodies(), "bodies that an external program moves"),
         (bodies.constraints().due_removals(f64::MAX).next().is_some(), "solids that are removed during the run"),
         (other_count, "solids that are added or removed during the run"),
@@ -178,6 +183,7 @@ pub(super) fn steps<const D: usize>(
 ) -> Result<()> {
     let start = Instant::now();
     refuse_unsupported(sim)?;
+    measure_powers(sim)?;
     if sim.device.as_ref().is_some_and(|own| own.host_changed) {
         load(sim)?;
     }
@@ -187,8 +193,42 @@ pub(super) fn steps<const D: usize>(
     outcome
 }
 
+/// Lets the device measure powers, if an accounting that reads the water has begun since the water went to the device.
+fn measure_powers<const D: usize>(sim: &mut Simulation<D>) -> Result<()> {
+    let reads_water = sim.bodies.accounting.as_ref().is_some_and(Accounting::reads_water);
+    let without = sim.device.as_ref().filter(|own| reads_water && !own.device.measures_powers());
+    if let Some(number) = without.map(|own| own.adapter().number) {
+        fetch(sim)?;
+        sim.device = Some(own_device(sim, &number.to_string())?);
+    }
+    Ok(())
+}
+
+/// The powers that the next step of `bodies` measures.
+fn due_powers<const D: usize>(bodies: &Bodies<D>) -> MeasuredPowers {
+    match &bodies.accounting {
+        Some(accounting) if accounting.needs_breakdown() => MeasuredPowers::Breakdown,
+        Some(accounting) if accounting.has_energy_budget() => MeasuredPowers::Total,
+        _ => MeasuredPowers::None,
+    }
+}
+
+/// The sum of the places (m) of the water, if the energy budget reads it when gravity changes; else zero.
+fn place_sum<const D: usize>(device: &Device<D>, system: &System<D>, bodies: &Bodies<D>) -> Result<Vector<D>> {
+    let is_read = bodies.accounting.as_ref().is_some_and(Accounting::has_energy_budget);
+    if is_read && device_state::gravity_changes(system) { device.place_sum() } else { Ok(Vector::zeros()) }
+}
+
+/// Sets gravity to that of time `t` (s), if it changes; the places of the water add up to `places` (m).
+fn change_gravity<const D: usize>(system: &mut System<D>, bodies: &mut Bodies<D>, t: f64, places: &Vector<D>) {
+    let Some(change) = change_gravity_of_bodies(system, bodies, t) else { return };
+    if let Some(accounting) = &mut bodies.accounting {
+        accounting.add_gravity_change(system, &change, || system.non_periodic(&change).dot(places));
+    }
+}
+
 /// Advances by up to `most` steps until time `pause` (s) is reached, not past `end` (s); the state stays on the device. Makes
-/// only one step if the host has a part in it, or there is a `hook`.
+/// only one step if the host has a part in it, or there is a `hook` or an accounting.
 fn advance<const D: usize>(
     sim: &mut Simulation<D>,
     (most, pause): (u64, f64),
@@ -198,7 +238,7 @@ fn advance<const D: usize>(
     let runs_alone = sim.device.as_ref().is_some_and(|own| own.runs_alone);
     let factor = sim.rollback.step_factor(sim.clock.time);
     let request = StepRequest { longest: sim.host_step_limit(), factor, pause, end };
-    let done = if runs_alone && hook.is_none() {
+    let done = if runs_alone && hook.is_none() && sim.bodies.accounting.is_none() {
         let Some(own) = &mut sim.device else { return Ok(()) };
         (own.host_is_current, own.loads_are_current) = (false, false);
         own.device.run(most, &request)?
@@ -214,7 +254,7 @@ fn advance<const D: usize>(
     take_steps(sim, &done)
 }
 
-/// One step of a scene in which the host has a part: solids move, thin parts push water, or gravity changes.
+/// One step between whose halves the host acts: solids move, thin parts push water, gravity changes, or powers are measured.
 fn body_step<const D: usize>(
     sim: &mut Simulation<D>,
     request: &StepRequest,
@@ -224,7 +264,9 @@ fn body_step<const D: usize>(
     (own.host_is_current, own.loads_are_current) = (false, true);
     let start: Vec<_> = system.solids.iter().map(|solid| solid.kinematics).collect();
     let gauges = device_state::with_originals(system, system.absorption_ranges(clock.time));
-    let (over, SecondHalf { done, loads, near }) = loop {
+    let measured = due_powers(bodies);
+    let places = place_sum(&own.device, system, bodies)?;
+    let (over, SecondHalf { done, loads, powers, near }) = loop {
         let first = match own.device.first_half(request, &gauges)? {
             Ok(first) => first,
             Err(done) => return Ok(Some(done)),
@@ -234,7 +276,7 @@ fn body_step<const D: usize>(
             device_state::take_near(system, first.near);
             system.update_absorption(over.t);
         }
-        change_gravity(system, bodies, over.t + 0.5 * over.dt);
+        change_gravity(system, bodies, over.t + 0.5 * over.dt, &places);
         if system.model().scheme == TimeScheme::Symplectic {
             drift_half_step(system, over);
             own.device.write_gravity(system);
@@ -244,23 +286,31 @@ fn body_step<const D: usize>(
         let mut ranges = bodies.water_ranges(system, over);
         ranges.extend(thin_faces::ranges_beside(system, &own.thin_boxes));
         let ranges = device_state::with_originals(system, ranges);
-        if let Some(second) = own.device.second_half(system, request.end, &ranges)? {
+        if let Some(second) = own.device.second_half(system, request.end, &ranges, measured)? {
             break (over, second);
         }
         system.solids.iter_mut().zip(&start).for_each(|(solid, start)| solid.kinematics = *start);
-        change_gravity(system, bodies, over.t);
+        change_gravity(system, bodies, over.t, &places);
         own.device.move_solids(system);
     };
-    device_state::set_loads(system, loads);
+    let films = device_state::set_loads(system, loads);
     if let StepsEnd::Fault(_) | StepsEnd::NoStep = done.end {
         return Ok(Some(done));
+    }
+    if let Some(accounting) = &mut bodies.accounting {
+        let mut pass = powers.unwrap_or_else(DevicePass::unmeasured);
+        let pressure = pass.pressure.iter_mut().chain(&mut pass.plain);
+        pressure.for_each(|(_, loads)| device_state::complete_loads(system, &films, loads));
+        accounting.add_device_pass(system, over.dt, pass);
     }
     let pushes = has_thin_faces(system);
     if bodies.read_water() || pushes {
         device_state::take_near(system, near);
         if pushes {
             thin_faces::find_known_water(system);
-            if let Some((pushed, _)) = thin_faces::repel(system, over.dt, done.weight) {
+            if let Some((pushed, impulses)) = thin_faces::repel(system, over.dt, done.weight) {
+                let accounting = bodies.accounting.iter_mut();
+                accounting.for_each(|accounting| accounting.add_repelled(system, pushed.energy, &impulses));
                 own.device.change_velocities(&device_state::velocity_changes(system, &[pushed]))?;
             }
         }
@@ -274,7 +324,8 @@ fn body_step<const D: usize>(
         let sum = own.device.velocity_sum()?;
         device_state::adapt_current(system, &sum, over.dt);
     }
-    change_gravity(system, bodies, done.time);
+    let places = place_sum(&own.device, system, bodies)?;
+    change_gravity(system, bodies, done.time, &places);
     bodies.update_masses(system, done.time, over.dt)?;
     own.device.write_gravity(system);
     own.device.move_solids(system);

@@ -37,7 +37,7 @@ pub(crate) struct Boundary<const D: usize> {
     /// Depths below the face, m; `None` unless the density relaxes to the water's pressure or water sticks to the face.
     pub(super) depths: Option<Vec<f64>>,
     /// Outward normals in the frames of their solids; `None` unless water sticks to the face.
-    normals: Option<Vec<Vector<D>>>,
+    pub(super) normals: Option<Vec<Vector<D>>>,
     /// Target densities of the particles that this rank advances and that had water near them in the last pass, in ascending
     /// order; `None` unless walls relax.
     target_density: Option<Vec<TargetDensity>>,

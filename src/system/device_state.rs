@@ -1,17 +1,18 @@
 //! Data that a device reads from a system, and data that the system takes back.
 
-use std::collections::BTreeMap;
+use std::{collections::BTreeMap, ops::Range};
 
 use super::{
-    Fluid, Images, ParticleLimits, System,
+    AxisSet, Fluid, Images, ParticleLimits, System,
     device_films::{self, BoundaryWater},
     driving,
     impulses::MomentumTransfer,
+    symmetry::reflected_tensor,
     thin_layers::{self, WaterAround},
 };
 use crate::{
     math::{Bounds, Matrix, Vector},
-    model::{PressureGradient, Slip},
+    model::PressureGradient,
     solid::{Load, Role, Solid},
 };
 
@@ -35,14 +36,16 @@ pub(crate) fn unsupported_on_device<const D: usize>(system: &System<D>) -> Optio
     let (model, region) = (&system.model, &system.fluid_domain);
     let [least, most] = region.limits.density;
     let cases = [
-        (system.symmetry_planes().any(), "symmetry planes"),
+        (
+            system.symmetry_planes().any() && system.periodic().iter().any(Option::is_some),
+            "symmetry planes beside periodic sides",
+        ),
         (!region.open_boundaries.is_empty(), "open boundaries ([[inflow]], [[outflow]])"),
         (
             gravity_changes(system) && model.gradient == PressureGradient::NearSurface,
             "gravity that changes with time beside gradients that are corrected near the surface",
         ),
         (!(0.5..1.0).contains(&least) || !(1.0..=1.5).contains(&most), "density limits beyond 0.5 to 1.5"),
-        (model.slip == Slip::None, "slip = \"none\""),
         (
             system.equation_of_state.coefficients().is_none(),
             "an exponent model.gamma that is not a whole number from 1 to 7",
@@ -72,9 +75,34 @@ pub(crate) fn image_width<const D: usize>(system: &System<D>) -> f64 {
     system.fluid.images.width
 }
 
-/// Indices of the originals of all images of the water, in the order of the images.
-pub(crate) fn originals<const D: usize>(system: &System<D>) -> impl Iterator<Item = usize> {
-    system.fluid.images.originals.iter().map(|original| *original as usize)
+/// Indices of the originals of all images of the water, in the order of the images, and the axes along which the images are
+/// reflected.
+pub(crate) fn originals<const D: usize>(system: &System<D>) -> impl Iterator<Item = (usize, AxisSet)> {
+    let Images { originals, reflections, .. } = &system.fluid.images;
+    let axes = reflections.iter().copied().chain(std::iter::repeat(0));
+    originals.iter().map(|original| *original as usize).zip(axes)
+}
+
+/// The boundary particles of solid number `solid` on the computed side of symmetry planes, or of all its copies; and the axes along
+/// which the others, which follow, are reflected, each with its original.
+pub(crate) fn reflected_boundary<const D: usize>(
+    system: &System<D>,
+    solid: usize,
+) -> (Range<usize>, Vec<(AxisSet, usize)>) {
+    let own = &system.solids[solid];
+    let mirrored = system.boundary.each_mirrored((solid, own));
+    let mirrored: Vec<_> = mirrored.map(|(_, original, axes)| (axes, original)).collect();
+    (own.boundary.start..own.boundary.end - mirrored.len(), mirrored)
+}
+
+/// The share (–) of the load on boundary particle `i` that counts: half on a symmetry plane that cuts its solid.
+pub(crate) fn share_of_load<const D: usize>(system: &System<D>, i: usize) -> f64 {
+    system.computed_share(&system.solids[system.owner(i)], &system.boundary.particles.r[i])
+}
+
+/// Whether a reflection along `axes` leaves solid number `solid` the same.
+pub(crate) fn is_whole<const D: usize>(system: &System<D>, solid: usize, axes: AxisSet) -> bool {
+    axes & !system.solids[solid].division.cut == 0
 }
 
 /// How many periods copy number `copy` of the boundary particles of solid number `solid` is away from the solid, along each axis.
@@ -107,8 +135,10 @@ pub(crate) fn fluid_stress<const D: usize>(system: &System<D>) -> Option<&[Matri
 pub(crate) fn set_fluid_stress<const D: usize>(system: &mut System<D>, stress: impl Fn(usize) -> Matrix<D>) {
     let water = system.own_count();
     let Fluid { stress: all, images, .. } = &mut system.fluid;
-    let which = (0..water).chain(images.originals.iter().map(|original| *original as usize));
-    all.iter_mut().flatten().zip(which).for_each(|(own, i)| *own = stress(i));
+    let axes = images.reflections.iter().copied().chain(std::iter::repeat(0));
+    let of_images = images.originals.iter().map(|original| *original as usize).zip(axes);
+    let which = (0..water).map(|i| (i, 0)).chain(of_images);
+    all.iter_mut().flatten().zip(which).for_each(|(own, (i, axes))| *own = reflected_tensor(axes, &stress(i)));
 }
 
 /// The valid range of a particle.
@@ -124,6 +154,11 @@ pub(crate) fn wall_constants<const D: usize>(system: &System<D>) -> Vec<[f64; 2]
         Some(depths) => depths.iter().map(|&depth| [depth, coverage.full_weight(depth)]).collect(),
         None => vec![[0.0, 1.0]; system.boundary.particles.len()],
     }
+}
+
+/// Outward normals of the faces before the boundary particles, in the frames of their solids, if water sticks to faces.
+pub(crate) fn wall_normals<const D: usize>(system: &System<D>) -> Option<&[Vector<D>]> {
+    system.boundary.normals.as_deref()
 }
 
 /// Counts the force passes that a device has made.
@@ -182,22 +217,31 @@ pub(crate) fn place_solids<const D: usize>(system: &mut System<D>) {
 }
 
 /// Sets the effects of the water on the solids in the force pass: loads, with those of films and corrected for thin parts, and wet
-/// shares.
-pub(crate) fn set_loads<const D: usize>(system: &mut System<D>, of: WaterLoads<D>) {
-    let WaterLoads { loads, weights, offsets, at_films } = of;
+/// shares. Returns the loads of films.
+pub(crate) fn set_loads<const D: usize>(system: &mut System<D>, of: WaterLoads<D>) -> Vec<Load<D>> {
+    let WaterLoads { mut loads, weights, offsets, at_films } = of;
     let place = |i: u32| weights.binary_search_by_key(&i, |(watched, _)| *watched).ok();
     let around = |place: usize| {
         let weight = weights[place].1;
         WaterAround { weight, offset: offsets.get(place).map_or_else(Vector::zeros, |sum| -sum / weight) }
     };
     thin_layers::update_water(system, |_, i| place(i).map(around));
-    let beside = [device_films::loads(system, &at_films), thin_layers::loads(system)];
+    let films = device_films::loads(system, &at_films);
+    complete_loads(system, &films, &mut loads);
     system.solids.iter_mut().zip(loads).for_each(|(solid, load)| solid.load = load);
-    for loads in beside {
-        system.solids.iter_mut().zip(loads).for_each(|(solid, load)| solid.load += load);
-    }
     if let Some(wetness) = &mut system.boundary.wetness {
         *wetness = weights;
+    }
+    films
+}
+
+/// Completes the `loads` on the solids: adds those of `films`, those of the water on thin parts, as [`set_loads`] knows it, and those
+/// beyond symmetry planes.
+pub(crate) fn complete_loads<const D: usize>(system: &System<D>, films: &[Load<D>], loads: &mut [Load<D>]) {
+    loads.iter_mut().zip(films).for_each(|(load, film)| *load += *film);
+    loads.iter_mut().zip(thin_layers::loads(system)).for_each(|(load, thin)| *load += thin);
+    for (load, solid) in loads.iter_mut().zip(&system.solids).filter(|(_, solid)| solid.division.cut != 0) {
+        *load = system.load_on_whole(solid, *load);
     }
 }
 
@@ -252,6 +296,12 @@ pub(crate) fn with_originals<const D: usize>(system: &System<D>, mut ranges: Vec
             range
         };
         ranges = ranges.into_iter().flat_map(|range| moved(&whole(range)).collect::<Vec<_>>()).collect();
+    }
+    let planes = system.symmetry_planes();
+    for (axis, _) in planes.each() {
+        let reflected =
+            |range: &Bounds<D>| Bounds::around(&[range.min, range.max].map(|x| planes.mirrored(1 << axis, &x)));
+        ranges = ranges.into_iter().flat_map(|range| [range, reflected(&range)]).collect();
     }
     ranges
 }

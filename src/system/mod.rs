@@ -51,12 +51,12 @@ pub use setup::Setup;
 pub use sponge_layer::SpongeLayer;
 pub use step_check::{Escape, ExitPath, ParticleLimits, RemovedParticle};
 pub(crate) use step_check::{LimitViolation, StepCheck};
-pub(crate) use symmetry::{AxisSet, reflected};
+pub(crate) use symmetry::{AxisSet, reflected, reflected_tensor};
 pub(crate) use thin_faces::repel as repel_from_thin_faces;
 
 use own_water::StateAtStart;
 use slip_rates::SlipRates;
-use symmetry::{reflected_auxiliary, reflected_sums, reflected_tensor};
+use symmetry::{reflected_auxiliary, reflected_sums};
 
 pub use crate::interaction::StepLimits;
 

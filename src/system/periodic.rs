@@ -261,7 +261,11 @@ impl<const D: usize> System<D> {
         let copies = images.make(&particles.r[..real]);
         images.originals = copies.iter().map(|image| image.original).collect();
         let order: Vec<u32> = (0..real as u32).chain(images.originals.iter().copied()).collect();
+        if images.planes.any() {
+            images.reflections = copies.iter().map(|image| image.axes).collect();
+        }
         self.fluid.permute(&order);
+        self.fluid.reflect_images(real);
         for (r, image) in self.fluid.particles.r[real..].iter_mut().zip(&copies) {
             *r += image.away;
         }
@@ -282,12 +286,16 @@ impl<const D: usize> System<D> {
         v.truncate(real);
         rho.truncate(real);
         id.truncate(real);
+        if images.planes.any() {
+            images.reflections = copies.iter().map(|image| image.axes).collect();
+        }
         for (image, &original) in copies.iter().zip(&images.originals) {
             let i = original as usize;
+            let place = images.planes.mirrored(image.axes, &r[i]) + image.away;
             these.push(r.len() as u32);
-            places.push(r[i] + image.away);
-            r.push(r[i] + image.away);
-            v.push(v[i]);
+            places.push(place);
+            r.push(place);
+            v.push(reflected(image.axes, v[i]));
             rho.push(rho[i]);
             id.push(id[i]);
         }

@@ -192,7 +192,7 @@ fn changes_sign(axes: AxisSet, i: usize, j: usize) -> bool {
 }
 
 /// The tensor `m`, reflected along `axes`.
-pub(super) fn reflected_tensor<const D: usize>(axes: AxisSet, m: &Matrix<D>) -> Matrix<D> {
+pub(crate) fn reflected_tensor<const D: usize>(axes: AxisSet, m: &Matrix<D>) -> Matrix<D> {
     Matrix::from_fn(|i, j| if changes_sign(axes, i, j) { -m[(i, j)] } else { m[(i, j)] })
 }
 

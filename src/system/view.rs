@@ -267,11 +267,12 @@ impl<const D: usize> System<D> {
 
     /// Force (N; N/m in 2-D) of the computed water and of the computed parts of the solids on the symmetry plane normal to
     /// axis number `axis`, positive outwards, at the last force pass: the force that the other side would receive. 0 without a
-    /// plane.
+    /// plane, and in a restored or fetched state until the next pass.
     ///
     /// Along its normal, gravity, this force and the supports of the solids change the momentum of the computed side.
     pub fn symmetry_plane_force(&self, axis: usize) -> f64 {
-        let Some(plane) = self.symmetry_planes().0.get(axis).copied().flatten() else { return 0.0 };
+        let plane = self.symmetry_planes().0.get(axis).copied().flatten();
+        let Some(plane) = plane.filter(|_| self.rates.current) else { return 0.0 };
         let (mass, g, rates) = (self.particle_mass(), self.properties.gravity[axis], self.fluid_rates());
         let water: f64 = (0..self.particle_count()).map(|i| rates.of(i).acceleration[axis] - g).sum();
         let mut solids = 0.0;

@@ -14,12 +14,12 @@ use super::{
     dam, dam_with, distances, run,
 };
 
-fn law(text: &str) -> TimeFunction {
+pub fn law(text: &str) -> TimeFunction {
     TimeFunction::from(Formula::parse(text).unwrap())
 }
 
 /// The same setup in a tank that is shaken along x.
-fn shaken(setup: Setup<2>) -> Setup<2> {
+pub fn shaken(setup: Setup<2>) -> Setup<2> {
     setup.gravity_law([law("4*sin(20*t)"), law("-9.81 + 3*sin(15*t)")])
 }
 

@@ -112,15 +112,23 @@ fn water_in_space_between_periodic_sides_agrees_with_the_reference() {
 
 #[test]
 fn a_channel_with_a_driven_lid_agrees_with_the_reference() {
+    [Slip::Partial, Slip::None].into_iter().for_each(assert_channel_agrees);
+}
+
+fn assert_channel_agrees(slip: Slip) {
     // Water between a bed and a lid that drags it along; both reach beyond the sides.
     let slab = || Shape::Box { size: [5.0, 0.2].into() };
     let law = TimeFunction::from(Formula::parse("t").unwrap());
     let lid = SolidSpec::driven("lid", slab(), PrescribedMotion::slide([1.0, 0.0].into(), law)).at([0.5, 0.6]);
-    let mut model = model().slip(Slip::Partial);
+    let mut model = model().slip(slip);
+    // Without slip images limit the step of the reference, too: at the ends of the boundary they have too little water around.
+    model.dt_max = 1e-3;
     model.gravity = vec![0.5, -9.81];
     let setup = Setup::new(model).solid(SolidSpec::fixed("bed", slab()).at([0.5, -0.1])).solid(lid);
     let setup = setup.fill_box([0.0, 0.0], [1.0, 0.5]).unwrap().periodic(0, 0.0, 1.0);
-    assert_rates_agree("channel", &setup, &run(&setup, 0.1));
+    if slip != Slip::None {
+        assert_rates_agree("channel", &setup, &run(&setup, 0.1));
+    }
     let [on_device, reference] = beside(&setup, 0.02, 200);
     let [r, v] = distances(&on_device, &reference);
     println!("channel: positions {r:.1e} dp, velocities {v:.1e} c0");

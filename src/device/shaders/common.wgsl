@@ -43,7 +43,7 @@ struct Control {
 };
 struct Solid {
     origin: Place,           // of its frame; hi.w: 1 if water beside it is not shifted
-    centre: Place,           // about which it turns and torques are taken
+    centre: Place,           // about which it turns and torques are taken; hi.w: number of the solid, and of its images beyond planes
     rotation: mat3x3<f32>,
     spin: mat3x3<f32>,       // velocity of an arm
     turning: mat3x3<f32>,    // acceleration of an arm

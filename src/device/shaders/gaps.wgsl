@@ -17,7 +17,7 @@ fn slope(r2: f32) -> f32 {
 }
 
 fn faces(a: u32, b: u32) -> bool {
-    return a != b && (solids[a].velocity.w + solids[b].velocity.w) > 0.5f;
+    return {{APART}} && (solids[a].velocity.w + solids[b].velocity.w) > 0.5f;
 }
 
 fn gate(x: f32) -> f32 { return clamp(x, 0.0f, 1.0f); }

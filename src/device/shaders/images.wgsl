@@ -9,7 +9,8 @@
 @group(0) @binding(7) var<storage, read> order: array<u32>;
 @group(0) @binding(8) var<storage, read> slot: array<u32>;
 @group(0) @binding(9) var<storage, read_write> rows: array<f32>;
-// First copy of a boundary particle, particles of a copy, copies.
+// First copy of a boundary particle, particles of a copy, copies; or its mirror image, itself, the axes along which the image is
+// reflected, and 1.
 @group(0) @binding(10) var<storage, read> copied: array<vec4<u32>>;
 @group(0) @binding(11) var<storage, read_write> flow: array<vec4<f32>>;
 
@@ -25,8 +26,9 @@ fn place_images(@builtin(global_invocation_id) id: vec3<u32>) {
     let k = image(id);
     if (k == NONE) { return; }
     let own = slot[order[k] / WAYS];
-    positions[k] = vec4<i32>(middle(away(places[own], order[k] % WAYS)), positions[own].w);
-    velocities[k] = velocities[own];
+    let way = order[k] % WAYS;
+    positions[k] = vec4<i32>(middle(away(places[own], way)), positions[own].w);
+    velocities[k] = vec4<f32>(reflected(velocities[own].xyz, way), velocities[own].w);
 }
 
 // Gives each image the additional inputs of its original.
@@ -35,15 +37,26 @@ fn copy_rows(@builtin(global_invocation_id) id: vec3<u32>) {
     let k = image(id);
     if (k == NONE) { return; }
     let own = slot[order[k] / WAYS];
-    for (var row = 0u; row < ROWS; row++) { rows[row * params.slots + k] = rows[row * params.slots + own]; }
+    let way = order[k] % WAYS;
+    for (var row = 0u; row < ROWS; row++) {
+        rows[row * params.slots + k] = row_sign(row, way) * rows[row * params.slots + own];
+    }
 }
 
-// Gives the copies of each boundary particle the density of the copy between the sides.
+// Gives the copies of each boundary particle the density of the copy between the sides, and its mirror image its own.
 @compute @workgroup_size(128)
 fn update_copies(@builtin(global_invocation_id) id: vec3<u32>) {
     let i = index(id);
     if (control.halt != 0u || i >= arrayLength(&copied)) { return; }
     let own = copied[i];
+    if (own.w != 0u) {
+        let j = slot[params.water + own.x];
+        let k = slot[params.water + own.y];
+        positions[j].w = positions[k].w;
+        velocities[j].w = velocities[k].w;
+        motion[j].w = motion[k].w;
+{{MIRRORED_SLIP}}        return;
+    }
     for (var copy = 0u; copy < own.z; copy++) {
         let k = slot[params.water + own.x + copy * own.y];
         if (!is_between_sides(places[k])) { continue; }
@@ -52,7 +65,7 @@ fn update_copies(@builtin(global_invocation_id) id: vec3<u32>) {
             positions[j].w = positions[k].w;
             velocities[j].w = velocities[k].w;
             motion[j].w = motion[k].w;
-        }
+{{SLIP}}        }
         return;
     }
 }

@@ -1,5 +1,6 @@
 // Periodic sides. A way is a number of three digits to the base 3, the periods along each axis: 0 none, 1 one, 2 minus one.
 const WAYS: u32 = 27u;
+const REFLECTS: bool = false;
 fn digits(way: u32) -> vec3<u32> { return vec3<u32>(way % 3u, way / 3u % 3u, way / 9u); }
 fn below(a: vec3<i32>, a_lo: vec3<u32>, b: Place) -> vec3<bool> {
     return (a < b.hi.xyz) | ((a == b.hi.xyz) & (a_lo < b.lo.xyz));
@@ -30,3 +31,5 @@ fn has_image(place: Place, way: u32) -> bool {
     let high = AXES & (place.hi.xyz >= TO.hi.xyz - WIDTH);
     return way != 0u && all((low | (d != vec3<u32>(1u))) & (high | (d != vec3<u32>(2u))));
 }
+// A vector of an image by a way: that of its original.
+fn reflected(v: vec3<f32>, way: u32) -> vec3<f32> { return v; }

@@ -60,6 +60,12 @@ fn tally(@builtin(global_invocation_id) id: vec3<u32>) {
         if (way != 0u) {
             places[i] = away(places[i], way);
             positions[i] = vec4<i32>(middle(places[i]), positions[i].w);
+            if (REFLECTS) {
+                motion[i] = vec4<f32>(reflected(motion[i].xyz, way), motion[i].w);
+                velocities[i] = vec4<f32>(reflected(velocities[i].xyz, way), velocities[i].w);
+                if (VERLET) { before[i] = vec4<f32>(reflected(before[i].xyz, way), before[i].w); }
+                for (var row = 0u; row < KEPT_ROWS; row++) { rows[row * params.slots + i] *= row_sign(row, way); }
+            }
         }
         for (var other = 1u; other < WAYS; other++) {
             if (has_image(places[i], other)) { atomicAdd(&count[image_cell(i, other)], 1u); }

@@ -12,5 +12,7 @@ pub(crate) use relaxed_adami::RELAXATION_TIME;
 pub use relaxed_adami::{Cover, SupportCoverage, WallExtrapolation, WallTarget, promptness, relaxation};
 pub use repulsion::Repulsion;
 pub use slip::Slip;
+#[cfg(feature = "gpu")]
+pub(crate) use slip::no_slip_difference;
 #[doc(hidden)]
 pub use slip::no_slip_velocity;

@@ -12,7 +12,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::WallExtrapolation;
-use crate::math::Vector;
+use crate::{math::Vector, sph::Num};
 
 /// Slip along solids. Scene key `model.slip`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -46,15 +46,30 @@ pub fn no_slip_velocity<const D: usize>(
     normal: &Vector<D>,
     depth: f64,
 ) -> Vector<D> {
-    if fit.weight_sum < 1e-9 {
-        return v;
-    }
+    v - Vector::from(no_slip_difference(fit, &v.into(), &(*normal).into(), depth))
+}
+
+/// The velocity of the solid less the velocity with which a boundary particle acts on the water without slip: see
+/// [`no_slip_velocity`].
+pub(crate) fn no_slip_difference<N: Num, const D: usize>(
+    fit: &WallExtrapolation<N, D>,
+    v: &[N; D],
+    normal: &[N; D],
+    depth: N,
+) -> [N; D] {
+    let weight = fit.weight_sum;
+    let zero = weight.constant(0.0);
     // r_wf points from the water to the wall.
-    let height = -normal.dot(&Vector::from(fit.offset_sum)) / fit.weight_sum - depth;
-    if height <= 0.0 {
-        return v;
-    }
-    let past = Vector::from(fit.velocity_sum) / fit.weight_sum - v;
-    let along = past - normal * normal.dot(&past);
-    v - along * (depth / height).min(MAX_RATIO)
+    let height = -dot(normal, &fit.offset_sum) / weight - depth;
+    let past: [N; D] = std::array::from_fn(|k| fit.velocity_sum[k] / weight - v[k]);
+    let across = dot(normal, &past);
+    let ratio = Num::min(depth / height, weight.constant(MAX_RATIO));
+    std::array::from_fn(|k| {
+        let before_face = zero.select_below(height, (past[k] - normal[k] * across) * ratio, zero);
+        weight.select_below(weight.constant(1e-9), zero, before_face)
+    })
+}
+
+fn dot<N: Num, const D: usize>(a: &[N; D], b: &[N; D]) -> N {
+    (1..D).fold(a[0] * b[0], |sum, k| sum + a[k] * b[k])
 }
