@@ -15,7 +15,7 @@ use crate::{
         time_series::TimeSeries,
     },
     plan::{Align, CheckPlan, Reference, ResponseReference, Score, StatisticKind, StatisticPlan},
-    probe::ProbeConfig,
+    probe::{ProbeConfig, ProbePlan},
     scene::{
         context::{Context, Defaults, FileNote, quoted_list, set_keys},
         files, finite_law,
@@ -338,8 +338,33 @@ impl CheckConfig {
         ctx.add_note(FileNote { is_warning: false, topic: "event_after_end", what, remedy });
     }
 
+    /// Notes that the time range of a check lies outside the run, or between two readings.
+    fn note_time_range(&self, ctx: &Context, probes: &[ProbePlan]) {
+        let mut ranges = vec![(&self.series, self.from, self.until)];
+        ranges.extend(self.response.iter().map(|of| (&of.to, of.from.or(self.from), of.until.or(self.until))));
+        for (series, from, until) in ranges {
+            let Some((probe, _)) = ProbePlan::of_series(probes, series) else { continue };
+            if self.reference.is_some() || from.or(until).is_none() || matches!(self.align, Some(Align::Start(_))) {
+                continue;
+            }
+            let (first, last) = (from.unwrap_or(0.0), until.unwrap_or(ctx.until));
+            let readings = 1.0 + (last.min(ctx.until) / probe.every).floor() - (first.max(0.0) / probe.every).ceil();
+            // A time range after the end is another finding.
+            if readings >= 2.0 || first >= ctx.until {
+                continue;
+            }
+            let what = format!(
+                "the check of \"{}\" has less than two readings of \"{series}\" from {first} to {last} s: the run, from 0 to {} s, \
+                 reads it every {} s",
+                self.series, ctx.until, probe.every
+            );
+            let remedy = "give  from  and  until  within the run, with two readings between them".into();
+            ctx.add_note(FileNote { is_warning: false, topic: "event_after_end", what, remedy });
+        }
+    }
+
     /// Returns the check of the run. Opens its table and verifies that it has the columns.
-    pub(crate) fn build(&self, ctx: &Context, key: &str) -> Result<CheckPlan> {
+    pub(crate) fn build(&self, ctx: &Context, key: &str, probes: &[ProbePlan]) -> Result<CheckPlan> {
         let place = |e: Error| ctx.with_location(files::with_line_in_message(e), &format!("{key}.reference"));
         let reference = match (&self.formula, &self.response) {
             (Some(text), _) => Reference::Formula(text.clone()),
@@ -367,7 +392,7 @@ impl CheckConfig {
                 Reference::Table { file: Path::new(&file).to_path_buf(), time, column, scaling }
             }
         };
-        Ok(CheckPlan {
+        let mut plan = CheckPlan {
             series: self.series.clone(),
             reference,
             from: self.from,
@@ -377,7 +402,14 @@ impl CheckConfig {
             align: self.align,
             paper: self.paper,
             bound: self.bound,
-        })
+            means: Vec::new(),
+        };
+        let are_means = |series: &&String| {
+            ProbePlan::of_series(probes, series).is_some_and(|(probe, column)| probe.is_mean(column))
+        };
+        plan.means = plan.series_names().filter(are_means).cloned().collect();
+        self.note_time_range(ctx, probes);
+        Ok(plan)
     }
 }
 
@@ -533,4 +565,16 @@ pub(crate) fn default_names(statistics: &[StatisticConfig]) -> Vec<String> {
         }
     };
     statistics.iter().map(name).collect()
+}
+
+/// Refuses two statistics of one name, whose rows could not be told apart.
+///
+/// # Errors
+/// `Scene`, at the later one.
+pub(crate) fn require_different_names(ctx: &Context, statistics: &[StatisticConfig]) -> Result<()> {
+    let is_taken = |i: &usize| statistics[..*i].iter().any(|before| before.name == statistics[*i].name);
+    let Some(i) = (1..statistics.len()).find(is_taken) else { return Ok(()) };
+    let name = statistics[i].name.as_deref().unwrap_or_default();
+    let what = format!("two statistics are called \"{name}\"");
+    Err(ctx.error_with_help(&format!("statistic.{i}.name"), what, "give each statistic a name of its own"))
 }
