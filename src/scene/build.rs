@@ -26,7 +26,6 @@ use crate::{
     math::{Bounds, Pose, Vector, format::three_digits, in_dimension},
     model::{Model, TimeScheme},
     plan::{ControlPlan, FramesPlan, Plan},
-    probe::ProbePlan,
     ranks::{RankPart, Ranks},
     simulation::{Driving, OpenBoundary, Setup, TowedFrame},
     solid::{Constraints, Role, SolidSpec, TimeFunction},
@@ -322,23 +321,22 @@ impl Scene {
         let series = ProbeSeries { probes: &self.probe, names: &self.probe_names() };
         let statistics = self.statistic.iter().enumerate();
         let checkpoint = self.checkpoint.clone().unwrap_or_default();
-        let probes: Vec<ProbePlan> = self.probe.iter().filter_map(|probe| probe.to_plan(self.until)).collect();
         Ok(Plan {
             title: self.title.clone().unwrap_or_default(),
             until: self.until,
+            probes: self.probe_plans(),
             contacts: self.probe.iter().filter_map(|probe| probe.to_contact_list(self.until)).collect(),
             frames: (self.frames.as_ref().and_then(|frames| frames.build(ctx)))
                 .map(|frames| FramesPlan { moorings: !self.mooring.is_empty(), ..frames }),
             checkpoint_every: checkpoint.every,
             checkpoint_wall: checkpoint.wall_time(),
             checks: (self.check.iter().enumerate())
-                .map(|(i, check)| check.build(ctx, &format!("check.{i}"), &probes))
+                .map(|(i, check)| check.build(ctx, &format!("check.{i}"), &self.probe_plans()))
                 .collect::<Result<_>>()?,
             statistics: statistics
                 .map(|(i, statistic)| statistic.build(ctx, &format!("statistic.{i}"), &series, still))
                 .collect::<Result<_>>()?,
             controls: self.controls(ctx)?,
-            probes,
             folder: self.origin.folder.clone(),
         })
     }
