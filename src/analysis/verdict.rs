@@ -51,6 +51,18 @@ pub struct CheckCurves {
     pub exact: bool,
 }
 
+/// A series of a run, as its table has it.
+struct RunSeries {
+    /// The readings.
+    sim: TimeSeries,
+    /// The running mean, if the check has an instrument and the readings suffice.
+    running_mean: Option<TimeSeries>,
+    /// The end of the run, s.
+    end: f64,
+    /// Times (s) of successive readings with an empty row between them.
+    gaps: Vec<(f64, f64)>,
+}
+
 /// Metrics of a comparison; a metric is `None` where it is not defined.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ErrorMetrics {
@@ -140,10 +152,10 @@ impl ReferenceCheck {
     /// `File` if the run's table cannot be read; `Scene` if the table lacks the column, or the run and the reference
     /// have no time in common.
     pub fn curves(&self, folder: &Path) -> Result<CheckCurves> {
-        let (sim, meaned, _) = self.run_series(folder)?;
-        let (reference, ..) = self.overlap(folder, &sim)?;
+        let run = self.run_series(folder)?;
+        let (reference, ..) = self.overlap(folder, &run)?;
         let exact = !matches!(self.reference, KnownReference::Table(_));
-        Ok(CheckCurves { sim, running_mean: meaned, reference, exact })
+        Ok(CheckCurves { sim: run.sim, running_mean: run.running_mean, reference, exact })
     }
 
     /// Returns the verdict on the run with tables in `folder`, over the times that run and reference both cover. The
@@ -151,22 +163,23 @@ impl ReferenceCheck {
     /// misses its bound, if the check has a bound, unless the run ends before half of the reference.
     pub fn verdict(&self, folder: &Path) -> Verdict {
         let mut verdict = self.empty_verdict();
-        let (sim, meaned, end) = match self.run_series(folder) {
+        let run = match self.run_series(folder) {
             Ok(run) => run,
             Err(why) => {
                 verdict.passed = self.plan.bound.map(|_| false);
                 return Verdict { note: Some(why.to_string()), ..verdict };
             }
         };
-        let (reference, covered, start) = match self.overlap(folder, &sim) {
+        let (reference, covered, start) = match self.overlap(folder, &run) {
             Ok(common) => common,
             Err(why) => {
-                verdict.passed = self.plan.bound.filter(|_| self.is_reached(&sim, end)).map(|_| false);
+                verdict.passed = self.plan.bound.filter(|_| self.is_reached(&run)).map(|_| false);
                 return Verdict { note: Some(why.to_string()), ..verdict };
             }
         };
         verdict.covered = covered;
-        let is_reached = self.is_reached(&sim, end);
+        let is_reached = self.is_reached(&run);
+        let (sim, meaned) = (run.sim, run.running_mean);
         if let KnownReference::Response(words) = &self.reference {
             return verdict.of_response(self.response(folder, &sim, words).ok()).judged(is_reached);
         }
@@ -192,20 +205,20 @@ impl ReferenceCheck {
         verdict.judged(is_reached)
     }
 
-    /// Returns whether a run that ends at `end` (s) is long enough to be judged.
-    fn is_reached(&self, sim: &TimeSeries, end: f64) -> bool {
+    /// Returns whether the run is long enough to be judged.
+    fn is_reached(&self, run: &RunSeries) -> bool {
+        let end = run.end;
         if self.plan.zero.is_some_and(|at| at > end) {
             return false;
         }
-        // Without a start, the reference has no clock: the run was long enough if it was to pass the threshold.
-        let start = self.reference_start(sim).unwrap_or(0.0);
+        let start = self.reference_start(&run.sim).ok();
         match &self.reference {
-            KnownReference::Table(whole) => {
+            KnownReference::Table(whole) => start.is_some_and(|start| {
                 let times = whole.times();
                 2 * times.iter().filter(|t| *t + start <= end).count() >= times.len()
-            }
+            }),
             _ => {
-                let (from, until) = window(&self.plan, start);
+                let (from, until) = window(&self.plan, start.unwrap_or(0.0));
                 let from = if from.is_finite() { from } else { 0.0 };
                 end > from && (until.is_infinite() || end - from >= 0.5 * (until - from))
             }
@@ -240,32 +253,34 @@ impl ReferenceCheck {
         }
     }
 
-    /// Returns the series of the run, its running mean if the check has an instrument, and the end of the run, s.
-    fn run_series(&self, folder: &Path) -> Result<(TimeSeries, Option<TimeSeries>, f64)> {
-        let (mut sim, end) = self.own_series(folder, &self.plan.series)?;
+    /// Returns the checked series of the run with tables in `folder`.
+    fn run_series(&self, folder: &Path) -> Result<RunSeries> {
+        let mut run = self.own_series(folder, &self.plan.series)?;
         if let Some(at) = self.plan.zero {
-            sim = sim.minus(sim.value_at(at));
+            run.sim = run.sim.minus(run.sim.value_at(at));
         }
-        let meaned = self.plan.mean.and_then(|seconds| sim.running_mean(seconds).ok());
-        Ok((sim, meaned, end))
+        run.running_mean = self.plan.mean.and_then(|seconds| run.sim.running_mean(seconds).ok());
+        Ok(run)
     }
 
-    /// Returns the series `name` of the run with tables in `folder`, and the end of the run, s.
-    fn own_series(&self, folder: &Path, name: &str) -> Result<(TimeSeries, f64)> {
+    /// Returns the series `name` of the run with tables in `folder`, without a running mean.
+    fn own_series(&self, folder: &Path, name: &str) -> Result<RunSeries> {
         let (probe, column) = name.split_once('.').unwrap_or((name, ""));
         let path: PathBuf = folder.join(format!("{probe}.csv"));
         let mut table = TableReader::open(&path)?;
-        let (column, time) = (ColumnName::from(column), ColumnName::from("t_s"));
-        let time = table.time_column(&time, &column);
+        let column = ColumnName::from(column);
+        let time = table.time_column(&"t_s".into(), &column);
         let [rows] = table.columns([time.clone()])?;
-        let end = rows.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let [mut t, x] = table.columns([time, column.clone()])?;
-        if self.plan.means.iter().any(|mean| mean == name) {
-            let middle = reading_times(&rows, true);
-            t.iter_mut().for_each(|t| *t = middle[rows.partition_point(|row| *row < *t)]);
-        }
-        let series = TimeSeries::new(t, x).map_err(|e| e.at(path.display().to_string(), None, column.to_string()))?;
-        Ok((series, end))
+        let [known, x] = table.columns([time, column.clone()])?;
+        let are_means = self.plan.means.iter().any(|mean| mean == name);
+        let times = reading_times(&rows, are_means);
+        let row = |t: f64| rows.partition_point(|row| *row < t);
+        let at = |t: &f64| times[row(*t)];
+        let pairs = known.windows(2).filter(|pair| row(pair[1]) > row(pair[0]) + 1);
+        let gaps = pairs.map(|pair| (at(&pair[0]), at(&pair[1]))).collect();
+        let sim = TimeSeries::new(known.iter().map(at).collect::<Vec<_>>(), x);
+        let sim = sim.map_err(|e| e.at(path.display().to_string(), None, column.to_string()))?;
+        Ok(RunSeries { sim, running_mean: None, end: rows.last().copied().unwrap_or_default(), gaps })
     }
 
     /// Returns the time of the run at which the reference's clock starts, s: 0 unless the reference has its own clock.
@@ -276,9 +291,10 @@ impl ReferenceCheck {
         })
     }
 
-    /// Returns the reference over the times of the run, the share of the reference that they cover, and the start of
+    /// Returns the reference over the times at which the run has readings, the share of the reference that they cover, and the start of
     /// its clock.
-    fn overlap(&self, folder: &Path, sim: &TimeSeries) -> Result<(TimeSeries, f64, f64)> {
+    fn overlap(&self, folder: &Path, run: &RunSeries) -> Result<(TimeSeries, f64, f64)> {
+        let sim = &run.sim;
         let (first, last) = sim.span();
         if let Some(at) = self.plan.zero.filter(|at| *at > last) {
             return Err(Error::scene(format!("the run ends at {last} s, before it is set to zero at {at} s")));
@@ -294,6 +310,7 @@ impl ReferenceCheck {
                         "the reference begins at {from} s and ends at {to} s, the run at {first} and {last} s"
                     ))
                 })?;
+                let common = without_gaps(&common, &run.gaps)?;
                 let covered = common.times().len() as f64 / whole.times().len() as f64;
                 Ok((common, covered, start))
             }
@@ -316,7 +333,7 @@ impl ReferenceCheck {
     /// Returns the response of `sim` to another series of the run, which is in `folder`.
     fn response(&self, folder: &Path, sim: &TimeSeries, words: &ResponseReference) -> Result<Response> {
         let (from, until) = window(&self.plan, 0.0);
-        let (wave, _) = self.own_series(folder, &words.to)?;
+        let wave = self.own_series(folder, &words.to)?.sim;
         let wave = wave.window(words.from.unwrap_or(from), words.until.unwrap_or(until))?;
         Response::new(&sim.window(from, until)?, &wave, words).ok_or_else(|| {
             let what =
@@ -381,6 +398,14 @@ impl Verdict {
             && within(bound.delay, self.aligned.map(|a| a.delay.abs()))
             && within(bound.period, self.metrics.period)
     }
+}
+
+/// Returns the samples of `reference` outside `gaps` (s), in which a run has no readings.
+fn without_gaps(reference: &TimeSeries, gaps: &[(f64, f64)]) -> Result<TimeSeries> {
+    let is_known = |t: f64| !gaps.iter().any(|gap| gap.0 < t && t < gap.1);
+    let samples = reference.times().iter().copied().zip(reference.values().iter().copied());
+    let (t, x): (Vec<f64>, Vec<f64>) = samples.filter(|(t, _)| is_known(*t)).unzip();
+    TimeSeries::new(t, x).map_err(|_| Error::scene("the run has no readings at the times of its reference"))
 }
 
 /// Returns the reason why `how` gives no delay; `None` if it is not meant to.

@@ -26,6 +26,9 @@ use crate::{
 /// Largest difference between the depth of a reflection and that of the scene, over the latter and besides one dp, without a note, –.
 const OTHER_DEPTH: f64 = 0.05;
 
+/// Round-off of a time, over the interval between readings.
+const ROUND_OFF: f64 = 1e-9;
+
 /// A section `[[check]]`: compares a column of a probe with a column of a reference table, or with a formula.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -338,19 +341,23 @@ impl CheckConfig {
         ctx.add_note(FileNote { is_warning: false, topic: "event_after_end", what, remedy });
     }
 
-    /// Notes that the time range of a check lies outside the run, or between two readings.
+    /// Notes that the time range of a check lies outside the run, or between two readings. A time range after the end of the run
+    /// is another finding.
     fn note_time_range(&self, ctx: &Context, probes: &[ProbePlan]) {
         let mut ranges = vec![(&self.series, self.from, self.until)];
         ranges.extend(self.response.iter().map(|of| (&of.to, of.from.or(self.from), of.until.or(self.until))));
         for (series, from, until) in ranges {
-            let Some((probe, _)) = ProbePlan::of_series(probes, series) else { continue };
+            let Some((probe, column)) = ProbePlan::of_series(probes, series) else { continue };
             if self.reference.is_some() || from.or(until).is_none() || matches!(self.align, Some(Align::Start(_))) {
                 continue;
             }
             let (first, last) = (from.unwrap_or(0.0), until.unwrap_or(ctx.until));
-            let readings = 1.0 + (last.min(ctx.until) / probe.every).floor() - (first.max(0.0) / probe.every).ceil();
-            // A time range after the end is another finding.
-            if readings >= 2.0 || first >= ctx.until {
+            // A mean belongs to half an interval before its row. The last row is at the end of the run.
+            let delay = if probe.is_mean(column) { 0.5 * probe.every } else { 0.0 };
+            let rows_until =
+                |t: f64| if t >= ctx.until { (ctx.until / probe.every).ceil() } else { (t / probe.every).floor() };
+            let first_row = ((first.max(0.0) + delay) / probe.every - ROUND_OFF).ceil();
+            if first >= ctx.until || rows_until(last + delay + ROUND_OFF * probe.every) - first_row >= 1.0 {
                 continue;
             }
             let what = format!(

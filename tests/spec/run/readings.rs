@@ -5,7 +5,7 @@ use std::{f64::consts::TAU, fs, path::Path};
 use pontoon::{
     analysis::{CheckPlan, Reference, ReferenceCheck, Score, Verdict, first_peak_error},
     error::Result,
-    math::time_series::TimeSeries,
+    math::time_series::{SampleScaling, TimeSeries},
     run::{self, Progress, RunOptions, Statistic, StatisticsFilter},
     scene::Scene,
 };
@@ -61,6 +61,32 @@ fn a_bound_is_missed_where_the_run_has_no_reading_and_kept_open_where_it_ends_be
     }
     // The run ends before half of the time range.
     assert_eq!([passed(8.0, 13.0), passed(11.0, 12.0)], [None, None]);
+}
+
+/// The run has the value 1 until 4 s and 9 from 6 s on, and no readings between. A line across the gap would be 3 to 7 off there.
+#[test]
+fn samples_of_a_reference_in_a_gap_of_the_run_do_not_count() {
+    let value = |t: f64| {
+        if t <= 4.0 {
+            Some(1.0)
+        } else if t < 6.0 {
+            None
+        } else {
+            Some(9.0)
+        }
+    };
+    let folder = folder("reference-gap", (0..=20).map(|i| 0.5 * f64::from(i)).map(|t| (t, value(t))));
+    let reference = |times: &[f64]| {
+        let row = |t: &f64| format!("{t:?},{:?}\n", if *t < 5.5 { 1.0 } else { 9.0 });
+        fs::write(folder.join("r.csv"), "t_s,z_m\n".to_string() + &times.iter().map(row).collect::<String>()).unwrap();
+        let (time, column) = ("t_s".into(), "z_m".into());
+        let table = Reference::Table { file: "r.csv".into(), time, column, scaling: SampleScaling::default() };
+        judge(&CheckPlan::new("box.heave_m", table).bound(n_bound()), &folder)
+    };
+    let verdict = reference(&[3.0, 4.0, 5.0, 5.5, 6.0, 7.0]);
+    assert_eq!((verdict.metrics.relative_l2, verdict.passed), (Some(0.0), Some(true)), "{verdict:?}");
+    let hidden = reference(&[4.0, 4.5, 5.0, 5.5, 5.8]);
+    assert_eq!(hidden.passed, Some(false), "{hidden:?}");
 }
 
 #[test]
