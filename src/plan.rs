@@ -227,6 +227,9 @@ pub struct CheckPlan {
     pub paper: Option<Score>,
     /// The bounds that the run must satisfy.
     pub bound: Option<Score>,
+    /// Those of the compared series whose readings are means since the previous row.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub means: Vec<String>,
 }
 
 impl CheckPlan {
@@ -242,6 +245,7 @@ impl CheckPlan {
             align: None,
             paper: None,
             bound: None,
+            means: Vec::new(),
         }
     }
 
@@ -273,6 +277,21 @@ impl CheckPlan {
     /// Returns the same check with this bound.
     pub fn bound(self, bound: Score) -> Self {
         Self { bound: Some(bound), ..self }
+    }
+
+    /// Returns the same check of a run in which the readings of `series` are means since the previous row.
+    pub fn means(mut self, series: impl Into<String>) -> Self {
+        self.means.push(series.into());
+        self
+    }
+
+    /// Returns the names of the series of the run that the check evaluates.
+    pub(crate) fn series_names(&self) -> impl Iterator<Item = &String> {
+        let wave = match &self.reference {
+            Reference::Response(response) => Some(&response.to),
+            _ => None,
+        };
+        [&self.series].into_iter().chain(wave)
     }
 
     /// Returns a label with the name of the series, and the series to which it responds or the time at which the

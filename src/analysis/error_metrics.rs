@@ -52,12 +52,13 @@ pub fn amplitude_ratio(sim: &TimeSeries, reference: &TimeSeries) -> Result<f64> 
 ///
 ///   |peak_sim − peak_ref| / |peak_ref|
 ///
-/// The first peak is the largest |x| of the first interval in which |x| stays above half of the series' maximum.
-/// Ripples before the peak therefore do not count. Each series has its own first peak, and their times may differ.
-/// Returns the error (–).
+/// The first peak is the largest |x| of the first stretch in which |x| is at least half the largest |x| of the series.
+/// Ripples before the peak therefore do not count. A stretch whose largest |x| is the first or the last sample has no
+/// peak: the series may grow beyond it. Each series has its own first peak, and their times may differ. Returns the
+/// error (–).
 ///
 /// # Errors
-/// `Scene` if the reference is zero throughout.
+/// `Scene` if the reference is zero throughout, or if one of the series has no peak.
 /// ```
 /// # use pontoon::{analysis::first_peak_error, math::time_series::TimeSeries};
 /// let t = [0.0, 1.0, 2.0, 3.0, 4.0];
@@ -67,11 +68,17 @@ pub fn amplitude_ratio(sim: &TimeSeries, reference: &TimeSeries) -> Result<f64> 
 /// # Ok::<(), pontoon::Error>(())
 /// ```
 pub fn first_peak_error(sim: &TimeSeries, reference: &TimeSeries) -> Result<f64> {
-    let expected = first_peak(reference.values());
-    if expected == 0.0 {
+    let peak = |series: &TimeSeries, name: &str| {
+        first_peak(series.values()).ok_or_else(|| {
+            Error::scene(format!("{name} has no peak in the time range: its maximum is at an end"))
+                .help("choose a range that begins before the peak and ends after it")
+        })
+    };
+    if reference.values().iter().all(|x| *x == 0.0) {
         return Err(all_zero());
     }
-    Ok((first_peak(sim.values()) - expected).abs() / expected.abs())
+    let expected = peak(reference, "the reference")?;
+    Ok((peak(sim, "the run")? - expected).abs() / expected.abs())
 }
 
 /// Returns the largest absolute difference of a simulated series from its reference: 0 is perfect. The measure is also
@@ -96,11 +103,19 @@ pub fn max_abs(sim: &TimeSeries, reference: &TimeSeries) -> Result<f64> {
     Ok(pairs.map(|(&t, &r)| (sim.value_at(t) - r).abs()).fold(0.0, f64::max))
 }
 
-/// Returns the value of the first peak, with its sign.
-fn first_peak(x: &[f64]) -> f64 {
+/// Returns the value of the first peak, with its sign; `None` if every stretch above half of the largest |x| is largest at the
+/// start or at the end of the series.
+fn first_peak(x: &[f64]) -> Option<f64> {
     let half = 0.5 * x.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
-    let stretch = x.iter().skip_while(|x| x.abs() < half).take_while(|x| x.abs() >= half);
-    stretch.fold(0.0, |peak: f64, &x| if x.abs() > peak.abs() { x } else { peak })
+    let is_high = |i: &usize| x[*i].abs() >= half;
+    let all: Vec<usize> = (0..x.len()).collect();
+    let mut stretches = all.chunk_by(|a, b| is_high(a) == is_high(b)).filter(|stretch| is_high(&stretch[0]));
+    let peak = |stretch: &[usize]| {
+        let peak = stretch.iter().fold(0.0, |peak: f64, &i| if x[i].abs() > peak.abs() { x[i] } else { peak });
+        let is_at_end = [0, x.len() - 1].iter().any(|end| stretch.contains(end) && x[*end].abs() == peak.abs());
+        (!is_at_end).then_some(peak)
+    };
+    stretches.find_map(peak)
 }
 
 /// Returns √( Σ term(sim_i, ref_i) / Σ ref_i² ) over the reference's times.

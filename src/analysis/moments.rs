@@ -1,6 +1,6 @@
 //! Extremes, mean and standard deviation of a series.
 
-use crate::math::time_series::TimeSeries;
+use crate::math::{readings::Readings, time_series::TimeSeries};
 
 /// Statistics of a series.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -23,9 +23,21 @@ pub(crate) struct Moments {
 ///
 /// The function integrates by the trapezoidal rule over the samples; results are in the unit of the series.
 pub(crate) fn moments(series: &TimeSeries) -> Moments {
+    weighted_moments(series, None)
+}
+
+/// As [`moments`], of readings. Gaps do not count in means, and a reading that is a mean counts for its interval.
+pub(crate) fn moments_of_readings(readings: &Readings) -> Moments {
+    weighted_moments(readings.series(), readings.weights())
+}
+
+fn weighted_moments(series: &TimeSeries, weights: Option<&[f64]>) -> Moments {
     let (t, x) = (series.times(), series.values());
     let (first, last) = series.span();
     let mean_of = |f: &dyn Fn(f64) -> f64| {
+        if let Some(weights) = weights {
+            return weights.iter().zip(x).map(|(w, &x)| w * f(x)).sum::<f64>() / weights.iter().sum::<f64>();
+        }
         let parts = t.windows(2).zip(x.windows(2)).map(|(t, x)| 0.5 * (f(x[0]) + f(x[1])) * (t[1] - t[0]));
         parts.sum::<f64>() / (last - first)
     };

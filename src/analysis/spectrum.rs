@@ -3,8 +3,8 @@
 
 use realfft::{RealFftPlanner, num_complex::Complex};
 
-use super::{moments, zero_crossing_waves};
-use crate::math::time_series::TimeSeries;
+use super::{moments, waves_of_readings, zero_crossing_waves};
+use crate::math::{readings::Readings, time_series::TimeSeries};
 
 /// Smallest number of samples of a record.
 const LEAST: usize = 16;
@@ -97,11 +97,11 @@ pub(crate) fn spectrum(series: &TimeSeries) -> Option<WelchSpectrum> {
     Some(WelchSpectrum { frequency_step: step, density })
 }
 
-/// Returns the displayed spectrum of `series`, up to the frequency below which 99.9 % of the variance lies, or `None`
-/// if the series has fewer than eight waves.
-pub(crate) fn displayed_spectrum(series: &TimeSeries) -> Option<WelchSpectrum> {
-    zero_crossing_waves(series).filter(|waves| waves.count >= SHOWN_WAVES)?;
-    let mut all = spectrum(series)?;
+/// Returns the displayed spectrum of `readings`, up to the frequency below which 99.9 % of the variance lies, or `None`
+/// if they have fewer than eight waves or if gaps hide waves.
+pub(crate) fn displayed_spectrum(readings: &Readings) -> Option<WelchSpectrum> {
+    waves_of_readings(readings).filter(|waves| waves.count >= SHOWN_WAVES)?;
+    let mut all = spectrum(readings.series())?;
     let whole: f64 = all.density.iter().sum();
     let mut sum = 0.0;
     let below = all.density.iter().take_while(|s| {

@@ -13,6 +13,7 @@ use crate::{
     error::{Error, Result},
     math::{
         expression::Formula,
+        readings::reading_times,
         table::{ColumnName, TableReader},
         time_series::{SampleScaling, TimeSeries},
     },
@@ -48,6 +49,18 @@ pub struct CheckCurves {
     pub reference: TimeSeries,
     /// Whether the reference is a formula.
     pub exact: bool,
+}
+
+/// A series of a run, as its table has it.
+struct RunSeries {
+    /// The readings.
+    sim: TimeSeries,
+    /// The running mean, if the check has an instrument and the readings suffice.
+    running_mean: Option<TimeSeries>,
+    /// The end of the run, s.
+    end: f64,
+    /// Times (s) of successive readings with an empty row between them.
+    gaps: Vec<(f64, f64)>,
 }
 
 /// Metrics of a comparison; a metric is `None` where it is not defined.
@@ -139,67 +152,90 @@ impl ReferenceCheck {
     /// `File` if the run's table cannot be read; `Scene` if the table lacks the column, or the run and the reference
     /// have no time in common.
     pub fn curves(&self, folder: &Path) -> Result<CheckCurves> {
-        let (sim, meaned) = self.run_series(folder)?;
-        let (reference, ..) = self.overlap(folder, &sim)?;
+        let run = self.run_series(folder)?;
+        let (reference, ..) = self.overlap(folder, &run)?;
         let exact = !matches!(self.reference, KnownReference::Table(_));
-        Ok(CheckCurves { sim, running_mean: meaned, reference, exact })
+        Ok(CheckCurves { sim: run.sim, running_mean: run.running_mean, reference, exact })
     }
 
     /// Returns the verdict on the run with tables in `folder`, over the times that run and reference both cover. The
     /// function never fails. If a comparison is impossible, the note of the verdict states the reason. The run then
-    /// misses its bound, if the check has a bound, unless the run is too short.
+    /// misses its bound, if the check has a bound, unless the run ends before half of the reference.
     pub fn verdict(&self, folder: &Path) -> Verdict {
         let mut verdict = self.empty_verdict();
-        let (sim, meaned) = match self.run_series(folder) {
+        let run = match self.run_series(folder) {
             Ok(run) => run,
             Err(why) => {
                 verdict.passed = self.plan.bound.map(|_| false);
                 return Verdict { note: Some(why.to_string()), ..verdict };
             }
         };
-        let (reference, covered, start) = match self.overlap(folder, &sim) {
+        let (reference, covered, start) = match self.overlap(folder, &run) {
             Ok(common) => common,
             Err(why) => {
-                // A run that ends before its reference begins, or before its zero time, is too short; it is not a
-                // failure.
-                let (from, until) = window(&self.plan, 0.0);
-                let set = self.plan.zero.is_none_or(|at| at <= sim.span().1);
-                let reaches = set
-                    && !matches!(self.reference, KnownReference::Table(_))
-                    && sim.window(from, until).is_ok()
-                    && covered_share((from, until), sim.span()) >= 0.5;
-                verdict.passed = self.plan.bound.filter(|_| reaches).map(|_| false);
+                verdict.passed = self.plan.bound.filter(|_| self.is_reached(&run)).map(|_| false);
                 return Verdict { note: Some(why.to_string()), ..verdict };
             }
         };
         verdict.covered = covered;
+        let is_reached = self.is_reached(&run);
+        let (sim, meaned) = (run.sim, run.running_mean);
         if let KnownReference::Response(words) = &self.reference {
-            return self.of_response(verdict, self.response(folder, &sim, words).ok());
+            return verdict.of_response(self.response(folder, &sim, words).ok()).judged(is_reached);
         }
-        verdict.note = relative_l2(&sim, &reference).err().map(|why| why.to_string());
+        let no_peak =
+            self.plan.bound.and_then(|bound| bound.peak).and_then(|_| self.peak(&sim, &reference, start).err());
+        verdict.note = relative_l2(&sim, &reference).err().or(no_peak).map(|why| why.to_string());
         verdict.metrics = self.metrics(&sim, &reference, start);
         verdict.meaned = self
             .plan
             .mean
             .zip(meaned.as_ref())
             .map(|(seconds, meaned)| RunningMeanMetrics { seconds, metrics: self.metrics(meaned, &reference, start) });
-        if let Some(how) = self.plan.align {
-            let shown = meaned.as_ref().unwrap_or(&sim);
+        if let (Some(seconds), None) = (self.plan.mean, &meaned) {
+            verdict.note = Some(format!("the readings are too few for a mean over {seconds} s"));
+        } else if let Some(how) = self.plan.align {
             (verdict.aligned, verdict.arrival) = match how {
                 Align::Start(_) => (None, Some(ArrivalTimes { run: Some(start), reference: Some(0.0) })),
-                how => align(shown, &reference, how, window(&self.plan, start)),
+                how => self.aligned(meaned.as_ref().unwrap_or(&sim), &reference, how, start),
             };
             let is_without = verdict.aligned.is_none() && verdict.note.is_none();
             verdict.note = if is_without { why_unaligned(how, verdict.arrival) } else { verdict.note };
         }
-        verdict.judged()
+        verdict.judged(is_reached)
     }
 
-    /// Returns `verdict` with the figures of a response.
-    fn of_response(&self, verdict: Verdict, response: Option<Response>) -> Verdict {
-        let metrics = response.as_ref().map_or_else(ErrorMetrics::default, Response::metrics);
-        let aligned = response.as_ref().and_then(Response::aligned);
-        Verdict { metrics, aligned, ..verdict }.judged()
+    /// Returns whether the run is long enough to be judged.
+    fn is_reached(&self, run: &RunSeries) -> bool {
+        let end = run.end;
+        if self.plan.zero.is_some_and(|at| at > end) {
+            return false;
+        }
+        let start = self.reference_start(&run.sim).ok();
+        match &self.reference {
+            KnownReference::Table(whole) => start.is_some_and(|start| {
+                let times = whole.times();
+                2 * times.iter().filter(|t| *t + start <= end).count() >= times.len()
+            }),
+            _ => {
+                let (from, until) = window(&self.plan, start.unwrap_or(0.0));
+                let from = if from.is_finite() { from } else { 0.0 };
+                end > from && (until.is_infinite() || end - from >= 0.5 * (until - from))
+            }
+        }
+    }
+
+    /// Returns the metrics after removal of a delay, over the times that `sim` has in common with `reference`.
+    fn aligned(
+        &self,
+        sim: &TimeSeries,
+        reference: &TimeSeries,
+        how: Align,
+        start: f64,
+    ) -> (Option<AlignedMetrics>, Option<ArrivalTimes>) {
+        let (first, last) = sim.span();
+        let common = reference.window(first, last);
+        common.map_or((None, None), |reference| align(sim, &reference, how, window(&self.plan, start)))
     }
 
     fn empty_verdict(&self) -> Verdict {
@@ -217,14 +253,34 @@ impl ReferenceCheck {
         }
     }
 
-    /// Returns the series of the run, and its running mean if the check has an instrument.
-    fn run_series(&self, folder: &Path) -> Result<(TimeSeries, Option<TimeSeries>)> {
-        let mut sim = own_series(folder, &self.plan.series)?;
+    /// Returns the checked series of the run with tables in `folder`.
+    fn run_series(&self, folder: &Path) -> Result<RunSeries> {
+        let mut run = self.own_series(folder, &self.plan.series)?;
         if let Some(at) = self.plan.zero {
-            sim = sim.minus(sim.value_at(at));
+            run.sim = run.sim.minus(run.sim.value_at(at));
         }
-        let meaned = self.plan.mean.map(|seconds| sim.running_mean(seconds));
-        Ok((sim, meaned))
+        run.running_mean = self.plan.mean.and_then(|seconds| run.sim.running_mean(seconds).ok());
+        Ok(run)
+    }
+
+    /// Returns the series `name` of the run with tables in `folder`, without a running mean.
+    fn own_series(&self, folder: &Path, name: &str) -> Result<RunSeries> {
+        let (probe, column) = name.split_once('.').unwrap_or((name, ""));
+        let path: PathBuf = folder.join(format!("{probe}.csv"));
+        let mut table = TableReader::open(&path)?;
+        let column = ColumnName::from(column);
+        let time = table.time_column(&"t_s".into(), &column);
+        let [rows] = table.columns([time.clone()])?;
+        let [known, x] = table.columns([time, column.clone()])?;
+        let are_means = self.plan.means.iter().any(|mean| mean == name);
+        let times = reading_times(&rows, are_means);
+        let row = |t: f64| rows.partition_point(|row| *row < t);
+        let at = |t: &f64| times[row(*t)];
+        let pairs = known.windows(2).filter(|pair| row(pair[1]) > row(pair[0]) + 1);
+        let gaps = pairs.map(|pair| (at(&pair[0]), at(&pair[1]))).collect();
+        let sim = TimeSeries::new(known.iter().map(at).collect::<Vec<_>>(), x);
+        let sim = sim.map_err(|e| e.at(path.display().to_string(), None, column.to_string()))?;
+        Ok(RunSeries { sim, running_mean: None, end: rows.last().copied().unwrap_or_default(), gaps })
     }
 
     /// Returns the time of the run at which the reference's clock starts, s: 0 unless the reference has its own clock.
@@ -235,9 +291,10 @@ impl ReferenceCheck {
         })
     }
 
-    /// Returns the reference over the times of the run, the share of the reference that they cover, and the start of
+    /// Returns the reference over the times at which the run has readings, the share of the reference that they cover, and the start of
     /// its clock.
-    fn overlap(&self, folder: &Path, sim: &TimeSeries) -> Result<(TimeSeries, f64, f64)> {
+    fn overlap(&self, folder: &Path, run: &RunSeries) -> Result<(TimeSeries, f64, f64)> {
+        let sim = &run.sim;
         let (first, last) = sim.span();
         if let Some(at) = self.plan.zero.filter(|at| *at > last) {
             return Err(Error::scene(format!("the run ends at {last} s, before it is set to zero at {at} s")));
@@ -253,6 +310,7 @@ impl ReferenceCheck {
                         "the reference begins at {from} s and ends at {to} s, the run at {first} and {last} s"
                     ))
                 })?;
+                let common = without_gaps(&common, &run.gaps)?;
                 let covered = common.times().len() as f64 / whole.times().len() as f64;
                 Ok((common, covered, start))
             }
@@ -275,7 +333,7 @@ impl ReferenceCheck {
     /// Returns the response of `sim` to another series of the run, which is in `folder`.
     fn response(&self, folder: &Path, sim: &TimeSeries, words: &ResponseReference) -> Result<Response> {
         let (from, until) = window(&self.plan, 0.0);
-        let wave = own_series(folder, &words.to)?;
+        let wave = self.own_series(folder, &words.to)?.sim;
         let wave = wave.window(words.from.unwrap_or(from), words.until.unwrap_or(until))?;
         Response::new(&sim.window(from, until)?, &wave, words).ok_or_else(|| {
             let what =
@@ -284,22 +342,42 @@ impl ReferenceCheck {
         })
     }
 
-    fn metrics(&self, sim: &TimeSeries, reference: &TimeSeries, start: f64) -> ErrorMetrics {
+    /// Returns the relative error of the first peak.
+    fn peak(&self, sim: &TimeSeries, reference: &TimeSeries, start: f64) -> Result<f64> {
         let (from, until) = window(&self.plan, start);
+        first_peak_error(&sim.window(from, until)?, reference)
+    }
+
+    /// Returns the metrics of `sim` over the times that it has in common with `reference`.
+    fn metrics(&self, sim: &TimeSeries, reference: &TimeSeries, start: f64) -> ErrorMetrics {
+        let (first, last) = sim.span();
+        let Ok(reference) = &reference.window(first, last) else { return ErrorMetrics::default() };
         ErrorMetrics {
             period: None,
             relative_l2: relative_l2(sim, reference).ok(),
             amplitude_ratio: amplitude_ratio(sim, reference).ok(),
-            peak: sim.window(from, until).and_then(|sim| first_peak_error(&sim, reference)).ok(),
+            peak: self.peak(sim, reference, start).ok(),
             off: max_abs(sim, reference).ok(),
         }
     }
 }
 
 impl Verdict {
-    /// Returns this verdict with the outcome of its bound; a run that covers less than half of its reference has none.
-    fn judged(mut self) -> Self {
+    /// Returns this verdict with the figures of a response.
+    fn of_response(self, response: Option<Response>) -> Self {
+        let metrics = response.as_ref().map_or_else(ErrorMetrics::default, Response::metrics);
+        let aligned = response.as_ref().and_then(Response::aligned);
+        Self { metrics, aligned, ..self }
+    }
+
+    /// Returns this verdict with the outcome of its bound. A run that covers less than half of its reference has none, unless it
+    /// `is_reached`: the run goes on to half of the reference, and readings are missing.
+    fn judged(mut self, is_reached: bool) -> Self {
         match self.bound {
+            Some(_) if self.covered < 0.5 && is_reached => {
+                self.note = Some("less than half of the reference has readings".into());
+                self.passed = Some(false);
+            }
             Some(_) if self.covered < 0.5 => {
                 self.note = Some("the run covers less than half of the reference: not judged".into());
             }
@@ -320,6 +398,14 @@ impl Verdict {
             && within(bound.delay, self.aligned.map(|a| a.delay.abs()))
             && within(bound.period, self.metrics.period)
     }
+}
+
+/// Returns the samples of `reference` outside `gaps` (s), in which a run has no readings.
+fn without_gaps(reference: &TimeSeries, gaps: &[(f64, f64)]) -> Result<TimeSeries> {
+    let is_known = |t: f64| !gaps.iter().any(|gap| gap.0 < t && t < gap.1);
+    let samples = reference.times().iter().copied().zip(reference.values().iter().copied());
+    let (t, x): (Vec<f64>, Vec<f64>) = samples.filter(|(t, _)| is_known(*t)).unzip();
+    TimeSeries::new(t, x).map_err(|_| Error::scene("the run has no readings at the times of its reference"))
 }
 
 /// Returns the reason why `how` gives no delay; `None` if it is not meant to.
@@ -353,13 +439,6 @@ fn covered_share(of: (f64, f64), span: (f64, f64)) -> f64 {
     let ((from, until), (first, last)) = (of, span);
     let from = from.max(first);
     if until.is_finite() { ((last.min(until) - from) / (until - from)).clamp(0.0, 1.0) } else { 1.0 }
-}
-
-/// Returns the series `name` of the run with tables in `folder`.
-fn own_series(folder: &Path, name: &str) -> Result<TimeSeries> {
-    let (probe, column) = name.split_once('.').unwrap_or((name, ""));
-    let path: PathBuf = folder.join(format!("{probe}.csv"));
-    read_series(&path, &"t_s".into(), &column.into(), &SampleScaling::default())
 }
 
 /// Returns the series of `column` over `time` of the table at `path`, in the scale and on the clock of the run. Rows may

@@ -1,7 +1,7 @@
 //! Individual waves of a series, each between two successive upward crossings of the mean. @goda2010, ch. 10.
 
 use super::moments;
-use crate::math::time_series::TimeSeries;
+use crate::math::{readings::Readings, time_series::TimeSeries};
 
 /// Smallest excursion of a wave to both sides of the mean, relative to the standard deviation: smaller oscillations do
 /// not count as waves.
@@ -10,6 +10,10 @@ const BAND: f64 = 0.1;
 /// Smallest range of a series with waves, relative to its largest magnitude and in its unit: a smaller range is
 /// round-off.
 const ROUND_OFF: [f64; 2] = [1e-9, 1e-12];
+
+/// Largest gap between readings of waves, in mean periods. A straight line over a gap of this length lowers a crest by
+/// 1 − cos(π/10) of the amplitude, 5 %.
+pub(crate) const LARGEST_GAP: f64 = 0.1;
 
 /// Statistics of the waves of a series. Heights are from trough to crest, in the unit of the series.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -77,6 +81,17 @@ pub(crate) fn zero_crossing_waves(series: &TimeSeries) -> Option<ZeroCrossingWav
         mean_period: mean(&all, |w| w.1),
         significant_period: mean(highest, |w| w.1),
     })
+}
+
+/// Returns the zero-crossing waves of `readings`, or `None` if they have fewer than two waves or if gaps hide waves.
+pub(crate) fn waves_of_readings(readings: &Readings) -> Option<ZeroCrossingWaves> {
+    zero_crossing_waves(readings.series()).filter(|_| !gaps_hide_waves(readings))
+}
+
+/// Returns whether `readings` have waves and a gap longer than a tenth of their mean period. Waves and spectra are then unknown.
+pub(crate) fn gaps_hide_waves(readings: &Readings) -> bool {
+    let gap = readings.longest_gap();
+    gap > 0.0 && zero_crossing_waves(readings.series()).is_some_and(|waves| gap > LARGEST_GAP * waves.mean_period)
 }
 
 #[cfg(test)]

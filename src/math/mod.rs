@@ -1,4 +1,4 @@
-//! Mathematics without physics: vectors and rotations, time series, tables, formulas, SIMD numbers, number formats.
+//! Mathematics without physics: vectors and rotations, time series, readings, tables, formulas, SIMD numbers, number formats.
 
 mod config;
 mod dimension;
@@ -6,6 +6,7 @@ pub mod expression;
 #[doc(hidden)]
 pub mod format;
 mod poles;
+pub mod readings;
 #[doc(hidden)]
 pub mod simd;
 #[doc(hidden)]

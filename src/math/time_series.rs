@@ -12,6 +12,9 @@ const HOLD_OVERSHOOT: f64 = 5e-4;
 /// Number of equal intervals that make a hold. Shorter ones come from the resolution of an instrument.
 const HOLD: usize = 4;
 
+/// Relative round-off of times.
+const ROUND_OFF: f64 = 1e-12;
+
 /// How the samples of a table become those of a run: x · `scale` at the times t · `time_factor` + `offset`.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct SampleScaling {
@@ -151,8 +154,11 @@ impl TimeSeries {
     ///
     ///   x̄(t) = 1/s ∫ x dt over t − s/2 … t + s/2
     ///
-    /// by the trapezoidal rule over the samples, at the same times; near an end, over the part of the interval within the span.
-    pub fn running_mean(&self, seconds: f64) -> Self {
+    /// by the trapezoidal rule over the samples, at those sample times whose whole interval lies within the span.
+    ///
+    /// # Errors
+    /// `Scene` if there are fewer than two such times.
+    pub fn running_mean(&self, seconds: f64) -> Result<Self> {
         let mut total = vec![0.0];
         for i in 1..self.t.len() {
             total.push(total[i - 1] + 0.5 * (self.t[i] - self.t[i - 1]) * (self.x[i] + self.x[i - 1]));
@@ -163,11 +169,18 @@ impl TimeSeries {
             total[i] + step * (self.x[i] + 0.5 * s * (self.x[i + 1] - self.x[i]))
         };
         let (first, last) = self.span();
+        // Round-off may leave the end of an interval slightly outside.
+        let slack = ROUND_OFF * (last - first);
+        let is_whole = |t: &f64| t - 0.5 * seconds >= first - slack && t + 0.5 * seconds <= last + slack;
+        let times: Vec<f64> = self.t.iter().copied().filter(is_whole).collect();
         let mean = |&t: &f64| {
             let (a, b) = ((t - 0.5 * seconds).max(first), (t + 0.5 * seconds).min(last));
             (integral(b) - integral(a)) / (b - a)
         };
-        Self::of_valid(self.t.clone(), self.t.iter().map(mean).collect())
+        let means: Vec<f64> = times.iter().map(mean).collect();
+        Self::new(times, means).map_err(|_| {
+            Error::scene(format!("a mean over {seconds} s needs a longer series than that from {first} to {last} s"))
+        })
     }
 
     /// The first time (s) at which |x| reaches `threshold`, linear between samples; none if it never does.

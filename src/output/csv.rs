@@ -9,7 +9,7 @@ use std::{
 use super::cannot_write;
 use crate::{
     error::{Error, ErrorKind, Result},
-    math::{table::TableReader, time_series::TimeSeries},
+    math::{readings::Readings, table::TableReader},
 };
 
 /// A CSV file to which the program appends complete rows.
@@ -162,6 +162,8 @@ pub struct SeriesTable {
     pub damaged: Vec<usize>,
     /// One row for each time, with a number for each column; NaN where no measurement exists.
     pub values: Vec<Vec<f64>>,
+    /// Names of the columns whose readings are means since the previous row; the file does not tell.
+    pub mean_columns: Vec<String>,
 }
 
 impl SeriesTable {
@@ -174,7 +176,14 @@ impl SeriesTable {
         let columns = table.column_names().into_iter().skip(1).collect();
         let (values, damaged) = table.columns_and_damage();
         let mut values = values.into_iter();
-        Ok(Self { columns, times: values.next().unwrap_or_default(), damaged, values: values.collect() })
+        let times = values.next().unwrap_or_default();
+        Ok(Self { columns, times, damaged, values: values.collect(), mean_columns: Vec::new() })
+    }
+
+    /// Returns this table with means in the columns for which `is_mean` holds.
+    pub(crate) fn with_means(self, is_mean: impl Fn(&str) -> bool) -> Self {
+        let mean_columns = self.columns.iter().filter(|column| is_mean(column)).cloned().collect();
+        Self { mean_columns, ..self }
     }
 
     /// Returns the remark that rows of the table `name` are damaged, if some are.
@@ -187,13 +196,11 @@ impl SeriesTable {
         Some(format!("{rows}: what is no number there is left out"))
     }
 
-    /// Returns the values of the column `name` from `from` to `until` (s), or `None` if there are fewer than two
-    /// values.
-    pub(crate) fn series(&self, name: &str, from: f64, until: f64) -> Option<TimeSeries> {
+    /// Returns the readings of the column `name` from `from` to `until` (s), or `None` if there are fewer than two.
+    pub(crate) fn readings(&self, name: &str, from: f64, until: f64) -> Option<Readings> {
         let column = &self.values[self.columns.iter().position(|column| column == name)?];
-        let known = self.times.iter().zip(column).filter(|(t, x)| x.is_finite() && (from..=until).contains(*t));
-        let (t, x): (Vec<f64>, Vec<f64>) = known.unzip();
-        TimeSeries::new(t, x).ok()
+        let are_means = self.mean_columns.iter().any(|mean| mean == name);
+        Readings::new(&self.times, column, are_means, [from, until])
     }
 }
 

@@ -32,15 +32,14 @@ impl IntervalMean {
         self.last = Some((t, row));
     }
 
-    /// Returns the means since the last row, and begins the next interval. For the last `totals` columns, and for
+    /// Returns the means since the last row, and begins the next interval. For columns that are no means by `are_means`, and for
     /// columns without an interval of finite values, it returns the last reading.
-    pub(crate) fn take(&mut self, totals: usize) -> Vec<f64> {
+    pub(crate) fn take(&mut self, are_means: &[bool]) -> Vec<f64> {
         let row = self.last.as_ref().map_or(&[][..], |(_, row)| row);
-        let means = row.len().saturating_sub(totals);
-        let of = |(i, (x, (sum, known))): (usize, (&f64, &(f64, f64)))| {
-            if i < means && *known > 0.0 { sum / known } else { *x }
+        let of = |((x, (sum, known)), is_mean): ((&f64, &(f64, f64)), &bool)| {
+            if *is_mean && *known > 0.0 { sum / known } else { *x }
         };
-        let taken = row.iter().zip(&self.sums).enumerate().map(of).collect();
+        let taken = row.iter().zip(&self.sums).zip(are_means).map(of).collect();
         self.sums.fill((0.0, 0.0));
         taken
     }

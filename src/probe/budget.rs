@@ -32,6 +32,11 @@ impl ProbeDefinition for EnergyBudgetPlan {
         Some(EnergyReading::Budget)
     }
 
+    // Energies at one instant add up to the stored energy.
+    fn is_cumulative(&self, _: &str) -> bool {
+        true
+    }
+
     fn enable_records<const D: usize>(&self, sim: &mut Simulation<D>)
     where
         Dim<D>: Dimension<D>,
@@ -79,10 +84,6 @@ impl<const D: usize> Probe<D> for EnergyBudgetProbe {
         let unit = if D == 2 { "J_per_m" } else { "J" };
         let entries = EnergyBudget::default().entries().map(|(name, _)| name);
         ["stored"].into_iter().chain(entries).chain(["residual"]).map(|name| format!("{name}_{unit}")).collect()
-    }
-
-    fn cumulative_columns(&self) -> usize {
-        Probe::<D>::columns(self).len()
     }
 
     fn sample(&self, sim: &Simulation<D>) -> Vec<f64> {

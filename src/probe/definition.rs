@@ -57,6 +57,11 @@ pub(crate) trait ProbeDefinition: Sized {
         None
     }
 
+    /// Returns whether `column` adds up from the start of the run. The program takes no time mean of such a column.
+    fn is_cumulative(&self, _column: &str) -> bool {
+        false
+    }
+
     /// Enables the records of the simulation that the probe reads.
     fn enable_records<const D: usize>(&self, _sim: &mut Simulation<D>)
     where

@@ -65,6 +65,10 @@ impl ProbeDefinition for FlowPlan {
         Some(ProbeLocation::Section([&self.from, &self.to]))
     }
 
+    fn is_cumulative(&self, column: &str) -> bool {
+        column.starts_with("volume_")
+    }
+
     fn build<const D: usize>(&self, _: &System<D>) -> Result<Box<dyn Probe<D>>> {
         Ok(Box::new(FlowProbe::new(&self.from, &self.to)?))
     }
@@ -144,9 +148,5 @@ impl<const D: usize> Probe<D> for FlowProbe<D> {
 
     fn continue_from(&self, before: &[f64], now: &mut [f64], dt: f64) {
         now[1] = before[1] + 0.5 * dt * (before[0] + now[0]);
-    }
-
-    fn cumulative_columns(&self) -> usize {
-        1
     }
 }

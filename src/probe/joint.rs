@@ -36,6 +36,10 @@ impl ProbeDefinition for JointPlan {
         Some(config.clone())
     }
 
+    fn is_cumulative(&self, column: &str) -> bool {
+        column.starts_with("absorbed_")
+    }
+
     fn build<const D: usize>(&self, system: &System<D>) -> Result<Box<dyn Probe<D>>> {
         Ok(Box::new(JointProbe::new(system, &self.joint)?))
     }
@@ -138,9 +142,5 @@ impl<const D: usize> Probe<D> for JointProbe {
         for angle in hinge.into_iter().chain(turns).map(|i| load_columns::<D>() + i) {
             now[angle] = super::motion::unwrapped(before[angle], now[angle]);
         }
-    }
-
-    fn cumulative_columns(&self) -> usize {
-        usize::from(matches!(self.kind, JointKind::Hinge | JointKind::Slider))
     }
 }

@@ -119,11 +119,6 @@ pub trait Probe<const D: usize>: Send {
     fn read_start(&mut self, system: &System<D>) {
         let _ = system;
     }
-
-    /// Returns the number of cumulative columns, which are the last columns. The program takes no time mean of them.
-    fn cumulative_columns(&self) -> usize {
-        0
-    }
 }
 
 /// The part of a simulation that a probe reads.
@@ -150,6 +145,19 @@ pub struct ProbePlan {
     pub every: f64,
     /// Whether a reading is the time mean since the previous reading.
     pub average: bool,
+}
+
+impl ProbePlan {
+    /// Returns whether each reading in `column` is the time mean since the previous row.
+    pub fn is_mean(&self, column: &str) -> bool {
+        self.average && !self.kind.is_cumulative(column)
+    }
+
+    /// Returns the plan and the column of `series`, named as in `box.heave_m`, or `None` if none of `probes` has this name.
+    pub(crate) fn of_series<'a>(probes: &'a [Self], series: &'a str) -> Option<(&'a Self, &'a str)> {
+        let (name, column) = series.split_once('.')?;
+        Some((probes.iter().find(|probe| probe.name == name)?, column))
+    }
 }
 
 /// Defines [`ProbeConfig`] and [`ProbeKind`]. Each line defines a kind of probe by its key, its configuration and its
@@ -281,6 +289,11 @@ macro_rules! probe_kinds {
             /// Returns the kind of energy in the last column: see [`ProbeDefinition::energy_reading`].
             pub(crate) fn energy_reading(&self) -> Option<EnergyReading> {
                 match self { $($(Self::$variant(plan) => plan.energy_reading(),)?)* }
+            }
+
+            /// Returns whether `column` adds up over the run: see [`ProbeDefinition::is_cumulative`].
+            fn is_cumulative(&self, column: &str) -> bool {
+                match self { $($(Self::$variant(plan) => plan.is_cumulative(column),)?)* }
             }
 
             /// Enables the records of the simulation that the probe reads. They begin anew.

@@ -34,6 +34,10 @@ impl ProbeDefinition for OpenBoundaryPlan {
         Some(face.clone())
     }
 
+    fn is_cumulative(&self, column: &str) -> bool {
+        !column.starts_with("water_")
+    }
+
     fn build<const D: usize>(&self, system: &System<D>) -> Result<Box<dyn Probe<D>>> {
         Ok(Box::new(OpenBoundaryProbe::new(system, &self.face)?))
     }

@@ -6,13 +6,13 @@ use serde::Serialize;
 use super::{
     encoding::BinaryData,
     run_data::{ProbeTable, RunData},
-    summary_tables::column_series,
 };
 use crate::{
     analysis,
     analysis::Verdict,
     math::{
         format::{column_label, unit},
+        readings::reading_times,
         time_series::TimeSeries,
     },
     run::RaoResult,
@@ -159,12 +159,16 @@ const FAMILIES: [(&[&str], bool); 20] = [
 /// Adds `table` to `blob`, and returns the description of the table for the page.
 pub(crate) fn encode_table(table: &ProbeTable, blob: &mut BinaryData) -> TablePlots {
     let rows = thinned_rows(table);
-    let t = blob.push_floats(rows.iter().map(|&i| table.times[i] as f32));
-    let columns = table.columns.iter().zip(&table.values).map(|(name, x)| PlotColumn {
-        name: name.clone(),
-        label: column_label(name),
-        unit: unit(name),
-        x: blob.push_floats(rows.iter().map(|&i| x[i] as f32)),
+    let has_means = table.are_means.contains(&true);
+    let times = reading_times(&table.times, has_means);
+    let t = blob.push_floats(rows.iter().map(|&i| times[i] as f32));
+    let columns = table.columns.iter().enumerate().map(|(column, name)| {
+        let x = &table.values[column];
+        // Beside means, a total at the middle of the interval is that between two rows.
+        let is_between = has_means && !table.are_means[column];
+        let value = |i: usize| if is_between && i > 0 { 0.5 * (x[i - 1] + x[i]) } else { x[i] };
+        let x = blob.push_floats(rows.iter().map(|&i| value(i) as f32));
+        PlotColumn { name: name.clone(), label: column_label(name), unit: unit(name), x }
     });
     let columns = columns.collect();
     let (charts, idle) = match table.is_breakdown() {
@@ -189,7 +193,7 @@ pub(crate) fn encode_table(table: &ProbeTable, blob: &mut BinaryData) -> TablePl
 fn encode_spectra(table: &ProbeTable, charts: &[Chart], blob: &mut BinaryData) -> Vec<ColumnSpectrum> {
     let shown = charts.iter().filter(|chart| !chart.folded).flat_map(|chart| chart.columns.iter().copied());
     let of = |column: usize| {
-        let spectrum = analysis::displayed_spectrum(&column_series(&table.times, &table.values[column])?)?;
+        let spectrum = analysis::displayed_spectrum(&table.readings(column)?)?;
         let f = blob.push_floats(spectrum.frequencies().map(|f| f as f32));
         let s = blob.push_floats(spectrum.density.iter().map(|s| *s as f32));
         Some(ColumnSpectrum { column, rows: spectrum.density.len(), f, s })

@@ -14,6 +14,7 @@ use super::{
 use crate::{
     analysis::{CheckCurves, ReferenceCheck},
     error::{Error, Result},
+    math::readings::Readings,
     output::{FrameSequence, Manifest, SeriesTable},
     plan::Plan,
     probe::ProbeLocation,
@@ -94,6 +95,8 @@ pub(crate) struct ProbeTable {
     pub times: Vec<f64>,
     /// The values of each column; NaN if the probe had nothing to measure.
     pub values: Vec<Vec<f64>>,
+    /// Whether the readings of each column are means since the previous row.
+    pub are_means: Vec<bool>,
 }
 
 impl RunData {
@@ -250,6 +253,14 @@ impl ProbeTable {
         let SeriesTable { columns, times, values, .. } = SeriesTable::read(&series.join(format!("{name}.csv")))?;
         let probe = plan.and_then(|plan| plan.probes.iter().find(|probe| probe.name == name));
         let what = probe.map_or("table", |probe| probe.kind.label());
-        Ok(Self { name: name.into(), what, columns, times, values })
+        let is_mean = |column: &String| probe.is_some_and(|probe| probe.is_mean(column));
+        let are_means = columns.iter().map(is_mean).collect();
+        Ok(Self { name: name.into(), what, columns, times, values, are_means })
+    }
+
+    /// Returns the readings of a column, or `None` if it has fewer than two.
+    pub(crate) fn readings(&self, column: usize) -> Option<Readings> {
+        let are_means = self.are_means[column];
+        Readings::new(&self.times, &self.values[column], are_means, [f64::NEG_INFINITY, f64::INFINITY])
     }
 }

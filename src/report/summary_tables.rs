@@ -2,19 +2,10 @@
 
 use super::run_data::ProbeTable;
 use crate::{
-    analysis::{moments, zero_crossing_waves},
-    math::{
-        format::{self, four_digits},
-        time_series::TimeSeries,
-    },
+    analysis::{moments_of_readings, waves_of_readings},
+    math::format::{self, four_digits},
     probe::relative_residual,
 };
-
-/// Returns the column `x` over `t` (s) as a series, or `None` if the column has fewer than two numbers.
-pub(super) fn column_series(t: &[f64], x: &[f64]) -> Option<TimeSeries> {
-    let (t, x): (Vec<f64>, Vec<f64>) = t.iter().zip(x).filter(|(_, x)| x.is_finite()).unzip();
-    TimeSeries::new(t, x).ok()
-}
 
 /// Returns the statistics of all columns of `tables`, with a header row and a row for each column. The table omits the
 /// entries of a budget or balance that are 0 at all times.
@@ -25,16 +16,16 @@ pub(crate) fn summary_rows(tables: &[ProbeTable]) -> Vec<Vec<String>> {
     let digits = four_digits;
     let time = |t: f64| format!("{t:.3}");
     for table in tables {
-        for (i, (name, x)) in table.columns.iter().zip(&table.values).enumerate() {
+        for (i, name) in table.columns.iter().enumerate() {
             if table.is_breakdown() && table.is_zero(i) {
                 continue;
             }
-            let Some(series) = column_series(&table.times, x) else { continue };
-            let f = moments(&series);
+            let Some(readings) = table.readings(i) else { continue };
+            let f = moments_of_readings(&readings);
             let mut row = vec![format!("{} · {}", table.name, format::column_label(name)), format::unit(name).into()];
             row.extend([digits(f.min.0), time(f.min.1), digits(f.max.0), time(f.max.1)]);
             row.extend([digits(f.mean), digits(f.standard_deviation), digits(f.last)]);
-            row.extend(zero_crossing_waves(&series).map_or_else(
+            row.extend(waves_of_readings(&readings).map_or_else(
                 || vec![String::new(); 5],
                 |w| {
                     vec![
@@ -64,16 +55,16 @@ pub(crate) fn energy_summary(table: &ProbeTable) -> Option<(Vec<Vec<String>>, St
     let mut rows = vec![heads.collect::<Vec<String>>()];
     let digits = four_digits;
     let find = |part: &str| table.columns.iter().position(|name| format::column_label(name) == part);
-    for (name, x) in table.columns.iter().zip(&table.values) {
-        let (first, f) = (*x.first()?, moments(&column_series(&table.times, x)?));
+    for (i, name) in table.columns.iter().enumerate() {
+        let (first, f) = (*table.values[i].first()?, moments_of_readings(&table.readings(i)?));
         let cells = [first, f.last, f.last - first, f.min.0, f.max.0];
         rows.push(std::iter::once(format::column_label(name)).chain(cells.map(digits)).collect());
     }
     let total = &table.values[find("total")?];
     let change = total.last()? - total.first()?;
     let moving = find("water kinetic")
-        .and_then(|i| column_series(&table.times, &table.values[i]))
-        .map_or(0.0, |s| moments(&s).max.0);
+        .and_then(|i| table.readings(i))
+        .map_or(0.0, |readings| moments_of_readings(&readings).max.0);
     let mut said =
         format!("The total {} by {} {unit}", if change < 0.0 { "falls" } else { "rises" }, digits(change.abs()));
     if moving > 0.0 {

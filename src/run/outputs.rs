@@ -60,6 +60,8 @@ struct ProbeOutput<const D: usize> {
     due: OutputSchedule,
     /// The readings of every step since the last row, if the probe takes means.
     mean: Option<IntervalMean>,
+    /// Whether the probe takes means in each column.
+    are_means: Vec<bool>,
 }
 
 impl<const D: usize> ProbeOutput<D> {
@@ -87,7 +89,7 @@ impl<const D: usize> ProbeOutput<D> {
         let row = match (&mut self.mean, row) {
             (Some(mean), row) => {
                 row.into_iter().for_each(|row| mean.add(t, row));
-                due.then(|| mean.take(self.probe.cumulative_columns()))
+                due.then(|| mean.take(&self.are_means))
             }
             (None, row) => row,
         };
@@ -162,7 +164,9 @@ impl<const D: usize> Outputs<D> {
             };
             let due = OutputSchedule { every: words.every, next: next(i, 0) };
             let kept = from.and_then(|extent| extent.means.get(i).cloned().flatten());
-            watched.push(ProbeOutput { probe, table, due, mean: words.average.then(|| kept.unwrap_or_default()) });
+            let are_means = probe.columns().iter().map(|column| words.is_mean(column)).collect();
+            let mean = words.average.then(|| kept.unwrap_or_default());
+            watched.push(ProbeOutput { probe, table, due, mean, are_means });
         }
         let count = watched.len();
         let mut contacts = Vec::new();

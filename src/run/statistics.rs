@@ -9,14 +9,19 @@ use serde::Serialize;
 
 use super::{outputs::series_folder, run_folder::scene_file};
 use crate::{
-    analysis::{self, RaoPoint, moments, rao, rao_over_frequency, reflection, spectrum},
+    analysis::{
+        self, LARGEST_GAP, RaoPoint, gaps_hide_waves, moments_of_readings, rao, rao_over_frequency, reflection,
+        spectrum,
+    },
     error::{Error, ErrorKind, Result, suggestion},
     math::{
         format::{three_digits, unit},
+        readings::Readings,
         time_series::TimeSeries,
     },
     output::{Manifest, SeriesTable, write_atomically},
     plan::{Plan, StatisticKind, StatisticPlan},
+    probe::ProbePlan,
     scene::Scene,
 };
 
@@ -94,36 +99,49 @@ pub fn statistics(folder: &Path, asked: &StatisticsFilter) -> Result<RunStatisti
     }
     told.remarks.extend(damages(&missing, &tables));
     if told.rows.is_empty() {
+        require_known_series(folder, &tables, &names, asked)?;
         check_time_range(folder, &tables, asked)?;
     }
-    match &asked.series {
-        Some(series) if told.rows.is_empty() => {
-            let of_table = |(probe, table): (&String, &SeriesTable)| -> Vec<String> {
-                table.columns.iter().map(|column| format!("{probe}.{column}")).collect()
-            };
-            let known: Vec<String> = tables.iter().flat_map(of_table).collect();
-            let near = suggestion(series, known.iter().map(String::as_str).chain(names.iter().copied()));
-            let what = format!("there is nothing to tell of {series:?} in {}{near}", folder.display());
-            Err(Error::new(ErrorKind::Usage, what).help(format!("the probes are: {}", names.join(", "))))
-        }
-        _ => Ok(told),
-    }
+    Ok(told)
 }
 
-/// Checks that the requested time range overlaps the time range of the run in `folder`.
+/// Checks that the requested series is one of `tables`, or all series of a probe of `names`.
+fn require_known_series(folder: &Path, tables: &ProbeTables, names: &[&str], asked: &StatisticsFilter) -> Result<()> {
+    let Some(series) = &asked.series else { return Ok(()) };
+    let of_table = |(probe, table): (&String, &SeriesTable)| -> Vec<String> {
+        table.columns.iter().map(|column| format!("{probe}.{column}")).collect()
+    };
+    let known: Vec<String> =
+        tables.iter().flat_map(of_table).chain(names.iter().map(|name| name.to_string())).collect();
+    if known.contains(series) {
+        return Ok(());
+    }
+    let near = suggestion(series, known.iter().map(String::as_str));
+    let what = format!("there is nothing to tell of {series:?} in {}{near}", folder.display());
+    Err(Error::new(ErrorKind::Usage, what).help(format!("the probes are: {}", names.join(", "))))
+}
+
+/// Returns the reason why no series has statistics in the requested time range of the run in `folder`. Returns `Ok` if no
+/// series and no time range is requested.
 fn check_time_range(folder: &Path, tables: &ProbeTables, asked: &StatisticsFilter) -> Result<()> {
     let times = || tables.values().flat_map(|table| table.times.first().into_iter().chain(table.times.last()));
     let [first, last] = [times().copied().fold(f64::INFINITY, f64::min), times().copied().fold(0.0, f64::max)];
     let (run, from, until) = (folder.display(), asked.from.unwrap_or(first), asked.until.unwrap_or(last));
+    let series = asked.series.as_ref().map_or("no series".into(), |series| format!("{series:?}"));
+    let has = if asked.series.is_some() { "has no" } else { "has" };
     let what = match () {
-        () if from >= last => format!("the readings in {run} end at {last} s: there are none after {from} s"),
-        () if until <= first => format!("the readings in {run} begin at {first} s: there are none before {until} s"),
+        () if tables.is_empty() || (asked.from.or(asked.until).is_none() && asked.series.is_none()) => return Ok(()),
         () if from > until => format!("from {from} s until {until} s there is no time"),
-        () if asked.series.is_some() || asked.from.or(asked.until).is_none() => return Ok(()),
-        () => format!("no series in {run} has two readings from {from} s until {until} s"),
+        () if from >= last && from > first => {
+            format!("the readings in {run} end at {last} s: there are none after {from} s")
+        }
+        () if until <= first && until < last => {
+            format!("the readings in {run} begin at {first} s: there are none before {until} s")
+        }
+        () => format!("{series} in {run} {has} two readings from {from} s until {until} s"),
     };
     let help = format!("choose --from and --until between {first} and {last} s");
-    if tables.is_empty() { Ok(()) } else { Err(Error::new(ErrorKind::Usage, what).help(help)) }
+    Err(Error::new(ErrorKind::Usage, what).help(help))
 }
 
 /// Writes the statistics and the spectra of the run in `folder`, and returns the reasons for missing statistics.
@@ -149,8 +167,11 @@ type ProbeTables = BTreeMap<String, SeriesTable>;
 /// Reads the tables of the run in `folder`.
 fn read_tables(folder: &Path, plan: &Plan) -> ProbeTables {
     let series = series_folder(folder);
-    let read = |name: &String| Some((name.clone(), SeriesTable::read(&series.join(format!("{name}.csv"))).ok()?));
-    plan.probes.iter().filter_map(|probe| read(&probe.name)).collect()
+    let read = |probe: &ProbePlan| {
+        let table = SeriesTable::read(&series.join(format!("{}.csv", probe.name))).ok()?;
+        Some((probe.name.clone(), table.with_means(|column| probe.is_mean(column))))
+    };
+    plan.probes.iter().filter_map(read).collect()
 }
 
 /// Returns the names of the tables that the run in `folder` should have and has not.
@@ -182,40 +203,54 @@ fn from_tables(tables: &ProbeTables, plan: &Plan, asked: &StatisticsFilter) -> R
     };
     let mut told = RunStatistics::default();
     for probe in &plan.probes {
-        for column in tables.get(&probe.name).iter().flat_map(|table| &table.columns) {
-            let name = format!("{}.{column}", probe.name);
-            if meant(&name)
-                && let Some(series) = series_in_window(tables, &name, window)
-            {
-                told.push_series("", &name, &series);
-            }
-        }
+        let columns = tables.get(&probe.name).into_iter().flat_map(|table| &table.columns);
+        let meant = columns.filter(|column| meant(&format!("{}.{column}", probe.name)));
+        let known: Vec<(&String, Readings)> = meant
+            .filter_map(|column| Some((column, tables[&probe.name].readings(column, window.0, window.1)?)))
+            .collect();
+        known.iter().for_each(|(column, of)| told.push_series("", &format!("{}.{column}", probe.name), of));
+        told.remarks.extend(remark_on_gaps(&probe.name, &known));
     }
     for words in &plan.statistics {
         if words.what.series().into_iter().any(meant) {
-            let window = (asked.from.or(words.from), asked.until.or(words.until));
-            told.push_declared(
-                tables,
-                words,
-                (window.0.unwrap_or(f64::NEG_INFINITY), window.1.unwrap_or(f64::INFINITY)),
-            );
+            let from = words.from.map_or(window.0, |from| from.max(window.0));
+            let until = words.until.map_or(window.1, |until| until.min(window.1));
+            told.push_declared(tables, words, (from, until));
         }
     }
     told
 }
 
-/// Returns the samples of the series `name` in the time window (s).
-fn series_in_window(tables: &ProbeTables, name: &str, (from, until): (f64, f64)) -> Option<TimeSeries> {
+/// Returns the readings of the series `name` in the time window (s).
+fn readings_in_window(tables: &ProbeTables, name: &str, (from, until): (f64, f64)) -> Option<Readings> {
     let (probe, column) = name.split_once('.')?;
-    tables.get(probe)?.series(column, from, until)
+    tables.get(probe)?.readings(column, from, until)
+}
+
+/// Returns a remark for each probe with missing readings between others, from its `columns` with their readings.
+fn remark_on_gaps(probe: &str, columns: &[(&String, Readings)]) -> Option<String> {
+    let with_gaps = || columns.iter().filter(|(_, readings)| readings.longest_gap() > 0.0);
+    let (column, worst) = with_gaps().max_by(|a, b| a.1.longest_gap().total_cmp(&b.1.longest_gap()))?;
+    let others = match with_gaps().count() - 1 {
+        0 => String::new(),
+        count => format!(", the worst of {} columns of {probe}", count + 1),
+    };
+    let [share, gap] = [100.0 * worst.missing_share(), worst.longest_gap()].map(three_digits);
+    let waves = match with_gaps().any(|(_, readings)| gaps_hide_waves(readings)) {
+        true => format!("; waves and spectra are not given over gaps of more than {LARGEST_GAP} mean periods"),
+        false => String::new(),
+    };
+    Some(format!(
+        "{probe}.{column}{others}: {share} % of its readings are missing, at most for {gap} s; means leave gaps out{waves}"
+    ))
 }
 
 /// Returns the remark that a series of the statistic is shorter than its period.
-fn too_short(words: &StatisticPlan, found: &[TimeSeries]) -> Option<String> {
+fn too_short(words: &StatisticPlan, found: &[Readings]) -> Option<String> {
     let (StatisticKind::Reflection { period, .. } | StatisticKind::Rao { period, .. }) = words.what else {
         return None;
     };
-    let lasts = found.iter().map(|series| series.span().1 - series.span().0).fold(f64::INFINITY, f64::min);
+    let lasts = found.iter().map(|of| of.series().span().1 - of.series().span().0).fold(f64::INFINITY, f64::min);
     let period = period.filter(|period| lasts < SHORTEST_SPAN * period)?;
     let (name, lasts) = (&words.name, three_digits(lasts));
     Some(format!("statistic {name}: its readings span {lasts} s, less than a period of {period} s: nothing is told"))
@@ -237,12 +272,12 @@ impl RunStatistics {
     }
 
     /// Adds all statistics of one series.
-    fn push_series(&mut self, name: &str, of: &str, series: &TimeSeries) {
-        let (own, m) = (unit(of), moments(series));
+    fn push_series(&mut self, name: &str, of: &str, readings: &Readings) {
+        let (own, m, series) = (unit(of), moments_of_readings(readings), readings.series());
         let plain =
             [("mean", m.mean, own), ("std", m.standard_deviation, own), ("min", m.min.0, own), ("max", m.max.0, own)];
         self.push(name, of, series.span(), &plain);
-        let Some(w) = analysis::zero_crossing_waves(series) else { return };
+        let Some(w) = analysis::waves_of_readings(readings) else { return };
         let count = w.count as f64;
         let waves = [
             ("waves", count, "–"),
@@ -282,8 +317,8 @@ impl RunStatistics {
 
     /// Adds the statistics that the scene declares.
     fn push_declared(&mut self, tables: &ProbeTables, words: &StatisticPlan, window: (f64, f64)) {
-        let found: Option<Vec<TimeSeries>> =
-            words.what.series().into_iter().map(|name| series_in_window(tables, name, window)).collect();
+        let found: Option<Vec<Readings>> =
+            words.what.series().into_iter().map(|name| readings_in_window(tables, name, window)).collect();
         let Some(found) = found else {
             self.remarks.push(format!("statistic {}: a series has no two readings in its time", words.name));
             return;
@@ -292,20 +327,31 @@ impl RunStatistics {
             self.remarks.push(remark);
             return;
         }
+        if let StatisticKind::Reflection { period: None, .. } | StatisticKind::Rao { period: None, .. } = words.what
+            && found.iter().any(gaps_hide_waves)
+        {
+            self.remarks.push(format!(
+                "statistic {}: its series have gaps of more than {LARGEST_GAP} mean periods: nothing is formed from spectra; of \
+                 regular waves name the `period`",
+                words.name
+            ));
+            return;
+        }
         let all = || words.what.series().into_iter().zip(&found);
         let before = self.rows.len();
         match &words.what {
             StatisticKind::Waves { .. } => all().for_each(|(of, series)| self.push_series(&words.name, of, series)),
             StatisticKind::Reflection { gauges, depth, g, period } => {
                 let (of, own) = (&gauges[0].0, unit(&gauges[0].0));
-                let placed: Vec<(f64, &TimeSeries)> = gauges.iter().map(|(_, x)| *x).zip(&found).collect();
+                let placed: Vec<(f64, &TimeSeries)> =
+                    gauges.iter().map(|(_, x)| *x).zip(found.iter().map(Readings::series)).collect();
                 if let Some(r) = reflection(&placed, *depth, *g, *period) {
                     let figures = [
                         ("reflection", r.coefficient(), "–"),
                         ("H_incident", r.incident, own),
                         ("H_reflected", r.reflected, own),
                     ];
-                    self.push(&words.name, of, found[0].span(), &figures);
+                    self.push(&words.name, of, found[0].series().span(), &figures);
                     if r.coefficient() > LARGEST_REFLECTION {
                         self.remarks.push(format!(
                             "statistic {}: the reflected waves are {} times as high as the incident ones: name the gauges in the \
@@ -318,15 +364,16 @@ impl RunStatistics {
             }
             StatisticKind::Rao { motions, wave, period } => {
                 let (motion, last) = found.split_at(motions.len());
+                let wave_series = last[0].series();
                 if period.is_none() {
-                    self.remark_too_few_waves(&words.name, &last[0]);
+                    self.remark_too_few_waves(&words.name, wave_series);
                 }
-                for (of, series) in motions.iter().zip(motion) {
+                for (of, series) in motions.iter().zip(motion.iter().map(Readings::series)) {
                     let own = format!("{}/{}", unit(of), unit(wave));
                     if period.is_none() {
-                        self.push_rao(&words.name, of, &own, rao_over_frequency(series, &last[0]));
+                        self.push_rao(&words.name, of, &own, rao_over_frequency(series, wave_series));
                     }
-                    let Some(r) = rao(series, &last[0], *period) else { continue };
+                    let Some(r) = rao(series, wave_series, *period) else { continue };
                     let figures = [
                         ("rao", r.ratio, own.as_str()),
                         ("phase", r.phase * 180.0 / PI, "°"),

@@ -324,14 +324,14 @@ impl Scene {
         Ok(Plan {
             title: self.title.clone().unwrap_or_default(),
             until: self.until,
-            probes: self.probe.iter().filter_map(|probe| probe.to_plan(self.until)).collect(),
+            probes: self.probe_plans(),
             contacts: self.probe.iter().filter_map(|probe| probe.to_contact_list(self.until)).collect(),
             frames: (self.frames.as_ref().and_then(|frames| frames.build(ctx)))
                 .map(|frames| FramesPlan { moorings: !self.mooring.is_empty(), ..frames }),
             checkpoint_every: checkpoint.every,
             checkpoint_wall: checkpoint.wall_time(),
             checks: (self.check.iter().enumerate())
-                .map(|(i, check)| check.build(ctx, &format!("check.{i}")))
+                .map(|(i, check)| check.build(ctx, &format!("check.{i}"), &self.probe_plans()))
                 .collect::<Result<_>>()?,
             statistics: statistics
                 .map(|(i, statistic)| statistic.build(ctx, &format!("statistic.{i}"), &series, still))

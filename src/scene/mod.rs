@@ -418,6 +418,11 @@ impl Scene {
         self.model.device.as_deref().filter(|name| *name != PROCESSOR)
     }
 
+    /// Returns the keys that replaced those of the file, in their order, with numbers in place of names.
+    pub(crate) fn override_keys(&self) -> &[String] {
+        &self.origin.sets
+    }
+
     /// Returns the keys and values for which the scene uses an old name.
     pub fn renamed_names(&self) -> &[RenamedName] {
         &self.origin.renamed

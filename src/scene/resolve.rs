@@ -236,6 +236,7 @@ impl Scene {
         for (i, name) in analysis::default_names(&scene.statistic).into_iter().enumerate() {
             fills.fill(format!("statistic.{i}.name"), &mut scene.statistic[i].name, name, "after its kind");
         }
+        analysis::require_different_names(ctx, &scene.statistic)?;
         Ok((scene, defaults))
     }
 

@@ -39,7 +39,7 @@ pub(super) struct SceneSource {
     /// Where every key begins in it.
     places: BTreeMap<String, usize>,
     /// Keys set on the command line.
-    sets: Vec<String>,
+    pub sets: Vec<String>,
     /// Names of the solids, in order, so that a key can say `solid.box` for `solid.2`.
     names: Vec<String>,
     /// Keys and values that are written with an old name.

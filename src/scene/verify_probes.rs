@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{
     error::{Error, ErrorCode, Result, suggestion},
-    probe::ProbeScope,
+    probe::{ProbePlan, ProbeScope},
 };
 
 impl Scene {
@@ -37,6 +37,11 @@ impl Scene {
     /// Stem of the file of each probe.
     pub(super) fn probe_names(&self) -> Vec<String> {
         ProbeConfig::names(&self.probe)
+    }
+
+    /// Plans of the probes that write a series.
+    pub(super) fn probe_plans(&self) -> Vec<ProbePlan> {
+        self.probe.iter().filter_map(|probe| probe.to_plan(self.until)).collect()
     }
 }
 

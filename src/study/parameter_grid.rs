@@ -6,6 +6,7 @@ use super::Job;
 use crate::{
     error::{Error, ErrorKind, Result},
     output::checkpoint::fnv1a,
+    scene::{Scene, current_key},
 };
 
 /// The largest length of a folder name made from the values.
@@ -47,7 +48,7 @@ impl ParameterGrid {
     /// become visible early.
     ///
     /// # Errors
-    /// `Usage` if a spacing or a list of values is empty or repeated; the errors of `Job::repeated`.
+    /// `Usage` if a spacing or a list of values is empty or repeated, or if two keys vary the same value; the errors of `Job::repeated`.
     pub(crate) fn jobs(&self, out: &Path) -> Result<Vec<Job>> {
         let mut dp = self.dp.clone();
         dp.sort_by(|a, b| b.total_cmp(a));
@@ -59,6 +60,7 @@ impl ParameterGrid {
             return Err(Error::new(ErrorKind::Usage, "the spacing is varied apart from other keys")
                 .help("write  --dp 0.02,0.01"));
         }
+        self.require_different_keys()?;
         let frames = self
             .frames
             .map_or("off".into(), |every| format!("{{ every = {every:?}, fields = [\"velocity\", \"pressure\"] }}"));
@@ -79,6 +81,32 @@ impl ParameterGrid {
                 .help("give each spacing and each value once")),
             None => Ok(jobs.into_iter().map(|job| job.repeated(self.repeat)).collect::<Result<Vec<_>>>()?.concat()),
         }
+    }
+
+    /// Checks that no varied key is another one or a part of it, by a former name or by a number in place of a name either.
+    ///
+    /// # Errors
+    /// `Usage`, with both keys.
+    fn require_different_keys(&self) -> Result<()> {
+        let firsts = self.vary.iter().filter_map(|vary| Some((vary.key.clone(), vary.values.first()?.clone())));
+        let sets: Vec<(String, String)> = self.overrides.iter().cloned().chain(firsts).collect();
+        // An invalid key or value is an error of its run.
+        let known = Scene::read(&self.scene, &sets).ok();
+        let known = known.and_then(|scene| Some(scene.override_keys().get(self.overrides.len()..)?.to_vec()));
+        let keys = known.unwrap_or_else(|| self.vary.iter().map(|vary| current_key(&vary.key)).collect());
+        let is_part =
+            |part: &str, of: &str| part.strip_prefix(of).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'));
+        for (j, later) in keys.iter().enumerate() {
+            if let Some(i) = (0..j).find(|&i| is_part(later, &keys[i]) || is_part(&keys[i], later)) {
+                let [first, second] = [i, j].map(|i| &self.vary[i].key);
+                let what = match first == second {
+                    true => format!("\"{first}\" is varied twice"),
+                    false => format!("\"{first}\" and \"{second}\" vary the same value"),
+                };
+                return Err(Error::new(ErrorKind::Usage, what).help("give all values of a key in one  --vary"));
+            }
+        }
+        Ok(())
     }
 
     /// Returns every combination of the varied values, or a single empty combination if nothing varies.

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::{ProbeTables, series_in_window};
+use super::{ProbeTables, readings_in_window};
 use crate::{analysis::displayed_spectrum, error::Result, math::format::unit, output::write_atomically};
 
 /// The file, in the run's folder.
@@ -17,8 +17,8 @@ pub(crate) fn write(folder: &Path, tables: &ProbeTables) -> Result<()> {
     for (probe, table) in tables {
         for column in &table.columns {
             let name = format!("{probe}.{column}");
-            let all = series_in_window(tables, &name, (f64::NEG_INFINITY, f64::INFINITY));
-            let Some(spectrum) = all.and_then(|series| displayed_spectrum(&series)) else { continue };
+            let all = readings_in_window(tables, &name, (f64::NEG_INFINITY, f64::INFINITY));
+            let Some(spectrum) = all.and_then(|readings| displayed_spectrum(&readings)) else { continue };
             let of = density_unit(unit(&name));
             for (f, s) in spectrum.frequencies().zip(&spectrum.density) {
                 text += &format!("{name},{f:?},{s:?},{of}\n");

@@ -15,7 +15,7 @@ use crate::{
         time_series::TimeSeries,
     },
     plan::{Align, CheckPlan, Reference, ResponseReference, Score, StatisticKind, StatisticPlan},
-    probe::ProbeConfig,
+    probe::{ProbeConfig, ProbePlan},
     scene::{
         context::{Context, Defaults, FileNote, quoted_list, set_keys},
         files, finite_law,
@@ -25,6 +25,9 @@ use crate::{
 
 /// Largest difference between the depth of a reflection and that of the scene, over the latter and besides one dp, without a note, –.
 const OTHER_DEPTH: f64 = 0.05;
+
+/// Round-off of a time, over the interval between readings.
+const ROUND_OFF: f64 = 1e-9;
 
 /// A section `[[check]]`: compares a column of a probe with a column of a reference table, or with a formula.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -338,8 +341,37 @@ impl CheckConfig {
         ctx.add_note(FileNote { is_warning: false, topic: "event_after_end", what, remedy });
     }
 
+    /// Notes that the time range of a check lies outside the run, or between two readings. A time range after the end of the run
+    /// is another finding.
+    fn note_time_range(&self, ctx: &Context, probes: &[ProbePlan]) {
+        let mut ranges = vec![(&self.series, self.from, self.until)];
+        ranges.extend(self.response.iter().map(|of| (&of.to, of.from.or(self.from), of.until.or(self.until))));
+        for (series, from, until) in ranges {
+            let Some((probe, column)) = ProbePlan::of_series(probes, series) else { continue };
+            if self.reference.is_some() || from.or(until).is_none() || matches!(self.align, Some(Align::Start(_))) {
+                continue;
+            }
+            let (first, last) = (from.unwrap_or(0.0), until.unwrap_or(ctx.until));
+            // A mean belongs to half an interval before its row. The last row is at the end of the run.
+            let delay = if probe.is_mean(column) { 0.5 * probe.every } else { 0.0 };
+            let rows_until =
+                |t: f64| if t >= ctx.until { (ctx.until / probe.every).ceil() } else { (t / probe.every).floor() };
+            let first_row = ((first.max(0.0) + delay) / probe.every - ROUND_OFF).ceil();
+            if first >= ctx.until || rows_until(last + delay + ROUND_OFF * probe.every) - first_row >= 1.0 {
+                continue;
+            }
+            let what = format!(
+                "the check of \"{}\" has less than two readings of \"{series}\" from {first} to {last} s: the run, from 0 to {} s, \
+                 reads it every {} s",
+                self.series, ctx.until, probe.every
+            );
+            let remedy = "give  from  and  until  within the run, with two readings between them".into();
+            ctx.add_note(FileNote { is_warning: false, topic: "event_after_end", what, remedy });
+        }
+    }
+
     /// Returns the check of the run. Opens its table and verifies that it has the columns.
-    pub(crate) fn build(&self, ctx: &Context, key: &str) -> Result<CheckPlan> {
+    pub(crate) fn build(&self, ctx: &Context, key: &str, probes: &[ProbePlan]) -> Result<CheckPlan> {
         let reference = match (&self.formula, &self.response) {
             (Some(text), _) => Reference::Formula(text.clone()),
             (None, Some(response)) => Reference::Response(response.plan()),
@@ -368,7 +400,7 @@ impl CheckConfig {
                 Reference::Table { file: Path::new(&file).to_path_buf(), time, column, scaling }
             }
         };
-        Ok(CheckPlan {
+        let mut plan = CheckPlan {
             series: self.series.clone(),
             reference,
             from: self.from,
@@ -378,7 +410,14 @@ impl CheckConfig {
             align: self.align,
             paper: self.paper,
             bound: self.bound,
-        })
+            means: Vec::new(),
+        };
+        let are_means = |series: &&String| {
+            ProbePlan::of_series(probes, series).is_some_and(|(probe, column)| probe.is_mean(column))
+        };
+        plan.means = plan.series_names().filter(are_means).cloned().collect();
+        self.note_time_range(ctx, probes);
+        Ok(plan)
     }
 }
 
@@ -534,4 +573,16 @@ pub(crate) fn default_names(statistics: &[StatisticConfig]) -> Vec<String> {
         }
     };
     statistics.iter().map(name).collect()
+}
+
+/// Refuses two statistics of one name, whose rows could not be told apart.
+///
+/// # Errors
+/// `Scene`, at the later one.
+pub(crate) fn require_different_names(ctx: &Context, statistics: &[StatisticConfig]) -> Result<()> {
+    let is_taken = |i: &usize| statistics[..*i].iter().any(|before| before.name == statistics[*i].name);
+    let Some(i) = (1..statistics.len()).find(is_taken) else { return Ok(()) };
+    let name = statistics[i].name.as_deref().unwrap_or_default();
+    let what = format!("two statistics are called \"{name}\"");
+    Err(ctx.error_with_help(&format!("statistic.{i}.name"), what, "give each statistic a name of its own"))
 }

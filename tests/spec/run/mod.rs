@@ -8,6 +8,7 @@ mod probes;
 mod progress;
 mod ranks;
 mod rao;
+mod readings;
 mod restart;
 mod statistics;
 mod step_checks;

@@ -376,6 +376,19 @@ fn a_check_that_the_run_does_not_reach_is_found() {
         );
     }
     assert_not_found("check-within", &check("formula = \"0\"\nfrom = 1.0"), &[], "judge");
+    // The probe reads every 2 ms.
+    for (name, range) in
+        [("check-before", "from = -5.0\nuntil = -1.0"), ("check-between", "from = 1.0005\nuntil = 1.0015")]
+    {
+        let words = ["\"box.heave_m\" has less than two readings", "from 0 to 2 s", "every 0.002 s"];
+        assert_found(name, &check(&format!("formula = \"0\"\n{range}")), &[], &words);
+    }
+    // A mean over 1 s belongs to 0.5 s before its row.
+    let means = check("formula = \"0\"\nfrom = 0.5")
+        .replace("motion = \"box\"", "motion = \"box\"\nevery = 1.0\naverage = true");
+    assert_not_found("check-means", &means, &[], "two readings");
+    assert_found("check-mean", &means.replace("from = 0.5", "from = 0.6"), &[], &["two readings", "every 1 s"]);
+    assert_not_found("check-two", &check("formula = \"0\"\nfrom = 1.0\nuntil = 1.003"), &[], "two readings");
     let table = [("r.csv", "t_s,z_m\n10,0\n11,0\n12,0\n")];
     let by_table = |words: &str| check(&format!("reference = \"r.csv\"\ncolumn = \"z_m\"\n{words}"));
     let words = ["\"box.heave_m\" is not judged", "from 0 to 2 s", "0 of the 3 samples of r.csv", "from 10 to 12 s"];

@@ -60,3 +60,19 @@ fn a_rising_series_with_small_oscillations_has_no_waves() -> Result<()> {
     assert_eq!(zero_crossing_waves(&sampled(|t| t + 0.1 * (t * 2.0).sin(), 100.0)?), None);
     Ok(())
 }
+
+/// Over a tenth of a period a straight line lowers a crest by 5 %; over half a period it removes the crest.
+#[test]
+fn waves_are_unknown_over_gaps_of_more_than_a_tenth_of_their_period() -> Result<()> {
+    let whole = sampled(|t| (TAU * t).sin(), 20.0)?;
+    let without = |rows: std::ops::Range<usize>| {
+        let mut x = whole.values().to_vec();
+        x[rows].fill(f64::NAN);
+        Readings::new(whole.times(), &x, false, [f64::NEG_INFINITY, f64::INFINITY]).unwrap()
+    };
+    // Crest at 5.25 s; the readings on both sides are 0.09 and 0.12 s apart.
+    let (short, long) = (without(521..529), without(520..531));
+    assert!(waves_of_readings(&short).is_some_and(|waves| waves.count == 18 && !gaps_hide_waves(&short)));
+    assert!(waves_of_readings(&long).is_none() && gaps_hide_waves(&long));
+    Ok(())
+}

@@ -2,11 +2,22 @@
 
 use super::*;
 
+/// A table of readings that are no means.
+fn probe_table(
+    [name, what]: [&'static str; 2],
+    columns: Vec<String>,
+    times: Vec<f64>,
+    values: Vec<Vec<f64>>,
+) -> ProbeTable {
+    let are_means = vec![false; columns.len()];
+    ProbeTable { name: name.into(), what, columns, times, values, are_means }
+}
+
 fn table(rows: usize) -> ProbeTable {
     let t: Vec<f64> = (0..rows).map(|i| i as f64).collect();
     let mut x = vec![0.0; rows];
     x[rows / 2 + 1] = 5.0;
-    ProbeTable { name: "p".into(), what: "pressure", columns: vec!["p_Pa".into()], times: t, values: vec![x] }
+    probe_table(["p", "pressure"], vec!["p_Pa".into()], t, vec![x])
 }
 
 #[test]
@@ -24,7 +35,7 @@ fn an_oscillating_series_has_a_spectrum_with_its_frequency() {
     let wave = t.iter().map(|t| 0.05 * (std::f64::consts::TAU * 1.25 * t).sin()).collect();
     let (rising, name) = (t.clone(), |name: &str| name.to_string());
     let columns = vec![name("eta_m"), name("front_m")];
-    let table = ProbeTable { name: "gauge".into(), what: "elevation", columns, times: t, values: vec![wave, rising] };
+    let table = probe_table(["gauge", "elevation"], columns, t, vec![wave, rising]);
     let mut blob = BinaryData::default();
     let found = encode_table(&table, &mut blob).spectra;
     assert_eq!((found.len(), found[0].column), (1, 0), "a rising series has no spectrum");
@@ -50,7 +61,7 @@ fn a_load_breakdown_has_a_chart_for_each_direction_with_its_non_zero_kinds() {
     // There is no viscous load, and the weight acts downwards only.
     let x = [1.0, 2.0, 0.0, 0.0, 0.0, -2.0, 1e-9, 1e-9].map(|x| vec![0.0, x]).to_vec();
     let t = vec![0.0, 1.0];
-    let table = ProbeTable { name: "box_balance".into(), what: "loads by kind", columns, times: t, values: x };
+    let table = probe_table(["box_balance", "loads by kind"], columns, t, x);
     let (charts, idle) = breakdown_charts(&table);
     let found: Vec<_> = charts.iter().map(|c| (c.title.as_deref(), &c.columns[..], c.folded)).collect();
     let expected: [(_, &[usize], _); 4] = [

@@ -89,3 +89,24 @@ fn a_long_name_is_shortened_and_remains_unique() -> Result<()> {
     assert!(jobs[0].name.starts_with("dp-0.01_viscosity-artificial-alpha-0.02"));
     Ok(())
 }
+
+#[test]
+fn keys_that_vary_the_same_value_are_refused_under_each_of_their_names() {
+    let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/still-tank");
+    let refusal = |vary: &[(&str, &[&str])]| {
+        let grid = ParameterGrid { scene: scene.clone(), ..grid(&[0.05], vary) };
+        grid.jobs(Path::new("out")).err().map(|e| e.to_string())
+    };
+    for [first, second, value, other] in [
+        ["model.c0_factor", "model.c0_factor", "10", "30"],
+        ["model.viscosity", "model.viscosity.laminar.nu0", "none", "1e-6"],
+        ["jitter", "scatter", "1e-3", "1e-2"],
+        ["probe.0.every", "probe.low.every", "0.1", "0.2"],
+    ] {
+        for [first, second] in [[first, second], [second, first]] {
+            let told = refusal(&[(first, &[value]), (second, &[other])]).unwrap_or_else(|| panic!("{first}, {second}"));
+            assert!(told.contains(first) && told.contains(second), "{told}");
+        }
+    }
+    assert_eq!(refusal(&[("model.c0_factor", &["10", "20"]), ("model.c0", &["30"])]), None, "a longer name is no part");
+}
