@@ -155,6 +155,7 @@ pub struct Scene {
     /// Acceleration of gravity, m/s²: a vector, or a number downwards; of numbers, formulas in t (s) or tables.
     pub gravity: Option<TimeVectorConfig>,
     /// Largest random offset of a water particle from its lattice point at the start, in each direction, over dp.
+    #[schemars(extend("also" = "scatter"))]
     pub jitter: Option<f64>,
     /// Box that water and moving solids must not leave.
     pub domain: Option<BoxConfig>,
