@@ -155,7 +155,10 @@ fn wrong_commands_are_refused_with_a_remedy() {
     folder.pontoon(&["run", "raft", "--set", "dp"]).assert_refused(2, &["write key=value"]);
     folder.pontoon(&["run", "raft", "--set", "solid.boot.free.density=1"]).assert_refused(2, &["boot", "boat"]);
     folder.pontoon(&["run", "still-tank", "--dp", "1e-6"]).assert_refused(2, &["particles", "or more"]);
-    folder.pontoon(&["resume", "nowhere"]).assert_refused(2, &["nowhere holds no run", "pontoon resume runs/raft"]);
+    folder.pontoon(&["resume", "nowhere"]).assert_refused(2, &["nowhere holds no run", "such as runs/raft"]);
+    let told = folder.pontoon(&["stats", "nowhere"]);
+    told.assert_refused(2, &["nowhere holds no run", "such as runs/raft"]);
+    assert!(!told.err.contains("resume"), "{}", told.err);
     fs::write(folder.path("file"), "").unwrap();
     folder.pontoon(&["run", "raft", "--out", "file/x"]).assert_refused(2, &["file/x: cannot be made", "--out"]);
     folder.pontoon(&["run", "raft", "--out", "."]).assert_refused(2, &["is not empty"]);
@@ -883,6 +886,9 @@ at = { x = 0.5, y = 0.3, draft = "equilibrium" }
     folder
         .pontoon(&["export", ".", "--capytaine", "c", "--solid", "crat"])
         .assert_refused(2, &["did you mean \"crate\"?"]);
+    // Panels of another volume are another body: the coarsest of this hull enclose a quarter of it.
+    folder.pontoon(&["export", "wigley", "--capytaine", "d", "--panels", "10"]).assert_refused(2, &["hull", "volume", "--panels "]);
+    assert!(!folder.path("d").exists(), "nothing is written");
     folder.pontoon(&["export", "raft", "--capytaine", "c"]).assert_refused(2, &["2-D", "3-D scene"]);
     folder.pontoon(&["export", ".", "--npz", "--panels", "9"]).assert_refused(2, &["--capytaine"]);
     assert!(!folder.path("c").exists());
@@ -941,6 +947,36 @@ fn a_json_log_has_one_object_per_line_from_start_to_end_or_error() {
     let quiet = run(&["--until", "0.02", "--out", "b", "--quiet"]);
     assert_eq!((quiet.code, quiet.out.as_str(), quiet.err.as_str()), (Some(0), "", ""));
     assert_eq!(events(&run(&["--dp", "-1", "--quiet"]))[0]["event"], "error");
+}
+
+/// Output that a full disk does not take is an error: a file without it looks like a result. A reader that closes its pipe, as
+/// `head` does, has all that it wants.
+#[test]
+#[cfg(target_os = "linux")]
+fn output_that_is_lost_is_an_error() {
+    let folder = TestFolder::new("full");
+    fs::write(folder.path("scene.toml"), BUOY).unwrap();
+    for arguments in [
+        &["schema"][..],
+        &["scenes"],
+        &["completions", "bash"],
+        &["--help"],
+        &["inspect", "scene.toml", "--no-timing"],
+        &["run", "scene.toml", "--until", "0.01", "--out", "run"],
+        &["stats", "run", "--json"],
+        &["report", "run"],
+        &["watch", "run", "--once"],
+    ] {
+        let full = fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+        let output = ProgramOutput::from(folder.command(arguments).stdout(full).output().unwrap());
+        output.assert_refused(2, &["standard output", "cannot be written"]);
+        let (reader, closed) = std::io::pipe().unwrap();
+        drop(reader);
+        let arguments = if arguments[0] == "run" { &["scenes"][..] } else { arguments };
+        let output = ProgramOutput::from(folder.command(arguments).stdout(closed).output().unwrap());
+        assert_eq!(output.code, Some(0), "{arguments:?}: {}", output.err);
+    }
+    assert_eq!(folder.manifest("run")["status"], "finished", "the run itself is whole");
 }
 
 #[test]

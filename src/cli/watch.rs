@@ -57,16 +57,14 @@ pub fn watch(args: &WatchArgs) -> Result<u8> {
     let seen = RunSnapshot::read(&args.folder)?;
     seen.check(&args.series)?;
     if args.once || !stdout().is_terminal() {
-        print_output(&seen.screen_text(&args.series, (80, 24)));
-        return Ok(0);
+        return print_output(&seen.screen_text(&args.series, (80, 24))).map(|()| 0);
     }
     let screen = AlternateScreen::open()?;
     let left = watch_live(args);
     drop(screen);
     left?;
     // What was seen last stays to be read.
-    print_output(&RunSnapshot::read(&args.folder)?.screen_text(&args.series, size().unwrap_or((80, 24))));
-    Ok(0)
+    print_output(&RunSnapshot::read(&args.folder)?.screen_text(&args.series, size().unwrap_or((80, 24)))).map(|()| 0)
 }
 
 fn watch_live(args: &WatchArgs) -> Result<()> {

@@ -73,6 +73,7 @@ use crate::error::{Error, Result};
 use toml_source::SceneSource;
 
 pub use context::FileNote;
+pub(crate) use resolve::MOST_JITTER;
 pub(crate) use section::{shape::world_bounds, water::level_at};
 pub use {
     crate::probe::ProbeConfig,

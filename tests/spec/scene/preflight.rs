@@ -156,7 +156,7 @@ fn a_body_in_too_viscous_water_is_found_with_the_alpha_that_helps() {
 type Fault =
     (&'static str, &'static [(&'static str, &'static str)], &'static str, &'static [(&'static str, &'static str)]);
 
-const FAULTS: [Fault; 31] = [
+const FAULTS: [Fault; 32] = [
     ("slow_sound", &[("model.c0_factor", "5")], "c0 = 20 ", &[("model.c0", "20")]),
     // A plate with a single row of boundary particles moves water like a thick one: 0.4 m × 2π/s.
     (
@@ -271,6 +271,12 @@ const FAULTS: [Fault; 31] = [
         &[("solid.paddle.driven.distance.formula", "0.02*(1-cos(2*pi*t))")],
     ),
     ("event_after_end", &[("solid.sill.until", "3.0")], "run longer", &[("solid.sill.until", "1.0")]),
+    (
+        "empty_frames",
+        &[("frames.box", "{ min = [5.0, 0.0], max = [6.0, 1.0] }")],
+        "the water is from",
+        &[("frames.box", "{ min = [1.0, 0.0], max = [2.0, 1.0] }")],
+    ),
     ("large_frames", &[("until", "20.0"), ("frames.every", "0.0001")], "frames.every = 0.00", &[("until", "20.0")]),
 ];
 
