@@ -887,7 +887,9 @@ at = { x = 0.5, y = 0.3, draft = "equilibrium" }
         .pontoon(&["export", ".", "--capytaine", "c", "--solid", "crat"])
         .assert_refused(2, &["did you mean \"crate\"?"]);
     // Panels of another volume are another body: the coarsest of this hull enclose a quarter of it.
-    folder.pontoon(&["export", "wigley", "--capytaine", "d", "--panels", "10"]).assert_refused(2, &["hull", "volume", "--panels "]);
+    folder
+        .pontoon(&["export", "wigley", "--capytaine", "d", "--panels", "10"])
+        .assert_refused(2, &["hull", "volume", "--panels "]);
     assert!(!folder.path("d").exists(), "nothing is written");
     folder.pontoon(&["export", "raft", "--capytaine", "c"]).assert_refused(2, &["2-D", "3-D scene"]);
     folder.pontoon(&["export", ".", "--npz", "--panels", "9"]).assert_refused(2, &["--capytaine"]);
@@ -947,6 +949,40 @@ fn a_json_log_has_one_object_per_line_from_start_to_end_or_error() {
     let quiet = run(&["--until", "0.02", "--out", "b", "--quiet"]);
     assert_eq!((quiet.code, quiet.out.as_str(), quiet.err.as_str()), (Some(0), "", ""));
     assert_eq!(events(&run(&["--dp", "-1", "--quiet"]))[0]["event"], "error");
+}
+
+/// A page shows what can be read: a frame that is missing or damaged is left out with a remark. A picture of a frame without water names
+/// the cause. A terminal gets no control characters of a title.
+#[test]
+fn a_page_leaves_out_frames_that_cannot_be_read() {
+    let folder = TestFolder::new("lost_frames");
+    let frames = "frames = { every = 0.002, box = { min = [0.0, 0.0], max = [2.0, 1.0] } }";
+    let scene = format!("title = \"\\u001b[31mred\"\n{}", BUOY.replace("frames = \"off\"", frames));
+    fs::write(folder.path("scene.toml"), &scene).unwrap();
+    let run = folder.pontoon(&["run", "scene.toml", "--out", "run"]);
+    assert!(run.code == Some(0) && run.out.contains("\\u{1b}[31mred: finished"), "{}{}", run.err, run.out);
+    assert!(![&run.out, &run.err].iter().any(|text| text.contains('\u{1b}')), "{}{}", run.err, run.out);
+    let frame = |part: &str, number: usize| {
+        let mut names: Vec<PathBuf> =
+            fs::read_dir(folder.path("run/frames")).unwrap().map(|e| e.unwrap().path()).collect();
+        names.retain(|path| path.file_name().unwrap().to_string_lossy().starts_with(part));
+        names.sort();
+        names[number].clone()
+    };
+    fs::remove_file(frame("water", 1)).unwrap();
+    fs::write(frame("solids", 2), "cut short").unwrap();
+    let page = folder.pontoon(&["report", "run"]);
+    assert_eq!(page.code, Some(0), "{}", page.err);
+    for number in [1, 2] {
+        assert!(page.err.contains(&format!("warning: frame {number} is left out: ")), "{}", page.err);
+    }
+    assert!(folder.read("run/report.html").contains("frame 1 is left out"), "the page says so too");
+
+    let empty = scene.replace("min = [0.0, 0.0], max = [2.0, 1.0]", "min = [5.0, 0.0], max = [6.0, 1.0]");
+    fs::write(folder.path("empty.toml"), empty).unwrap();
+    let run = folder.pontoon(&["run", "empty.toml", "--out", "empty", "--no-report"]);
+    assert_eq!(run.code, Some(0), "{}", run.err);
+    folder.pontoon(&["report", "empty", "--png", "a.png"]).assert_refused(2, &["holds no water", "frames.box"]);
 }
 
 /// Output that a full disk does not take is an error: a file without it looks like a result. A reader that closes its pipe, as

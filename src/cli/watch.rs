@@ -8,7 +8,7 @@ use std::{
 
 use crate::{
     error::{Error, ErrorCode, ErrorKind, Result, nearest_name},
-    math::format::{duration, three_digits, unit},
+    math::format::{duration, three_digits, unit, without_control},
     output::{Manifest, SeriesTable, manifest::RunStatus},
     run::{self, EnergyDrift},
 };
@@ -170,7 +170,7 @@ impl RunSnapshot {
 
     /// What a terminal of so many columns and lines shows.
     fn screen_text(&self, series: &[String], (wide, high): (u16, u16)) -> String {
-        let mut text = format!("{}\n{}\n", self.manifest.title, self.status());
+        let mut text = format!("{}\n{}\n", without_control(&self.manifest.title), self.status());
         let telling = PREFERRED_COLUMNS.iter().filter_map(|word| self.names().find(|name| name.contains(word)));
         let mut plots: Vec<String> = match series.is_empty() {
             true => telling.chain(self.names().next()).take(2).collect(),

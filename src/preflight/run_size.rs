@@ -22,6 +22,9 @@ const PROGRAM: f64 = 14e6;
 /// and after compression.
 const FRAME: f64 = 0.6e6;
 
+/// Round-off of the number of outputs in a run.
+const ROUND_OFF: f64 = 1e-9;
+
 /// Length of a number in a table with its comma, B: seventeen digits as a rule.
 const NUMBER: f64 = 19.0;
 

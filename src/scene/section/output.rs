@@ -99,7 +99,7 @@ impl FramesChoice {
         let fields = fields.as_deref().unwrap_or_default();
         if let Some(twice) = (1..fields.len()).find(|&i| fields[..i].contains(&fields[i])) {
             let what = format!("the field \"{}\" is named twice", fields[twice]);
-            return Err(ctx.error_with_help("frames.fields", what, "name each field once".into()));
+            return Err(ctx.error_with_help("frames.fields", what, "name each field once"));
         }
         corners.as_ref().map_or(Ok(()), |corners| corners.verify(ctx, "frames.box"))
     }

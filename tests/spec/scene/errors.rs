@@ -244,6 +244,13 @@ fn overrides_replace_values_of_the_scene() {
     }
 }
 
+#[test]
+fn a_field_of_the_frames_that_is_named_twice_is_refused() {
+    let sets = [("frames".to_string(), "{ fields = [\"velocity\", \"pressure\", \"velocity\"] }".to_string())];
+    let told = Scene::parse(GOOD, folder(), &sets).and_then(|scene| scene.plan()).unwrap_err().to_string();
+    assert!(told.contains("\"velocity\" is named twice") && told.contains("frames.fields"), "{told}");
+}
+
 /// A value is said to be set only if `--set` wrote it, or an element of it.
 #[test]
 fn a_value_set_in_part_and_a_table_set_empty_have_the_right_source() {

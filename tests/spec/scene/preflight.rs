@@ -585,3 +585,13 @@ fn a_paddle_with_a_list_of_motions_has_the_report_of_a_single_motion() {
     assert_eq!((one.period_s, &one.answers), (other.period_s, &other.answers));
     assert_eq!(alone.sound.expected.len(), listed.sound.expected.len());
 }
+
+/// A run writes a frame at the start, at every multiple of the interval, and at the end. 0.3/0.1 is less than 3 in binary, and 1.1/0.1 more
+/// than 11.
+#[test]
+fn frames_are_counted_as_the_run_writes_them() {
+    for (until, count) in [("0.3", 4), ("0.35", 5), ("1.1", 12), ("0.05", 2)] {
+        let found = report(&[("until", until), ("frames.every", "0.1")]);
+        assert_eq!(found.size.disk.frames, count, "to {until} s");
+    }
+}
