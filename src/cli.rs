@@ -263,17 +263,22 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     let cli = match Cli::try_parse_from(&arguments) {
         Ok(cli) => cli,
         Err(told) => {
-            // A closed output is no error.
-            let _ = told.print();
-            return told.exit_code() as u8;
+            let printed = told.print().and_then(|()| std::io::stdout().flush());
+            return match check_output(printed) {
+                Err(error) if !told.use_stderr() => fail(&error),
+                _ => told.exit_code() as u8,
+            };
         }
     };
-    dispatch(cli.command, &command_line(&arguments)).unwrap_or_else(|error| {
-        if !ranks::is_silent() {
-            print_error(&format!("error: {error}\n"));
-        }
-        exit_code(&error)
-    })
+    dispatch(cli.command, &command_line(&arguments)).unwrap_or_else(|error| fail(&error))
+}
+
+/// Prints an error and returns its exit code.
+fn fail(error: &Error) -> u8 {
+    if !ranks::is_silent() {
+        print_error(&format!("error: {error}\n"));
+    }
+    exit_code(error)
 }
 
 /// Returns the exit code of an error.
@@ -289,46 +294,24 @@ fn dispatch(command: Command, command_line: &str) -> Result<u8> {
     match command {
         Command::Run(args) => run::run(&args),
         Command::Resume(args) => run::resume(&args),
-        Command::Inspect(args) => {
-            print_output(&inspect::inspect(&args)?);
-            Ok(0)
-        }
+        Command::Inspect(args) => print_output(&inspect::inspect(&args)?).map(|()| 0),
         Command::Validate(args) => validate::validate(args, command_line),
         Command::Study(args) => study::study(args, command_line),
         Command::Stress(args) => stress::stress(args),
-        Command::Bench(args) => {
-            print_output(&bench::bench(&args)?);
-            Ok(0)
-        }
+        Command::Bench(args) => print_output(&bench::bench(&args)?).map(|()| 0),
         Command::Report(args) => report_page::report(&args),
         Command::Compare(args) => report_page::compare(&args),
-        Command::Export(args) => {
-            print_output(&export::export(&args)?);
-            Ok(0)
-        }
-        Command::ImportMoordyn(args) => {
-            print_output(&import_moordyn::import(&args)?);
-            Ok(0)
-        }
+        Command::Export(args) => print_output(&export::export(&args)?).map(|()| 0),
+        Command::ImportMoordyn(args) => print_output(&import_moordyn::import(&args)?).map(|()| 0),
         Command::Watch(args) => watch::watch(&args),
-        Command::Schema => {
-            print_output(&format!("{:#}\n", crate::scene::schema()));
-            Ok(0)
-        }
+        Command::Schema => print_output(&format!("{:#}\n", crate::scene::schema())).map(|()| 0),
         Command::Completions { shell } => {
             let mut text = Vec::new();
             clap_complete::generate(shell, &mut Cli::command(), "pontoon", &mut text);
-            print_output(&String::from_utf8_lossy(&text));
-            Ok(0)
+            print_output(&String::from_utf8_lossy(&text)).map(|()| 0)
         }
-        Command::Stats(args) => {
-            print_output(&statistics::stats(&args)?);
-            Ok(0)
-        }
-        Command::Scenes => {
-            print_output(&console_text::scene_list(&scene_lookup::scene_infos()));
-            Ok(0)
-        }
+        Command::Stats(args) => print_output(&statistics::stats(&args)?).map(|()| 0),
+        Command::Scenes => print_output(&console_text::scene_list(&scene_lookup::scene_infos())).map(|()| 0),
     }
 }
 
@@ -367,8 +350,23 @@ fn watch_interrupts(handler: impl FnMut() + Send + 'static) -> Result<()> {
 }
 
 /// Prints results. A closed output, as after `head`, is no error.
-fn print_output(text: &str) {
-    let _ = std::io::stdout().write_all(text.as_bytes());
+///
+/// # Errors
+/// `File` if the output cannot be written, as on a full disk.
+fn print_output(text: &str) -> Result<()> {
+    let mut output = std::io::stdout().lock();
+    check_output(output.write_all(text.as_bytes()).and_then(|()| output.flush()))
+}
+
+/// Returns the error of a write to the standard output, unless its reader has closed it.
+fn check_output(written: std::io::Result<()>) -> Result<()> {
+    match written {
+        Err(why) if why.kind() != std::io::ErrorKind::BrokenPipe => {
+            let help = "send the output to a file on a disk with space, or to a pipe";
+            Err(Error::write(std::path::Path::new("standard output"), "written", &why).help(help))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Prints text other than results: progress, warnings, errors.

@@ -116,6 +116,7 @@ pub enum Walls {
     Dynamic,
     /// The same, and their density relaxes to that of the water's pressure extrapolated to them (Adami et al. 2012).
     #[serde(alias = "settling")]
+    #[schemars(extend("also" = "settling"))]
     RelaxedAdami,
 }
 

@@ -159,7 +159,10 @@ fn wrong_commands_are_refused_with_a_remedy() {
     folder.pontoon(&["run", "raft", "--set", "dp"]).assert_refused(2, &["write key=value"]);
     folder.pontoon(&["run", "raft", "--set", "solid.boot.free.density=1"]).assert_refused(2, &["boot", "boat"]);
     folder.pontoon(&["run", "still-tank", "--dp", "1e-6"]).assert_refused(2, &["particles", "or more"]);
-    folder.pontoon(&["resume", "nowhere"]).assert_refused(2, &["nowhere holds no run", "pontoon resume runs/raft"]);
+    folder.pontoon(&["resume", "nowhere"]).assert_refused(2, &["nowhere holds no run", "such as runs/raft"]);
+    let told = folder.pontoon(&["stats", "nowhere"]);
+    told.assert_refused(2, &["nowhere holds no run", "such as runs/raft"]);
+    assert!(!told.err.contains("resume"), "{}", told.err);
     fs::write(folder.path("file"), "").unwrap();
     folder.pontoon(&["run", "raft", "--out", "file/x"]).assert_refused(2, &["file/x: cannot be made", "--out"]);
     folder.pontoon(&["run", "raft", "--out", "."]).assert_refused(2, &["is not empty"]);
@@ -887,6 +890,11 @@ at = { x = 0.5, y = 0.3, draft = "equilibrium" }
     folder
         .pontoon(&["export", ".", "--capytaine", "c", "--solid", "crat"])
         .assert_refused(2, &["did you mean \"crate\"?"]);
+    // Panels of another volume are another body: the coarsest of this hull enclose a quarter of it.
+    folder
+        .pontoon(&["export", "wigley", "--capytaine", "d", "--panels", "10"])
+        .assert_refused(2, &["hull", "volume", "--panels "]);
+    assert!(!folder.path("d").exists(), "nothing is written");
     folder.pontoon(&["export", "raft", "--capytaine", "c"]).assert_refused(2, &["2-D", "3-D scene"]);
     folder.pontoon(&["export", ".", "--npz", "--panels", "9"]).assert_refused(2, &["--capytaine"]);
     assert!(!folder.path("c").exists());
@@ -945,6 +953,70 @@ fn a_json_log_has_one_object_per_line_from_start_to_end_or_error() {
     let quiet = run(&["--until", "0.02", "--out", "b", "--quiet"]);
     assert_eq!((quiet.code, quiet.out.as_str(), quiet.err.as_str()), (Some(0), "", ""));
     assert_eq!(events(&run(&["--dp", "-1", "--quiet"]))[0]["event"], "error");
+}
+
+/// A page shows what can be read: a frame that is missing or damaged is left out with a remark. A picture of a frame without water names
+/// the cause. A terminal gets no control characters of a title.
+#[test]
+fn a_page_leaves_out_frames_that_cannot_be_read() {
+    let folder = TestFolder::new("lost_frames");
+    let frames = "frames = { every = 0.002, box = { min = [0.0, 0.0], max = [2.0, 1.0] } }";
+    let scene = format!("title = \"\\u001b[31mred\"\n{}", BUOY.replace("frames = \"off\"", frames));
+    fs::write(folder.path("scene.toml"), &scene).unwrap();
+    let run = folder.pontoon(&["run", "scene.toml", "--out", "run"]);
+    assert!(run.code == Some(0) && run.out.contains("\\u{1b}[31mred: finished"), "{}{}", run.err, run.out);
+    assert!(![&run.out, &run.err].iter().any(|text| text.contains('\u{1b}')), "{}{}", run.err, run.out);
+    let frame = |part: &str, number: usize| {
+        let mut names: Vec<PathBuf> =
+            fs::read_dir(folder.path("run/frames")).unwrap().map(|e| e.unwrap().path()).collect();
+        names.retain(|path| path.file_name().unwrap().to_string_lossy().starts_with(part));
+        names.sort();
+        names[number].clone()
+    };
+    fs::remove_file(frame("water", 1)).unwrap();
+    fs::write(frame("solids", 2), "cut short").unwrap();
+    let page = folder.pontoon(&["report", "run"]);
+    assert_eq!(page.code, Some(0), "{}", page.err);
+    for number in [1, 2] {
+        assert!(page.err.contains(&format!("warning: frame {number} is left out: ")), "{}", page.err);
+    }
+    assert!(folder.read("run/report.html").contains("frame 1 is left out"), "the page says so too");
+
+    let empty = scene.replace("min = [0.0, 0.0], max = [2.0, 1.0]", "min = [5.0, 0.0], max = [6.0, 1.0]");
+    fs::write(folder.path("empty.toml"), empty).unwrap();
+    let run = folder.pontoon(&["run", "empty.toml", "--out", "empty", "--no-report"]);
+    assert_eq!(run.code, Some(0), "{}", run.err);
+    folder.pontoon(&["report", "empty", "--png", "a.png"]).assert_refused(2, &["holds no water", "frames.box"]);
+}
+
+/// Output that a full disk does not take is an error: a file without it looks like a result. A reader that closes its pipe, as
+/// `head` does, has all that it wants.
+#[test]
+#[cfg(target_os = "linux")]
+fn output_that_is_lost_is_an_error() {
+    let folder = TestFolder::new("full");
+    fs::write(folder.path("scene.toml"), BUOY).unwrap();
+    for arguments in [
+        &["schema"][..],
+        &["scenes"],
+        &["completions", "bash"],
+        &["--help"],
+        &["inspect", "scene.toml", "--no-timing"],
+        &["run", "scene.toml", "--until", "0.01", "--out", "run"],
+        &["stats", "run", "--json"],
+        &["report", "run"],
+        &["watch", "run", "--once"],
+    ] {
+        let full = fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+        let output = ProgramOutput::from(folder.command(arguments).stdout(full).output().unwrap());
+        output.assert_refused(2, &["standard output", "cannot be written"]);
+        let (reader, closed) = std::io::pipe().unwrap();
+        drop(reader);
+        let arguments = if arguments[0] == "run" { &["scenes"][..] } else { arguments };
+        let output = ProgramOutput::from(folder.command(arguments).stdout(closed).output().unwrap());
+        assert_eq!(output.code, Some(0), "{arguments:?}: {}", output.err);
+    }
+    assert_eq!(folder.manifest("run")["status"], "finished", "the run itself is whole");
 }
 
 #[test]

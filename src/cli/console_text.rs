@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use crate::{
     analysis::{Verdict, format_verdicts},
-    math::format::{bytes, duration, metric_prefix},
+    math::format::{bytes, duration, metric_prefix, without_control},
     output::manifest::{FrameTotals, RunStatus},
     run::{FinalBodyState, RunOutcome, RunStart},
 };
@@ -43,7 +43,7 @@ pub fn warnings(count: usize) -> Option<String> {
 /// Said when a run begins.
 pub fn start_text(start: &RunStart) -> String {
     let (manifest, count) = (start.manifest, start.manifest.particles);
-    let mut text = format!("{}\n", manifest.title);
+    let mut text = format!("{}\n", without_control(&manifest.title));
     for warning in &manifest.warnings {
         let _ = writeln!(text, "warning: {warning}");
     }
@@ -72,7 +72,7 @@ pub fn end_text(outcome: &RunOutcome) -> String {
         RunStatus::Interrupted => "interrupted",
         RunStatus::Running | RunStatus::Failed => "failed",
     };
-    let mut text = format!("\n{}: {how}\n", manifest.title);
+    let mut text = format!("\n{}: {how}\n", without_control(&manifest.title));
     text += &table(&[
         vec![
             "simulated".into(),

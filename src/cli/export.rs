@@ -49,6 +49,12 @@ const PANELS: usize = 800;
 /// Difference of the volumes of panels and body, relative, above which the export says so.
 const VOLUME: f64 = 0.02;
 
+/// The same difference above which nothing is exported: coefficients of such panels are those of another body.
+const MOST_VOLUME: f64 = 0.1;
+
+/// Ratio of the numbers of panels and of those asked for, or its inverse, above which the export says so.
+const PANEL_RATIO: f64 = 2.0;
+
 /// Difference of displaced and own mass, relative, above which the export says so.
 const MASS: f64 = 0.01;
 
@@ -81,8 +87,29 @@ fn bodies(args: &ExportArgs, out: &Path) -> Result<String> {
             Scene::read(&run::run_folder::scene_file(found.path()), &sets).and_then(|scene| export(&scene)),
         )?
     };
+    exported.bodies.iter().try_for_each(check_volume)?;
     let path = exported.write(out)?;
-    Ok(format!("{}: {}\n{}", path.display(), panel_counts(&exported), remarks(&exported)))
+    Ok(format!("{}: {}\n{}", path.display(), panel_counts(&exported), remarks(&exported, args.panels)))
+}
+
+/// Relative difference of the volumes of panels and body.
+fn volume_error(body: &PanelledBody) -> f64 {
+    body.panel_volume_m3 / body.displaced_volume_m3 - 1.0
+}
+
+/// Refuses panels whose volume is far from that of the body.
+fn check_volume(body: &PanelledBody) -> Result<()> {
+    let error = volume_error(body);
+    if error.abs() <= MOST_VOLUME {
+        return Ok(());
+    }
+    let what = format!(
+        "the {} panels of \"{}\" enclose a volume that is {:+.0} % off its displaced volume",
+        body.panel_count,
+        body.name,
+        100.0 * error
+    );
+    Err(Error::new(ErrorKind::Usage, what).help(format!("take more:  --panels {}", 4 * body.panel_count)))
 }
 
 fn panel_counts(exported: &PanelledScene) -> String {
@@ -91,10 +118,18 @@ fn panel_counts(exported: &PanelledScene) -> String {
 }
 
 /// Says where the panels or the place of a body may not be meant.
-fn remarks(exported: &PanelledScene) -> String {
+fn remarks(exported: &PanelledScene, asked: usize) -> String {
     let mut text = String::new();
     for body in &exported.bodies {
-        let volume = body.panel_volume_m3 / body.displaced_volume_m3 - 1.0;
+        let ratio = body.panel_count as f64 / asked as f64;
+        if !(1.0 / PANEL_RATIO..=PANEL_RATIO).contains(&ratio) {
+            text += &format!(
+                "note: \"{}\" has {} panels in place of about {asked}: round parts have a least number of segments, and small facets \
+                 of a mesh stay\n",
+                body.name, body.panel_count
+            );
+        }
+        let volume = volume_error(body);
         if volume.abs() > VOLUME {
             text += &format!(
                 "note: the volume within the panels of \"{}\" is {:+.1} % off its displaced volume\n  more panels come nearer: \

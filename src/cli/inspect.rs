@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use crate::{
     error::{Error, ErrorKind, Result},
-    math::format::{bytes, duration, metric_prefix, three_digits},
+    math::format::{bytes, duration, metric_prefix, three_digits, without_control},
     preflight::{
         AbsorberSummary, BodyFlow, BodySummary, DiskUse, FaceWave, Finding, GeneratedWave, Preflight, Severity,
     },
@@ -68,12 +68,12 @@ fn estimate_text(size: &CostEstimate) -> String {
          a run reports its warnings at the start; a larger dp shows them here\n",
         LARGE / 1e6
     );
-    format!("{}\n{note}{}", size.title, table(&rows))
+    format!("{}\n{note}{}", without_control(&size.title), table(&rows))
 }
 
 /// What `inspect` prints.
 fn report_text(report: &InspectReport) -> String {
-    let mut text = format!("{}\n", report.title);
+    let mut text = format!("{}\n", without_control(&report.title));
     text += &findings(&report.preflight.brief());
     text += &table(&facts(report));
     if !report.preflight.bodies.is_empty() {

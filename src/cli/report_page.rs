@@ -88,7 +88,7 @@ fn number_pair(text: &str) -> std::result::Result<[f64; 2], String> {
 pub fn report(args: &ReportArgs) -> Result<u8> {
     match &args.picture.png {
         Some(png) => draw_picture(std::slice::from_ref(&args.folder), &args.picture.look.picture_options()?, png)?,
-        None => print_page(&report::write(&args.folder)?),
+        None => print_page(&report::write(&args.folder)?)?,
     }
     Ok(0)
 }
@@ -100,7 +100,7 @@ pub fn report(args: &ReportArgs) -> Result<u8> {
 pub fn compare(args: &CompareArgs) -> Result<u8> {
     match &args.picture.png {
         Some(png) => draw_picture(&args.folders, &args.picture.look.picture_options()?, png)?,
-        None => print_page(&report::compare(&args.folders, &args.out)?),
+        None => print_page(&report::compare(&args.folders, &args.out)?)?,
     }
     Ok(0)
 }
@@ -136,16 +136,15 @@ impl PictureStyleArgs {
 /// As [`report::picture`].
 pub fn draw_picture(folders: &[PathBuf], shot: &PictureOptions, out: &Path) -> Result<()> {
     let (width, height) = report::write_picture(folders, shot, out)?;
-    print_output(&format!("{}: {width} × {height} pixels\n", out.display()));
-    Ok(())
+    print_output(&format!("{}: {width} × {height} pixels\n", out.display()))
 }
 
 /// Prints the path of a page and the items that the page omits.
-fn print_page(page: &Page) {
+fn print_page(page: &Page) -> Result<()> {
     for remark in &page.remarks {
         print_error(&format!("warning: {remark}\n"));
     }
-    print_output(&page_line(page));
+    print_output(&page_line(page))
 }
 
 fn page_line(page: &Page) -> String {
@@ -155,12 +154,16 @@ fn page_line(page: &Page) -> String {
 
 /// Writes the page of the run in `folder` at its end. An error of the page does not change the outcome of the run; it
 /// is passed to `told`.
-pub fn write_after_run(folder: &Path, quiet: bool, told: impl Fn(&Error)) {
+///
+/// # Errors
+/// As [`print_output`].
+pub fn write_after_run(folder: &Path, quiet: bool, told: impl Fn(&Error)) -> Result<()> {
     match report::write(folder) {
         Ok(_) if quiet => {}
-        Ok(page) => print_output(&page_line(&page)),
+        Ok(page) => print_output(&page_line(&page))?,
         Err(why) => told(&why),
     }
+    Ok(())
 }
 
 /// Reads the name of a picture file.

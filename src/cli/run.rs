@@ -204,6 +204,7 @@ fn finish(
     log_args: &LogArgs,
 ) -> Result<u8> {
     let (folder, json) = (follow.close(), log_args.log == LogFormat::Json);
+    let mut printed = Ok(());
     match &outcome {
         _ if log_args.quiet => {}
         Ok(outcome) if json => {
@@ -212,7 +213,7 @@ fn finish(
         }
         Ok(outcome) => {
             outcome.end_warnings.iter().for_each(|text| print_error(&format!("warning: {text}\n")));
-            print_output(&console_text::end_text(outcome));
+            printed = print_output(&console_text::end_text(outcome));
         }
         Err(_) => {}
     }
@@ -221,12 +222,13 @@ fn finish(
             let text = format!("the page of the run was not written: {why}");
             if json { json_log::warn(&text) } else { print_error(&format!("warning: {text}\n")) }
         };
-        report_page::write_after_run(&folder, log_args.quiet || json, told);
+        printed = printed.and(report_page::write_after_run(&folder, log_args.quiet || json, told));
     }
     if let Some(live) = live {
         live.close(&outcome, !log_args.no_report);
     }
     let outcome = outcome?;
+    printed?;
     Ok(match outcome.manifest.status {
         RunStatus::Interrupted => 130,
         _ if outcome.has_failed_checks() => 3,

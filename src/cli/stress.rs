@@ -44,15 +44,13 @@ pub struct StressArgs {
 pub fn stress(args: StressArgs) -> Result<u8> {
     let all = maps(args.maps.as_deref())?;
     if args.list {
-        print_output(&map_list(&all));
-        return Ok(0);
+        return print_output(&map_list(&all)).map(|()| 0);
     }
     let mut ledger = StressResults::open(select_maps(all, &args.names, args.quick)?, args.quick, args.out.clone())?;
     let due = ledger.entries.iter().filter(|entry| entry.run.is_none()).count();
     if args.dry_run {
-        ledger.entries.iter().for_each(|entry| print_output(&case_line(entry)));
-        print_output(&format!("{} cases, {due} to be run\n", ledger.entries.len()));
-        return Ok(0);
+        let lines: String = ledger.entries.iter().map(case_line).collect();
+        return print_output(&format!("{lines}{} cases, {due} to be run\n", ledger.entries.len())).map(|()| 0);
     }
     let stop =
         interrupt_flag_with_message("\nstopping after the cases in hand; Ctrl-C again stops at once, without them\n")?;
@@ -65,15 +63,16 @@ pub fn stress(args: StressArgs) -> Result<u8> {
         }
     })?;
     let pictures = ledger.write()?;
-    print_output(&format!("\n{}", table(&ledger.table())));
     let wrong = |entry: &&CaseResult| entry.verdict().is_some_and(|(outcome, _)| outcome == CaseOutcome::Wrong);
-    ledger.entries.iter().filter(wrong).for_each(|entry| print_output(&case_line(entry)));
-    print_output(&format!("processor time {}\n{}\n", duration(ledger.cpu_seconds()), ledger.file().display()));
+    let wrong_lines: String = ledger.entries.iter().filter(wrong).map(case_line).collect();
     print_output(&format!(
-        "{} pictures, as {}\n",
+        "\n{}{wrong_lines}processor time {}\n{}\n{} pictures, as {}\n",
+        table(&ledger.table()),
+        duration(ledger.cpu_seconds()),
+        ledger.file().display(),
         pictures.len(),
         pictures.first().map_or(String::new(), |p| p.display().to_string())
-    ));
+    ))?;
     Ok(if stop.load(Ordering::Relaxed) {
         print_error("interrupted: the same command continues\n");
         130

@@ -93,7 +93,7 @@ impl JobList<'_> {
         let ran = self.jobs.iter().map(Job::existing_result).collect::<Result<Vec<JobResult>>>()?;
         let planned = estimate_times(self.jobs, &ran, self.count())?;
         if alone || !self.quiet {
-            print_output(&planned_table(self.jobs, &ran, &planned));
+            print_output(&planned_table(self.jobs, &ran, &planned))?;
         }
         Ok(())
     }
@@ -220,10 +220,10 @@ pub fn study(args: StudyArgs, command_line: &str) -> Result<u8> {
     }
     let done = list.run_all(&interrupt_flag()?, |ran| sheet.write(ran))?;
     let rows = sheet.rows(&done.ran);
-    print_output(&format!("\n{}", table(&sheet.run_rows(&rows))));
-    print_output(&repeats_text(&rows));
+    print_output(&format!("\n{}", table(&sheet.run_rows(&rows))))?;
+    print_output(&repeats_text(&rows))?;
     for file in sheet.files() {
-        print_output(&format!("{}\n", file.display()));
+        print_output(&format!("{}\n", file.display()))?;
     }
     if let (Some(png), Some(shot), false) = (&args.png, shot, done.interrupted) {
         draw_runs(&sheet.jobs, &done.ran, shot, png)?;

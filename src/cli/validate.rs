@@ -49,8 +49,7 @@ pub struct ValidateArgs {
 /// Runs the cases, or lists them.
 pub fn validate(args: ValidateArgs, command_line: &str) -> Result<u8> {
     if args.list {
-        print_output(&case_list(&validation_cases()?));
-        return Ok(0);
+        return print_output(&case_list(&validation_cases()?)).map(|()| 0);
     }
     let cases = select_cases(&args.names, args.full)?;
     let scenes =
@@ -63,10 +62,10 @@ pub fn validate(args: ValidateArgs, command_line: &str) -> Result<u8> {
         return Ok(0);
     }
     let done = list.run_all(&interrupt_flag()?, |ran| validation.write(ran))?;
-    print_output(&format!("\n{}", table(&validation.table(&done.ran))));
-    print_output(&repeats_text(&validation.rows(&done.ran)));
+    print_output(&format!("\n{}", table(&validation.table(&done.ran))))?;
+    print_output(&repeats_text(&validation.rows(&done.ran)))?;
     for file in validation.files() {
-        print_output(&format!("{}\n", file.display()));
+        print_output(&format!("{}\n", file.display()))?;
     }
     if done.ran.iter().any(|r| matches!(r.state, JobState::Failed(_))) {
         print_error("a case could not be run to its end\n");

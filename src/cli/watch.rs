@@ -8,7 +8,7 @@ use std::{
 
 use crate::{
     error::{Error, ErrorCode, ErrorKind, Result, nearest_name},
-    math::format::{duration, three_digits, unit},
+    math::format::{duration, three_digits, unit, without_control},
     output::{Manifest, SeriesTable, manifest::RunStatus},
     run::{self, EnergyDrift},
 };
@@ -57,16 +57,14 @@ pub fn watch(args: &WatchArgs) -> Result<u8> {
     let seen = RunSnapshot::read(&args.folder)?;
     seen.check(&args.series)?;
     if args.once || !stdout().is_terminal() {
-        print_output(&seen.screen_text(&args.series, (80, 24)));
-        return Ok(0);
+        return print_output(&seen.screen_text(&args.series, (80, 24))).map(|()| 0);
     }
     let screen = AlternateScreen::open()?;
     let left = watch_live(args);
     drop(screen);
     left?;
     // What was seen last stays to be read.
-    print_output(&RunSnapshot::read(&args.folder)?.screen_text(&args.series, size().unwrap_or((80, 24))));
-    Ok(0)
+    print_output(&RunSnapshot::read(&args.folder)?.screen_text(&args.series, size().unwrap_or((80, 24)))).map(|()| 0)
 }
 
 fn watch_live(args: &WatchArgs) -> Result<()> {
@@ -172,7 +170,7 @@ impl RunSnapshot {
 
     /// What a terminal of so many columns and lines shows.
     fn screen_text(&self, series: &[String], (wide, high): (u16, u16)) -> String {
-        let mut text = format!("{}\n{}\n", self.manifest.title, self.status());
+        let mut text = format!("{}\n{}\n", without_control(&self.manifest.title), self.status());
         let telling = PREFERRED_COLUMNS.iter().filter_map(|word| self.names().find(|name| name.contains(word)));
         let mut plots: Vec<String> = match series.is_empty() {
             true => telling.chain(self.names().next()).take(2).collect(),

@@ -153,7 +153,7 @@ impl<const D: usize> Moorings<D> {
 
     /// Nodes of line number `i` that lie on fixed solids, in order.
     pub(crate) fn lying_nodes(&self, system: &System<D>, i: usize) -> Vec<usize> {
-        self.lines[i].lying_nodes(&self.beds(system, i)).collect()
+        self.lines[i].lying_nodes(&self.beds(system, i))
     }
 
     /// Whether line number `i` acts.

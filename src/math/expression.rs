@@ -217,15 +217,16 @@ impl Binary {
                 let exponent = if dy == 0.0 { 0.0 } else { x.powf(y) * x.ln() * dy };
                 (x.powf(y), base + exponent)
             }
+            // The extreme of a value and no value is no value.
             Self::Min => {
-                if y < x {
+                if y < x || y.is_nan() {
                     (y, dy)
                 } else {
                     (x, dx)
                 }
             }
             Self::Max => {
-                if y > x {
+                if y > x || y.is_nan() {
                     (y, dy)
                 } else {
                     (x, dx)

@@ -158,6 +158,15 @@ pub fn duration(seconds: f64) -> String {
     }
 }
 
+/// `text` with control characters other than line ends as escapes, so that a terminal does not obey them.
+pub fn without_control(text: &str) -> String {
+    let escape = |c: char| match c.is_control() && c != '\n' {
+        true => c.escape_default().to_string(),
+        false => c.to_string(),
+    };
+    text.chars().map(escape).collect()
+}
+
 #[cfg(test)]
 #[path = "../../tests/unit/math/format.rs"]
 mod tests;

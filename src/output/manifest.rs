@@ -215,7 +215,7 @@ impl Manifest {
         let text = std::fs::read_to_string(&path).map_err(|why| {
             Error::new(ErrorKind::Restart, format!("{} holds no run: {}: {why}", folder.display(), path.display()))
                 .with_code(ErrorCode::CheckpointNotFound)
-                .help("name the folder of a run, as in `pontoon resume runs/raft`")
+                .help("name the folder of a run, such as runs/raft")
         })?;
         serde_json::from_str(&text).map_err(|why| {
             Error::new(ErrorKind::Restart, format!("{} is damaged, or of another version: {why}", path.display()))

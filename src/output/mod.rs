@@ -93,10 +93,22 @@ fn sync_folder(folder: &Path) {
 
 /// Returns the error of a file that cannot be written.
 fn cannot_write(path: &Path, why: &io::Error) -> Error {
-    let gone = why.kind() == io::ErrorKind::NotFound;
-    let help = match path.parent().filter(|folder| gone && !folder.exists()) {
-        Some(folder) => format!("the folder {} is gone, and with it what was written there", folder.display()),
-        None => "what was written before is intact; free some space or choose another folder with --out".into(),
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."));
+    let help = match why.kind() {
+        io::ErrorKind::NotFound if !folder.exists() => {
+            format!("the folder {} is gone, and with it what was written there", folder.display())
+        }
+        io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => {
+            format!("allow writing in the folder {}, or use another one", folder.display())
+        }
+        io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
+            "what was written before is intact; free some space, or use another disk".into()
+        }
+        _ => "what was written before is intact; use another folder".into(),
     };
     Error::write(path, "written", why).help(help)
 }
+
+#[cfg(test)]
+#[path = "../../tests/unit/output/write_errors.rs"]
+mod tests;

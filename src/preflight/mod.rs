@@ -18,6 +18,7 @@ mod hollows;
 mod initial_water;
 mod surface_samples;
 mod surroundings;
+mod frame_box;
 mod gaps;
 mod wavemaker_checks;
 mod probe_positions;
@@ -258,6 +259,7 @@ pub fn preflight<const D: usize>(
     initial_water::check(&look, &mut findings);
     open_boundaries::check(&look, &mut findings);
     look.check_probes(&sound, &mut findings);
+    frame_box::check(&look, &mut findings);
     lifetimes::check(&look, &mut findings);
     lifetimes::check_strength(&look, &mut findings);
     driven_paths::check(&look, &mut findings);

@@ -22,6 +22,9 @@ const PROGRAM: f64 = 14e6;
 /// and after compression.
 const FRAME: f64 = 0.6e6;
 
+/// Round-off of the number of outputs in a run.
+const ROUND_OFF: f64 = 1e-9;
+
 /// Length of a number in a table with its comma, B: seventeen digits as a rule.
 const NUMBER: f64 = 19.0;
 
@@ -119,8 +122,8 @@ impl<const D: usize> PreflightContext<'_, D> {
 
     fn disk(&self, step: &StepSizeLimits, columns: &[usize]) -> DiskUse {
         let (fluid, boundary) = (self.system.fluid().len() as f64, self.system.boundary().len() as f64);
-        // An output comes at every step at most.
-        let count = |every: f64| (self.end_time() / every.max(step.dt_s)).floor() + 1.0;
+        // An output comes at every step at most, at the start and at the end.
+        let count = |every: f64| (self.end_time() / every.max(step.dt_s) - ROUND_OFF).ceil() + 1.0;
         let tables = self.plan.probes.iter().zip(columns);
         let tables_bytes =
             tables.map(|(probe, n)| count(probe.every) * (n + 1) as f64 * NUMBER).fold(0.0, |sum, x| sum + x);

@@ -56,8 +56,8 @@ impl ProbeDefinition for LoadBalancePlan {
 
 /// Measures the loads on a free body: force (N) and torque about its centre of mass (N m) of pressure, viscosity,
 /// weight, contacts, constraints and ballast, as far as the scene has them. The next columns are the sum of the loads, the
-/// change of momentum and angular momentum, and the difference between the two. All columns are NaN unless loads are
-/// recorded ([`Simulation::enable_load_breakdown`]).
+/// change of momentum and angular momentum, and the difference between the two. All columns are NaN before the first step, and
+/// unless loads are recorded ([`Simulation::enable_load_breakdown`]).
 pub(crate) struct LoadBalanceProbe {
     solid: usize,
     kinds: Vec<&'static str>,
@@ -113,8 +113,8 @@ impl<const D: usize> Probe<D> for LoadBalanceProbe {
     }
 
     fn sample(&self, sim: &Simulation<D>) -> Vec<f64> {
-        let is_removed = sim.system().solids()[self.solid].is_removed();
-        let Some(shares) = sim.load_breakdown(self.solid).filter(|_| !is_removed) else {
+        let is_known = sim.steps() > 0 && !sim.system().solids()[self.solid].is_removed();
+        let Some(shares) = sim.load_breakdown(self.solid).filter(|_| is_known) else {
             return empty_row::<D>(self);
         };
         let kinds = shares.kinds().into_iter().filter(|(kind, _)| self.kinds.contains(kind)).map(|(_, load)| load);

@@ -63,6 +63,7 @@ pub(super) fn verify_list(config: &ProbeConfig, key: &str, scene: &dyn ProbeScop
 
 /// Measures the contact of two solids in the last step: the sum of the normal forces (N), the force on the second solid
 /// with friction (N), and its point of action (m). The point is NaN if the solids do not touch.
+/// All columns are NaN before the first step.
 pub(crate) struct ContactForceProbe {
     solids: [usize; 2],
 }
@@ -87,7 +88,7 @@ impl<const D: usize> Probe<D> for ContactForceProbe {
     }
 
     fn sample(&self, sim: &Simulation<D>) -> Vec<f64> {
-        if self.solids.iter().any(|&solid| sim.system().solids()[solid].is_removed()) {
+        if sim.steps() == 0 || self.solids.iter().any(|&solid| sim.system().solids()[solid].is_removed()) {
             return empty_row::<D>(self);
         }
         let [first, second] = self.solids;

@@ -48,7 +48,8 @@ impl ProbeDefinition for JointPlan {
 /// Measures the force (N) and torque (N m) that a joint exerts on its second solid by its locks and end stops. For a hinge or a
 /// slider it also measures the angle (deg) or position (m), its rate, the force of the motor, the power absorbed (W)
 /// and the energy absorbed (J). For a generic joint it also measures the positions (m) and rotations (deg) in the free
-/// modes. Angles, positions and rates are NaN while the joint does not act.
+/// modes. Angles, positions and rates are NaN while the joint does not act. Loads and power of a joint that acts are NaN before
+/// the first step.
 pub struct JointProbe {
     joint: usize,
     kind: JointKind,
@@ -112,9 +113,10 @@ impl<const D: usize> Probe<D> for JointProbe {
 
     fn sample(&self, sim: &Simulation<D>) -> Vec<f64> {
         let now = sim.joint_reading(self.joint);
-        let mut row: Vec<f64> = now.force.iter().copied().chain(now.torque.axial()).collect();
-        // While the joint does not act, its solids are not in its frame.
         let acts = sim.joint_acts(self.joint);
+        let if_known = |load: f64| if acts && sim.steps() == 0 { f64::NAN } else { load };
+        let mut row: Vec<f64> = now.force.iter().copied().chain(now.torque.axial()).map(if_known).collect();
+        // While the joint does not act, its solids are not in its frame.
         let if_acting = |x: f64| if acts { x } else { f64::NAN };
         let position = match self.kind {
             JointKind::Hinge => now.position.to_degrees(),
@@ -129,8 +131,8 @@ impl<const D: usize> Probe<D> for JointProbe {
         row.extend([
             if_acting(position),
             if_acting(now.rate),
-            now.motor_force,
-            now.absorbed_power(),
+            if_known(now.motor_force),
+            if_known(now.absorbed_power()),
             now.absorbed_energy,
         ]);
         row

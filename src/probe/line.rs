@@ -70,7 +70,7 @@ impl ProbeDefinition for RopePlan {
 }
 
 /// Measures the length (m) of a spring, mooring line or rope and its tension (N; N/m in 2-D). The tension of a spring
-/// in compression is negative.
+/// in compression is negative. The tension of a rope that acts is NaN before the first step.
 pub struct LineProbe {
     line: usize,
     rope: bool,
@@ -106,7 +106,11 @@ impl<const D: usize> Probe<D> for LineProbe {
     }
 
     fn sample(&self, sim: &Simulation<D>) -> Vec<f64> {
-        let now = if self.rope { sim.rope_reading(self.line) } else { sim.spring_reading(self.line) };
-        vec![now.length, now.tension]
+        if !self.rope {
+            let now = sim.spring_reading(self.line);
+            return vec![now.length, now.tension];
+        }
+        let (now, is_unknown) = (sim.rope_reading(self.line), sim.steps() == 0 && sim.rope_acts(self.line));
+        vec![now.length, if is_unknown { f64::NAN } else { now.tension }]
     }
 }

@@ -39,9 +39,8 @@ impl ProbeDefinition for MooringPlan {
     }
 }
 
-/// Measures the tension (N; N/m in 2-D) of a mooring line at its first end (the fairlead), at its second end (the anchor), in the
-/// segments at a quarter, half and three quarters of its length from the first end, and the largest tension. Also measures the
-/// length (m) that lies on fixed solids, and the angle (deg) of the second end above the horizontal. The tension at an end is the
+/// Measures the tension (N; N/m in 2-D) of a mooring line at its first end (the fairlead), at its second end (the anchor), at a
+/// quarter, half and three quarters of its length from the first end, and the largest tension. Also measures the length (m) that lies on fixed solids, and the angle (deg) of the second end above the horizontal. The tension at an end is the
 /// mean force over the last step on the solid or point that holds it.
 pub struct MooringProbe {
     line: usize,
@@ -76,13 +75,24 @@ impl<const D: usize> Probe<D> for MooringProbe {
 
     fn sample(&self, sim: &Simulation<D>) -> Vec<f64> {
         let now = sim.mooring_reading(self.line);
-        let count = now.tensions.len();
-        // While the line does not act there are no segments.
-        let at = |share: f64| now.tensions.get(((share * count as f64) as usize).min(count.max(1) - 1)).copied();
-        let along = ALONG.map(|(_, share)| at(share).unwrap_or_default());
+        let along = ALONG.map(|(_, share)| tension_at(&now.tensions, share));
         let largest = now.tensions.iter().copied().fold(0.0, f64::max);
         let shape = [now.on_bed, now.anchor_angle.to_degrees()];
         let ends = now.end_forces.map(|force| force.norm());
         ends.into_iter().chain(along).chain([largest]).chain(shape).collect()
     }
 }
+
+/// Returns the tension at the place of `share` of the length, interpolated between the middles of the segments; 0 without
+/// segments, as while a line does not act.
+fn tension_at(tensions: &[f64], share: f64) -> f64 {
+    let Some(last) = tensions.len().checked_sub(1) else { return 0.0 };
+    let place = (share * tensions.len() as f64 - 0.5).clamp(0.0, last as f64);
+    let (first, part) = (place.floor() as usize, place.fract());
+    let second = (first + 1).min(last);
+    tensions[first] + part * (tensions[second] - tensions[first])
+}
+
+#[cfg(test)]
+#[path = "../../tests/unit/probe/mooring.rs"]
+mod tests;

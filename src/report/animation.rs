@@ -224,24 +224,41 @@ impl ShownParticles {
     }
 }
 
-/// Adds the animation of `run` to `blob`, and returns its description. The total number of particles over all frames is
-/// about `samples`; particles are chosen as for at least `expected` frames.
+/// Adds the animation of `run` to `blob`, and returns its description, with a remark on each frame that is left out because it
+/// cannot be read. The total number of particles over all frames is about `samples`; particles are chosen as for at least
+/// `expected` frames.
 ///
 /// # Errors
-/// `File` if a frame cannot be read.
+/// `File` if the first frame, to which the poses of the solids refer, cannot be read.
 pub(crate) fn encode_animation(
     run: &RunData,
     film: &FrameSequence,
     samples: usize,
     expected: usize,
     blob: &mut BinaryData,
-) -> Result<Animation> {
+) -> Result<(Animation, Vec<String>)> {
     let frames = film.times().len();
     let shown = ShownParticles::choose(run, film, samples, frames.max(expected))?;
     let readable = (MOST_READ / film.bytes(frames / 2).max(1)) as usize;
     let most = (samples / shown.count()).clamp(2, FRAMES[0]).min(readable.max(2)).min(frames);
     let kept: Vec<usize> = (0..most).map(|k| (k * (frames - 1)).checked_div(most - 1).unwrap_or(0)).collect();
-    shown.encode(film, &kept, run.geometry.as_ref(), true, blob)
+    let begin = blob.len();
+    let why = match shown.encode(film, &kept, run.geometry.as_ref(), true, blob) {
+        Ok(animation) => return Ok((animation, Vec::new())),
+        Err(why) => why,
+    };
+    blob.truncate(begin);
+    let mut remarks = Vec::new();
+    let mut is_whole = |number: &usize| {
+        let read = film.water(*number).and(film.solids(*number)).map(drop).and(film.moorings(*number).map(drop));
+        remarks.extend(read.as_ref().err().map(|why| format!("frame {number} is left out: {}", why.message)));
+        read.is_ok()
+    };
+    let whole: Vec<usize> = kept.into_iter().filter(&mut is_whole).collect();
+    if whole.is_empty() {
+        return Err(why);
+    }
+    Ok((shown.encode(film, &whole, run.geometry.as_ref(), true, blob)?, remarks))
 }
 
 /// Returns the indices of particles about `distance` apart: the first particle in each cell of that size, or all

@@ -33,6 +33,11 @@ impl BinaryData {
         self.0.len()
     }
 
+    /// Removes all bytes from position `length` on.
+    pub(crate) fn truncate(&mut self, length: usize) {
+        self.0.truncate(length);
+    }
+
     /// Returns all bytes, compressed with DEFLATE (without a header) and in base 64.
     pub(crate) fn to_base64(&self) -> String {
         let mut encoder = DeflateEncoder::new(Vec::new(), Compression::default());

@@ -121,7 +121,7 @@ impl LiveRun {
         let run = RunData::read(&self.folder)?;
         let frames = run.frames.as_ref().map_or(0, |film| film.times().len());
         data["position"] = json!(FeedPosition { frames, tables: ends }.to_string());
-        let page = live_page_html(&run, &data)?;
+        let page = live_page_html(&run, &data);
         if basis.as_ref().is_none_or(|basis| basis.shown.is_none()) {
             let choose = |film| ShownParticles::choose(&run, film, LIVE_SAMPLES, frames.max(LIVE_FRAMES));
             let shown = run.frames.as_ref().map(choose).transpose()?;

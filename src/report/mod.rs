@@ -63,7 +63,7 @@ pub struct Page {
 /// Writes the page of the run in `folder` as `report.html` in this folder; the run may be unfinished.
 ///
 /// # Errors
-/// `Restart` if `folder` contains no run; `File` if a frame cannot be read or the page cannot be written.
+/// `Restart` if `folder` contains no run; `File` if the page cannot be written.
 pub fn write(folder: &Path) -> Result<Page> {
     write_page(&[folder.to_owned()], &folder.join(REPORT_FILE))
 }
@@ -84,10 +84,10 @@ pub fn compare(folders: &[PathBuf], out: &Path) -> Result<Page> {
 fn write_page(folders: &[PathBuf], out: &Path) -> Result<Page> {
     let begun = Instant::now();
     let runs = RunData::read_all(folders)?;
-    let text = page::page_html(&runs)?;
+    let (text, lost_frames) = page::page_html(&runs);
     write_atomically(out, text.as_bytes())?;
     let apart =
         sections::no_common_series(&runs).then(|| "the runs have no series in common: each is drawn by itself".into());
-    let remarks = runs.into_iter().flat_map(|run| run.remarks).chain(apart).collect();
+    let remarks = runs.into_iter().flat_map(|run| run.remarks).chain(lost_frames).chain(apart).collect();
     Ok(Page { path: out.to_owned(), bytes: text.len(), seconds: begun.elapsed().as_secs_f64(), remarks })
 }

@@ -15,7 +15,6 @@ use super::{
     sections, summary_tables,
     ties::Tie,
 };
-use crate::error::Result;
 
 const FRAME: &str = include_str!("assets/page.html");
 const STYLE: [&str; 2] = [include_str!("assets/uplot.min.css"), include_str!("assets/page.css")];
@@ -63,6 +62,9 @@ struct PageRun<'a> {
     until: f64,
     stage: Option<PageScene<'a>>,
     reel: Option<Animation>,
+    /// Remarks on frames that cannot be read.
+    #[serde(skip)]
+    lost_frames: Vec<String>,
     tables: Vec<TablePlots>,
     checks: Vec<CheckPlot>,
     answers: Vec<RaoPlot<'a>>,
@@ -105,43 +107,42 @@ impl<'a> From<&'a SceneGeometry> for PageScene<'a> {
     }
 }
 
-/// Returns the page of `runs`.
-///
-/// # Errors
-/// `File` if a frame cannot be read.
-pub(crate) fn page_html(runs: &[RunData]) -> Result<String> {
+/// Returns the page of `runs`, and remarks on frames that cannot be read.
+pub(crate) fn page_html(runs: &[RunData]) -> (String, Vec<String>) {
     let mut samples = SAMPLES;
     loop {
-        let text = page_with_samples(runs, (samples / runs.len() as f64) as usize, None)?;
+        let (text, remarks) = page_with_samples(runs, (samples / runs.len() as f64) as usize, None);
         if text.len() <= MAX_PAGE_BYTES || samples < 1e4 {
-            return Ok(text);
+            return (text, remarks);
         }
         samples *= 0.9 * MAX_PAGE_BYTES as f64 / text.len() as f64;
     }
 }
 
 /// Returns the page of a `run` in progress, whose scripts find `live` in their data.
-///
-/// # Errors
-/// As [`page_html`].
-pub(crate) fn live_page_html(run: &RunData, live: &Value) -> Result<String> {
-    page_with_samples(std::slice::from_ref(run), LIVE_SAMPLES, Some(live))
+pub(crate) fn live_page_html(run: &RunData, live: &Value) -> String {
+    page_with_samples(std::slice::from_ref(run), LIVE_SAMPLES, Some(live)).0
 }
 
-/// Returns the page with about `samples` samples for each run; it is a live page if it has `live` data.
-fn page_with_samples(runs: &[RunData], samples: usize, live: Option<&Value>) -> Result<String> {
+/// Returns the page with about `samples` samples for each run, and remarks on frames that cannot be read; it is a live page if it
+/// has `live` data.
+fn page_with_samples(runs: &[RunData], samples: usize, live: Option<&Value>) -> (String, Vec<String>) {
     let mut blob = BinaryData::default();
     let mut told = PageData { maps: FIELD_COLOUR_MAPS, runs: Vec::new(), live };
     let expected = if live.is_some() { LIVE_FRAMES } else { 0 };
     for run in runs {
         let reel = run.frames.as_ref().map(|film| encode_animation(run, film, samples, expected, &mut blob));
-        let reel = reel.transpose()?;
+        let (reel, lost_frames) = match reel.transpose() {
+            Ok(reel) => reel.map_or((None, Vec::new()), |(reel, lost)| (Some(reel), lost)),
+            Err(why) => (None, vec![format!("no frame is shown: {}", why.message)]),
+        };
         told.runs.push(PageRun {
             name: &run.name,
             title: &run.manifest.title,
             until: run.manifest.until_s,
             stage: run.geometry.as_ref().map(PageScene::from),
             reel,
+            lost_frames,
             tables: run.tables.iter().map(|table| charts::encode_table(table, &mut blob)).collect(),
             checks: charts::encode_checks(run, sections::caption, &mut blob),
             answers: charts::encode_raos(&run.statistics.raos, &mut blob),
@@ -171,7 +172,7 @@ fn page_with_samples(runs: &[RunData], samples: usize, live: Option<&Value>) -> 
         text += &part;
         rest = after;
     }
-    Ok(text + rest)
+    (text + rest, told.runs.into_iter().flat_map(|run| run.lost_frames).collect())
 }
 
 fn section(id: &str, title: &str, body: &str) -> String {
@@ -186,6 +187,11 @@ fn section(id: &str, title: &str, body: &str) -> String {
 /// Returns the HTML of the players.
 fn player_html(told: &[PageRun]) -> String {
     let reels: Vec<(&str, &Animation)> = told.iter().filter_map(|run| Some((run.name, run.reel.as_ref()?))).collect();
+    let remark = |text: &String| format!("<p class=\"quiet\">{}</p>\n", escape(text));
+    let lost: String = told.iter().flat_map(|run| &run.lost_frames).map(remark).collect();
+    if reels.is_empty() && !lost.is_empty() {
+        return lost;
+    }
     if reels.is_empty() {
         return "<p>No frames were kept of this run (<code>[frames]</code> in the scene), so there is nothing to play.</p>\n".into();
     }
@@ -196,7 +202,7 @@ fn player_html(told: &[PageRun]) -> String {
             format!("<p class=\"quiet\">{name}{}</p>\n", sections::animation_note(reel))
         })
         .collect();
-    format!("<div id=\"deck\"></div>\n{notes}")
+    format!("<div id=\"deck\"></div>\n{notes}{lost}")
 }
 
 fn single_run(run: &RunData, told: &PageRun, live: bool) -> String {

@@ -141,6 +141,10 @@ fn read_panel(run: &RunData, t: f64, field: ColourField) -> Result<Panel<'_>> {
     let set = run.geometry.as_ref().ok_or_else(|| refused(run.remarks.first().map_or("its scene is lost", |x| x)))?;
     let number = if t.is_finite() { film.nearest_index(t) } else { film.times().len() - 1 };
     let water = film.water(number)?;
+    if water.position.is_empty() {
+        let help = "draw other times with --time, or run the scene again with a larger frames.box";
+        return Err(refused(&format!("its frame at t = {} s holds no water", film.times()[number])).help(help));
+    }
     if !field.is_available(&water) {
         return Err(refused("its frames lack what the picture is coloured by")
             .help("name pressure and velocity under fields of [frames] in its scene"));

@@ -7,7 +7,7 @@ use std::{
 
 use crate::{
     error::{Error, ErrorKind, Result},
-    output::checkpoint,
+    output::{Manifest, checkpoint, manifest::RunStatus},
     run::statistics::{RAO_FILE, SPECTRA_FILE},
     scene::{Scene, files},
 };
@@ -41,10 +41,15 @@ pub(crate) fn create_run_folder(file: &Path, out: Option<&Path>) -> Result<PathB
     if let Some(out) = out {
         fs::create_dir_all(out).map_err(|why| refused(out, why))?;
         if fs::read_dir(out).map_err(|why| Error::read(out, &why))?.next().is_some() {
-            let help = if out.join("manifest.json").exists() {
-                format!("it holds a run: go on with it by `pontoon resume {}`, or choose another folder", out.display())
-            } else {
-                "choose another folder; results are never written over other files".into()
+            let help = match Manifest::read(out).map(|manifest| manifest.status) {
+                Ok(RunStatus::Finished) => "it holds a finished run: choose another folder with --out".into(),
+                Ok(_) => {
+                    format!(
+                        "it holds a run: continue it with `pontoon resume {}`, or choose another folder",
+                        out.display()
+                    )
+                }
+                Err(_) => "choose another folder; results are never written over other files".into(),
             };
             return Err(Error::new(ErrorKind::Usage, format!("the folder {} is not empty", out.display())).help(help));
         }

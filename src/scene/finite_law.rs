@@ -28,8 +28,7 @@ pub(super) fn require_finite(ctx: &Context, key: &str, text: &str, formula: &For
     let refuse = |shown: &str, t: f64| {
         let rounded = (t * 1e4).round() / 1e4;
         let what = format!("\"{text}\" {shown} at t = {rounded} s of a run to {} s", ctx.until);
-        let help =
-            "write a formula that is finite at all times, as with max(0, ..) below a root, or end the run before";
+        let help = "write a formula that is finite at all times, as sqrt(max(t - 0.2, 0)), or end the run before";
         Err(ctx.error_with_help(key, what, help).with_code(ErrorCode::OutOfRange))
     };
     let Some(found) = (0..=INTERVALS).find(|&i| is_wrong(i) && meets(i)) else {

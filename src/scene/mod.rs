@@ -73,6 +73,7 @@ use crate::error::{Error, Result};
 use toml_source::SceneSource;
 
 pub use context::FileNote;
+pub(crate) use resolve::MOST_JITTER;
 pub(crate) use section::{
     shape::world_bounds,
     water::{basin, level_at},
@@ -158,6 +159,7 @@ pub struct Scene {
     /// Acceleration of gravity, m/s²: a vector, or a number downwards; of numbers, formulas in t (s) or tables.
     pub gravity: Option<TimeVectorConfig>,
     /// Largest random offset of a water particle from its lattice point at the start, in each direction, over dp.
+    #[schemars(extend("also" = "scatter"))]
     pub jitter: Option<f64>,
     /// Box that water and moving solids must not leave.
     pub domain: Option<BoxConfig>,

@@ -45,6 +45,9 @@ macro_rules! names {
     };
 }
 
+/// The largest jitter, dp.
+pub(crate) const MOST_JITTER: f64 = 0.1;
+
 impl Scene {
     /// Returns the properties of the scene that the validation and construction of its sections use.
     pub(super) fn context(&self) -> Context<'_> {
@@ -79,8 +82,10 @@ impl Scene {
         if let Some(gravity) = &self.gravity {
             gravity::verify(ctx, gravity)?;
         }
-        if let Some(jitter) = self.jitter.filter(|s| !(0.0..=0.1).contains(s)) {
-            return Err(ctx.error_at("jitter", format!("particles start 0 to 0.1 dp off their places, not {jitter}")));
+        if let Some(jitter) = self.jitter.filter(|s| !(0.0..=MOST_JITTER).contains(s)) {
+            return Err(
+                ctx.error_at("jitter", format!("particles start 0 to {MOST_JITTER} dp off their places, not {jitter}"))
+            );
         }
         self.domain.iter().try_for_each(|domain| domain.verify(ctx, "domain"))?;
         self.periodic.iter().try_for_each(|periodic| periodic.verify(ctx))?;

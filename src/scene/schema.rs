@@ -42,6 +42,7 @@ pub fn schema() -> Value {
     required_only(&mut schema);
     expand_aliases(&mut schema);
     if let Some(types) = schema.get_mut("$defs").and_then(Value::as_object_mut) {
+        types.get_mut("PlacementConfig").into_iter().for_each(allow_position);
         types
             .iter_mut()
             .filter(|(name, _)| CHOICES.contains(&name.as_str()))
@@ -89,10 +90,21 @@ fn required_only(schema: &mut Value) {
     }
 }
 
-/// Accepts the alias of a value, which its type declares as `also`, in addition to the value.
+/// Accepts the coordinates of a position (m) in place of a table.
+fn allow_position(placement: &mut Value) {
+    let position = json!({ "type": "array", "items": { "type": "number" }, "minItems": 2, "maxItems": 3 });
+    let description = placement["description"].take();
+    *placement = json!({ "description": description, "anyOf": [position, placement.take()] });
+}
+
+/// Accepts the alias of a value or of a key, which its type declares as `also`, in addition to the value or the key.
 fn expand_aliases(schema: &mut Value) {
     match schema {
         Value::Object(map) => {
+            if let Some(Value::Object(keys)) = map.get_mut("properties") {
+                let aliases: Vec<(String, Value)> = keys.values_mut().filter_map(key_alias).collect();
+                keys.extend(aliases);
+            }
             if let Some(also) = map.remove("also")
                 && let Some(word) = map.remove("const")
             {
@@ -103,6 +115,16 @@ fn expand_aliases(schema: &mut Value) {
         Value::Array(items) => items.iter_mut().for_each(expand_aliases),
         _ => {}
     }
+}
+
+/// Takes the alias of a key out of the schema of its value, if it declares one. Returns the alias and its schema, which marks it as
+/// deprecated.
+fn key_alias(value: &mut Value) -> Option<(String, Value)> {
+    let map = value.as_object_mut()?;
+    let Some(Value::String(alias)) = map.remove("also") else { return None };
+    let mut schema = Value::Object(map.clone());
+    schema["deprecated"] = json!(true);
+    Some((alias, schema))
 }
 
 /// Accepts each alternative of a choice as a bare word or as an empty table.

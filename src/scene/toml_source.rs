@@ -5,7 +5,7 @@
 
 use std::{
     borrow::Cow,
-    collections::BTreeMap,
+    collections::{BTreeMap, BTreeSet},
     fmt,
     ops::Range,
     path::{Path, PathBuf},
@@ -40,6 +40,8 @@ pub(super) struct SceneSource {
     places: BTreeMap<String, usize>,
     /// Keys set on the command line.
     pub sets: Vec<String>,
+    /// All keys that the scene has at these keys and below them.
+    set_values: BTreeSet<String>,
     /// Names of the solids, in order, so that a key can say `solid.box` for `solid.2`.
     names: Vec<String>,
     /// Keys and values that are written with an old name.
@@ -126,10 +128,11 @@ impl SceneSource {
 
     /// The source of `key`; `None` if it is not written.
     pub(crate) fn source(&self, key: &str) -> Option<ValueSource> {
-        if self.is_set(key) {
+        if self.set_values.contains(key) || self.has_set_element(key) {
             return Some(ValueSource::Set);
         }
-        if self.file.is_empty() {
+        // A table that is set replaces all that the text has in it.
+        if self.is_set(key) || self.file.is_empty() {
             return None;
         }
         self.places.get(key).map(|start| ValueSource::Line(self.lines.partition_point(|line| line <= start)))
@@ -147,6 +150,15 @@ impl SceneSource {
     /// Whether `key`, or one above it, was set on the command line.
     fn is_set(&self, key: &str) -> bool {
         self.sets.iter().any(|set| key == set || key.starts_with(&format!("{set}.")))
+    }
+
+    /// Whether an element of the list `key` was set on the command line.
+    fn has_set_element(&self, key: &str) -> bool {
+        let is_element = |set: &String| {
+            let number = set.strip_prefix(key).and_then(|rest| rest.strip_prefix('.'));
+            number.is_some_and(|number| number.parse::<usize>().is_ok())
+        };
+        self.sets.iter().any(is_element)
     }
 
     /// `key` with the names of solids in place of their numbers.
@@ -194,6 +206,9 @@ pub(super) fn read<T: DeserializeOwned>(
     }
     rename(root.get_mut(), &mut origin)?;
     expand_bare_choices(root.get_mut());
+    let mut entries_now = Vec::new();
+    walk(root.get_ref(), "", &mut entries_now);
+    origin.set_values = entries_now.into_iter().map(|e| e.path).filter(|path| origin.is_set(path)).collect();
     origin.names = solid_names(root.get_ref());
     for i in 0..origin.renamed.len() {
         origin.renamed[i].key = origin.key_with_names(&origin.renamed[i].key);

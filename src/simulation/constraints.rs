@@ -78,7 +78,7 @@ impl<const D: usize> Simulation<D> {
         self.bodies.constraints().joint_coordinates(joint, &solids)
     }
 
-    /// The readings of spring number `spring` in the last step.
+    /// The present readings of spring number `spring`.
     pub fn spring_reading(&self, spring: usize) -> LineReading {
         self.bodies.constraints().spring_reading(spring)
     }
@@ -124,6 +124,11 @@ impl<const D: usize> Simulation<D> {
     /// Shapes and tensions of all mooring lines now, in the order of the setup.
     pub fn mooring_readings(&self) -> Vec<MooringReading<D>> {
         (0..self.system.constraints().moorings.len()).map(|i| self.mooring_reading(i)).collect()
+    }
+
+    /// Whether rope number `rope` acted in the last step.
+    pub(crate) fn rope_acts(&self, rope: usize) -> bool {
+        self.bodies.constraints().rope_acts(rope)
     }
 
     /// The readings of rope number `rope` in the last step.

@@ -10,7 +10,7 @@ use crate::{
     error::{Error, ErrorKind, Result},
     output::{Manifest, manifest::RunStatus},
     run::{self, RunObserver, RunOptions, outputs, resume_point, run_folder},
-    scene::{FramesChoice, FramesConfig, Scene, SizeEstimate, current_key},
+    scene::{FramesChoice, FramesConfig, MOST_JITTER, Scene, SizeEstimate, current_key},
 };
 
 /// Additional initial displacement of the water from each repeat to the next, dp.
@@ -88,10 +88,12 @@ impl Job {
                 .help("leave out  --vary jitter  or  --repeat"));
         }
         let own = if times > 1 { self.read_scene()?.jitter.unwrap_or(0.0) } else { 0.0 };
+        // Less of a jitter that is near the largest.
+        let offset = if own > 0.5 * MOST_JITTER { -REPEAT_OFFSET } else { REPEAT_OFFSET };
         let nth = |repeat: usize| {
             let mut job = Self { repeat, ..self.clone() };
             if repeat > 1 {
-                job.overrides.push((JITTER.into(), format!("{:?}", own + REPEAT_OFFSET * (repeat - 1) as f64)));
+                job.overrides.push((JITTER.into(), format!("{:?}", own + offset * (repeat - 1) as f64)));
                 job.folder.as_mut_os_string().push(format!("_repeat-{repeat}"));
             }
             job

@@ -47,6 +47,7 @@ pub struct CheckConfig {
     /// Factor on its times, –.
     pub time_factor: Option<f64>,
     /// Time added to its times, s.
+    #[schemars(extend("also" = "delay"))]
     pub offset: Option<f64>,
     /// The reference as a formula in the run's time t (s), in place of a table.
     pub formula: Option<String>,

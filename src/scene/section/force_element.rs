@@ -89,6 +89,7 @@ pub struct ForceConfig {
     pub frame: Option<ForceFrame>,
     /// Time from which it acts, s.
     #[serde(alias = "from")]
+    #[schemars(extend("also" = "from"))]
     pub since: Option<f64>,
     /// Time at which it ends, s.
     pub until: Option<f64>,

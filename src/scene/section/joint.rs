@@ -52,6 +52,7 @@ pub struct JointConfig {
     pub contacts: Option<bool>,
     /// Time from which it acts, s.
     #[serde(alias = "from")]
+    #[schemars(extend("also" = "from"))]
     pub since: Option<f64>,
     /// Time at which it ends, s.
     pub until: Option<f64>,

@@ -96,6 +96,11 @@ impl FramesChoice {
                 .error_with_help("frames.fields", what, format!("known: {}", FIELDS.join(", ")))
                 .with_code(ErrorCode::UnknownName));
         }
+        let fields = fields.as_deref().unwrap_or_default();
+        if let Some(twice) = (1..fields.len()).find(|&i| fields[..i].contains(&fields[i])) {
+            let what = format!("the field \"{}\" is named twice", fields[twice]);
+            return Err(ctx.error_with_help("frames.fields", what, "name each field once"));
+        }
         corners.as_ref().map_or(Ok(()), |corners| corners.verify(ctx, "frames.box"))
     }
 

@@ -56,6 +56,7 @@ pub struct SolidConfig {
     /// Restitution coefficient, –.
     pub restitution: Option<f64>,
     /// Distance from its faces at which contact begins, m.
+    #[schemars(extend("also" = "skin"))]
     pub contact_skin: Option<f64>,
     /// Whether the space that it encloses below its rim starts without water.
     pub dry: Option<bool>,

@@ -140,6 +140,7 @@ pub struct MeasuredElevationConfig {
     pub distance: Option<f64>,
     /// Time added to its times, s.
     #[serde(alias = "delay")]
+    #[schemars(extend("also" = "delay"))]
     pub offset: Option<f64>,
 }
 

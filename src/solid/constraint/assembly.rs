@@ -43,12 +43,13 @@ impl<const D: usize> JointReading<D> {
     }
 }
 
-/// Tension and length of a spring or a rope in the last step.
+/// Tension and length of a spring or a rope.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct LineReading {
     /// Its length, m.
     pub length: f64,
-    /// Its tension, N (N/m in 2-D); negative where it pushes.
+    /// Its tension, N (N/m in 2-D); negative where it pushes. That of a spring belongs to its length; that of a rope is the mean
+    /// over the last step, 0 before the first step.
     pub tension: f64,
 }
 
@@ -127,14 +128,18 @@ impl<const D: usize> Assembly<D> {
             motor_force: 0.0,
             absorbed_energy: 0.0,
         };
-        let spring = |s: &SpringSpec<D>| {
+        let spring = |(s, spring): (&SpringSpec<D>, &Spring<D>)| {
             let length = start_length(&s.ends);
             let elastic = SpringParameters {
                 stiffness: s.stiffness,
                 damping: s.damping,
                 rest_length: s.rest_length.unwrap_or(length),
             };
-            (elastic, LineReading { length, tension: 0.0 })
+            let ends = spring.line.end_kinematics(&start);
+            let rate = spring.line.length_and_jacobian(&ends).1.map_or(0.0, |row| row.rate(&ends));
+            let acts = s.lifetime.contains(0.0);
+            let tension = if acts { elastic.tension_at([length, rate], s.tension_only) } else { 0.0 };
+            (elastic, LineReading { length, tension })
         };
         let rope = |r: &RopeSpec<D>| LineReading { length: start_length(&r.ends), tension: 0.0 };
         let attached_spring = |s: &SpringSpec<D>| Spring {
@@ -150,9 +155,13 @@ impl<const D: usize> Assembly<D> {
             max_length: r.max_length,
             lifetime: r.lifetime,
         };
+        let joints: Vec<Joint<D>> = links.joints.iter().map(|joint| Joint::new(joint.clone(), &start)).collect();
+        let start_reading = |joint: &Joint<D>| {
+            let ends = joint.end_kinematics(&start);
+            JointReading { rate: joint.coordinate_jacobian(&ends).map_or(0.0, |row| row.rate(&ends)), ..none }
+        };
+        let springs: Vec<Spring<D>> = links.springs.iter().map(attached_spring).collect();
         Self {
-            joints: links.joints.iter().map(|joint| Joint::new(joint.clone(), &start)).collect(),
-            springs: links.springs.iter().map(attached_spring).collect(),
             ropes: links.ropes.iter().map(attached_rope).collect(),
             forces: links.forces.clone(),
             winds: links.winds.clone(),
@@ -161,12 +170,14 @@ impl<const D: usize> Assembly<D> {
             rows: Vec::new(),
             tied: vec![ConstraintLoads::zero(); start.len()],
             state: AssemblyState {
-                joints: vec![(None, none); links.joints.len()],
-                springs: links.springs.iter().map(spring).collect(),
+                joints: joints.iter().map(|joint| (None, start_reading(joint))).collect(),
+                springs: links.springs.iter().zip(&springs).map(spring).collect(),
                 ropes: links.ropes.iter().map(rope).collect(),
                 forces: vec![None; links.forces.len()],
                 phases: Phases::at_start(links),
             },
+            joints,
+            springs,
             start,
         }
     }
@@ -329,8 +340,14 @@ impl<const D: usize> Assembly<D> {
             reading.absorbed_energy -= reading.motor_force * 0.5 * (rate(&was) + rate(&is)) * dt;
             reading.rate = rate(&is);
         }
-        for (spring, (_, reading)) in self.springs.iter().zip(&mut self.state.springs) {
-            reading.length = spring.line.length_and_jacobian(&spring.line.end_kinematics(after)).0;
+        let springs = self.springs.iter().zip(&mut self.state.springs).zip(&self.state.phases.springs);
+        for ((spring, (elastic, reading)), phase) in springs {
+            let [was, is] =
+                [before, after].map(|solids| spring.line.length_and_jacobian(&spring.line.end_kinematics(solids)).0);
+            if *phase == Phase::Acting {
+                reading.tension = elastic.tension_after(reading.tension, [was, is], spring.tension_only);
+            }
+            reading.length = is;
         }
         let (of_joints, of_ropes) = pulls.split_at(self.joints.len());
         for ((rope, reading), pull) in self.ropes.iter().zip(&mut self.state.ropes).zip(of_ropes) {
@@ -456,9 +473,14 @@ impl<const D: usize> Assembly<D> {
         self.joints[i].gap(&self.joints[i].end_kinematics(solids))
     }
 
-    /// Reading of spring number `i` in the last step.
+    /// Present reading of spring number `i`.
     pub(crate) fn spring_reading(&self, i: usize) -> LineReading {
         self.state.springs[i].1
+    }
+
+    /// Whether rope number `i` acted in the last step.
+    pub(crate) fn rope_acts(&self, i: usize) -> bool {
+        self.state.phases.ropes[i] == Phase::Acting
     }
 
     /// Reading of rope number `i` in the last step.

@@ -250,6 +250,29 @@ impl SpringParameters {
         let tension = self.stiffness * stretch + damped;
         if tension_only { tension.max(0.0) } else { tension }
     }
+
+    /// The tension (N) at this length (m) and at this rate of the length (m/s).
+    pub(in crate::solid) fn tension_at(&self, [length, rate]: [f64; 2], tension_only: bool) -> f64 {
+        let stretch = length - self.rest_length;
+        let tension = self.stiffness * stretch + self.damping * rate;
+        match tension_only {
+            true if stretch <= 0.0 => 0.0,
+            true => tension.max(0.0),
+            false => tension,
+        }
+    }
+
+    /// The tension (N) after a step in which it applied the tension `applied` (N) and its length (m) changed from `was` to `is`.
+    /// The damping of `applied` is that at the end of the step already; its elastic part is that at the start.
+    pub(in crate::solid) fn tension_after(&self, applied: f64, [was, is]: [f64; 2], tension_only: bool) -> f64 {
+        let elastic = |length: f64| self.tension_at([length, 0.0], tension_only);
+        let tension = applied + (elastic(is) - elastic(was));
+        match tension_only {
+            true if is <= self.rest_length => 0.0,
+            true => tension.max(0.0),
+            false => tension,
+        }
+    }
 }
 
 /// Length of a line between the points at which its ends start, m.

@@ -21,6 +21,9 @@ const COUPLING_STEP: f64 = 0.5;
 /// Δt times the rate at which waves on a line slow a body, at most.
 const RADIATION_STEP: f64 = 0.25;
 
+/// Height of a held end above the bed up to which it is level with the bed, as a part of a segment.
+const LEVEL: f64 = 1e-6;
+
 /// Shape and tension of a mooring line.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
@@ -199,16 +202,25 @@ impl<const D: usize> Mooring<D> {
             tensions: (0..line.segments()).map(|s| line.tension(s)).collect(),
             end_forces: [0, 1].map(|k| self.end_force(k)),
             // The sum of no numbers would be −0.
-            on_bed: self.lying_nodes(beds).map(|i| line.share(i)).fold(0.0, |sum, length| sum + length),
+            on_bed: self.lying_nodes(beds).into_iter().map(|i| line.share(i)).fold(0.0, |sum, length| sum + length),
             anchor_angle: anchor.try_normalize(f64::MIN_POSITIVE).map_or(0.0, |q| (-q[D - 1]).clamp(-1.0, 1.0).asin()),
             broken: state.broken.map(|segment| segment as usize),
         }
     }
 
-    /// The nodes that lie on fixed solids, in order; `beds` are what is below each node.
-    pub(crate) fn lying_nodes(&self, beds: &[Option<BedPlane<D>>]) -> impl Iterator<Item = usize> {
-        let lies = |i: &usize| beds[*i].is_some_and(|bed| self.line.material.depth(&bed, &self.line.state.x[*i]) > 0.0);
-        (0..beds.len()).filter(lies)
+    /// The nodes that lie on fixed solids, in order; `beds` are what is below each node. A held end at the level of the bed lies
+    /// where its neighbour lies: nothing presses it in.
+    pub(crate) fn lying_nodes(&self, beds: &[Option<BedPlane<D>>]) -> Vec<usize> {
+        let depth = |i: usize| beds[i].map(|bed| self.line.material.depth(&bed, &self.line.state.x[i]));
+        let presses = |i: usize| depth(i).is_some_and(|depth| depth > 0.0);
+        let last = beds.len() - 1;
+        let level = -LEVEL * self.line.state.segment;
+        let lies = |i: &usize| {
+            let neighbour = if *i == 0 { 1 } else { last - 1 };
+            let is_level_end = (*i == 0 || *i == last) && depth(*i).is_some_and(|depth| depth >= level);
+            presses(*i) || is_level_end && presses(neighbour)
+        };
+        (0..beds.len()).filter(lies).collect()
     }
 
     /// The force (N) of the line on the solid or the ground at end `k`; at a mooring point, the pull of the last segment.

@@ -108,6 +108,15 @@ fn read(text: &str, name: &str) -> Result<Vec<StressMap>> {
     let whole =
         |map: StressMap| StressMap { parts: part.clone(), default_criteria: judge.clone(), file: name.into(), ..map };
     let all: Vec<StressMap> = map.into_iter().map(whole).collect();
+    for map in &all {
+        let axes = std::iter::once(("x", &map.x)).chain(map.y.as_ref().map(|y| ("y", y)));
+        if let Some((axis, _)) = axes.into_iter().find(|(_, axis)| axis.values.is_empty()) {
+            let what = format!("the map {:?} has no value along {axis}: it has no cases", map.name);
+            return Err(Error::scene(what)
+                .at(name, None, format!("map.{axis}.values"))
+                .help("write  values = [0.1, 0.2]"));
+        }
+    }
     match (0..all.len()).find(|&i| all[..i].iter().any(|map| map.name == all[i].name)) {
         Some(i) => Err(Error::scene(format!("two maps are called {:?}", all[i].name)).at(name, None, "map.name")),
         None => Ok(all),

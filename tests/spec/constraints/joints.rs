@@ -94,6 +94,92 @@ fn a_resumed_run_with_a_mooring_and_a_hinge_reaches_the_same_bits() -> Result<()
     Ok(())
 }
 
+/// A box that hangs on a rope, and one that hangs on a spring of 50 N/m² stretched by 0.2 m, both out of the water and at rest.
+const HANGING: &str = r#"
+dimension = 2
+dp        = 0.05
+until     = 0.02
+
+[[water]]
+fill = { box = { min = [0.0, 0.0], max = [1.6, 0.5] } }
+
+[[solid]]
+name  = "tank"
+fixed = true
+shape = { tank = { size = [1.6, 0.8] } }
+
+[[solid]]
+name  = "hung"
+shape = { box = { size = [0.4, 0.4] } }
+at    = { x = 0.4, y = 1.6 }
+free  = { mass = 10.0 }
+
+[[solid]]
+name  = "sprung"
+shape = { box = { size = [0.4, 0.4] } }
+at    = { x = 1.2, y = 1.6 }
+free  = { mass = 10.0 }
+
+[[rope]]
+name    = "rope"
+between = ["hung"]
+from    = [0.4, 1.8]
+to      = [0.4, 2.6]
+
+[[spring]]
+name      = "spring"
+between   = ["sprung"]
+from      = [1.2, 1.8]
+to        = [1.2, 2.8]
+stiffness = 50.0
+length    = 0.8
+
+[[joint]]
+name    = "rail"
+kind    = "slider"
+along   = [0.0, 1.0]
+between = ["sprung"]
+at      = [1.2, 1.6]
+motor   = { stiffness = 100.0, damping = 10.0 }
+
+[[probe]]
+rope = "rope"
+[[probe]]
+spring = "spring"
+[[probe]]
+joint = "rail"
+[[probe]]
+balance = "hung"
+[[probe]]
+contact = ["hung", "sprung"]
+"#;
+
+/// Loads that only a step can tell are NaN before the first step: zeros would enter means and extremes.
+#[test]
+fn a_load_that_is_not_known_at_the_start_is_nan_there() -> Result<()> {
+    let scene = Scene::parse(HANGING, Path::new(""), &[])?;
+    let mut sim = common::scene_simulation::<2>(HANGING)?;
+    let kinds = scene.plan()?.probes.into_iter().map(|probe| probe.kind);
+    let kinds: Vec<_> = kinds.inspect(|kind| kind.enable_records(&mut sim)).collect();
+    let probes = kinds.iter().map(|kind| kind.build(sim.system())).collect::<Result<Vec<_>>>()?;
+    let sample = |sim: &Simulation<2>| probes.iter().map(|probe| probe.sample(sim)).collect::<Vec<_>>();
+    let [rope, spring, joint, balance, contact] = &sample(&sim)[..] else { panic!("five probes") };
+    assert!((rope[0] - 0.8).abs() < 1e-12 && rope[1].is_nan(), "{rope:?}");
+    assert!((spring[0] - 1.0).abs() < 1e-12 && (spring[1] - 10.0).abs() < 1e-9, "50 N/m² times 0.2 m: {spring:?}");
+    let [loads @ .., position, rate, motor, power, absorbed] = &joint[..] else { panic!("{joint:?}") };
+    assert!(loads.iter().chain([motor, power]).all(|x| x.is_nan()), "{joint:?}");
+    assert_eq!([*position, *rate, *absorbed], [0.0; 3]);
+    assert!(balance.iter().chain(contact).all(|x| x.is_nan()), "{balance:?} {contact:?}");
+
+    sim.step()?;
+    let [rope, _, joint, balance, contact] = &sample(&sim)[..] else { panic!("five probes") };
+    // The weight of 10 kg, to the 1e-6 of the engine's reactions.
+    assert!((rope[1] / 98.1 - 1.0).abs() < 1e-6, "{rope:?}");
+    assert!(joint.iter().chain(balance).all(|x| x.is_finite()), "{joint:?} {balance:?}");
+    assert_eq!(contact[..3], [0.0; 3], "they do not touch");
+    Ok(())
+}
+
 #[test]
 fn joint_and_line_probes_name_their_units_and_read_the_values_of_the_simulation() -> Result<()> {
     let mut sim = moored()?;

@@ -53,7 +53,8 @@ line = "chain"
 /// Weight less buoyancy of a metre of the chain, N/m.
 const WEIGHT: f64 = (0.3 - 1000.0 * 0.25 * std::f64::consts::PI * 0.008 * 0.008) * 9.81;
 
-/// The fairlead bears the weight of what does not lie on the bed, within the length of a segment.
+/// The fairlead bears the weight of what does not lie on the bed, within half a segment: the touchdown is that near to the middle
+/// between the last node that lies and the first that does not.
 #[test]
 fn the_fairlead_bears_what_hangs() -> Result<()> {
     let sim = scene_simulation::<2>(MOORED)?;
@@ -62,7 +63,7 @@ fn the_fairlead_bears_what_hangs() -> Result<()> {
         let hangs = 0.75 - now.on_bed;
         assert!(now.on_bed > 0.1, "{} m lie", now.on_bed);
         let lift = -now.end_forces[0][1];
-        assert!((lift / WEIGHT - hangs).abs() < 0.75 / 20.0, "line {line}: {lift} N, and {hangs} m hang");
+        assert!((lift / WEIGHT - hangs).abs() < 0.75 / 40.0, "line {line}: {lift} N, and {hangs} m hang");
     }
     let [west, east] = [0, 1].map(|line| sim.mooring_reading(line).end_forces[0]);
     assert!((west[0] + east[0]).abs() < 1e-6 * east.norm(), "both pull alike: {west} {east}");

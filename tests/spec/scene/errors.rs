@@ -245,6 +245,32 @@ fn overrides_replace_values_of_the_scene() {
 }
 
 #[test]
+fn a_field_of_the_frames_that_is_named_twice_is_refused() {
+    let sets = [("frames".to_string(), "{ fields = [\"velocity\", \"pressure\", \"velocity\"] }".to_string())];
+    let told = Scene::parse(GOOD, folder(), &sets).and_then(|scene| scene.plan()).unwrap_err().to_string();
+    assert!(told.contains("\"velocity\" is named twice") && told.contains("frames.fields"), "{told}");
+}
+
+/// A value is said to be set only if `--set` wrote it, or an element of it.
+#[test]
+fn a_value_set_in_part_and_a_table_set_empty_have_the_right_source() {
+    let source = |key: &str, value: &str, of: &str| {
+        let scene = Scene::parse(GOOD, folder(), &[(key.into(), value.into())]).unwrap();
+        let values = scene.resolve().unwrap();
+        let found = values.iter().find(|found| found.key == of).unwrap_or_else(|| panic!("no {of}"));
+        format!("{} ({})", found.value, found.source)
+    };
+    let set = source("water.0.fill.box.max.0", "0.9", "water.0.fill.box.max");
+    assert!(set.starts_with("[0.9, ") && set.ends_with("(--set)"), "{set}");
+    let beside = source("water.0.fill.box.max.0", "0.9", "water.0.fill.box.min");
+    assert!(beside.contains("(scene line "), "{beside}");
+    for of in ["model.rho0", "model.h_over_dp", "model.kernel"] {
+        let default = source("model", "{}", of);
+        assert!(default.contains("(default: "), "{of} = {default}");
+    }
+}
+
+#[test]
 fn a_choice_by_name_alone_has_its_default_parameters() {
     let bare = GOOD.replace("{ artificial = { alpha = 0.02 } }", "\"artificial\"");
     let read = |text: &str| Scene::parse(text, folder(), &[]).unwrap();

@@ -156,7 +156,7 @@ fn a_body_in_too_viscous_water_is_found_with_the_alpha_that_helps() {
 type Fault =
     (&'static str, &'static [(&'static str, &'static str)], &'static str, &'static [(&'static str, &'static str)]);
 
-const FAULTS: [Fault; 31] = [
+const FAULTS: [Fault; 32] = [
     ("slow_sound", &[("model.c0_factor", "5")], "c0 = 20 ", &[("model.c0", "20")]),
     // A plate with a single row of boundary particles moves water like a thick one: 0.4 m × 2π/s.
     (
@@ -271,6 +271,12 @@ const FAULTS: [Fault; 31] = [
         &[("solid.paddle.driven.distance.formula", "0.02*(1-cos(2*pi*t))")],
     ),
     ("event_after_end", &[("solid.sill.until", "3.0")], "run longer", &[("solid.sill.until", "1.0")]),
+    (
+        "empty_frames",
+        &[("frames.box", "{ min = [5.0, 0.0], max = [6.0, 1.0] }")],
+        "the water is from",
+        &[("frames.box", "{ min = [1.0, 0.0], max = [2.0, 1.0] }")],
+    ),
     ("large_frames", &[("until", "20.0"), ("frames.every", "0.0001")], "frames.every = 0.00", &[("until", "20.0")]),
 ];
 
@@ -578,4 +584,14 @@ fn a_paddle_with_a_list_of_motions_has_the_report_of_a_single_motion() {
     }
     assert_eq!((one.period_s, &one.answers), (other.period_s, &other.answers));
     assert_eq!(alone.sound.expected.len(), listed.sound.expected.len());
+}
+
+/// A run writes a frame at the start, at every multiple of the interval, and at the end. 0.3/0.1 is less than 3 in binary, and 1.1/0.1 more
+/// than 11.
+#[test]
+fn frames_are_counted_as_the_run_writes_them() {
+    for (until, count) in [("0.3", 4), ("0.35", 5), ("1.1", 12), ("0.05", 2)] {
+        let found = report(&[("until", until), ("frames.every", "0.1")]);
+        assert_eq!(found.size.disk.frames, count, "to {until} s");
+    }
 }

@@ -8,7 +8,8 @@ use serde_json::{Value, json};
 use super::reference::{code_names, page};
 
 /// Keywords without effect on validity.
-const ANNOTATIONS: [&str; 7] = ["$schema", "title", "description", "default", "format", "$defs", "examples"];
+const ANNOTATIONS: [&str; 8] =
+    ["$schema", "title", "description", "default", "format", "$defs", "examples", "deprecated"];
 
 /// Violations of `schema`, a part of `root`, by `value`. An unknown keyword fails the test.
 fn violations(root: &Value, schema: &Value, value: &Value, path: &str) -> Vec<String> {
@@ -120,6 +121,11 @@ fn every_form_of_a_key_is_valid_by_the_schema() {
         "[[joint]]\nname = \"a\"\nkind = \"prismatic\"\nbetween = [\"box\"]\nat = [0, 0]\nalong = [1, 0]",
         "[[joint]]\nname = \"a\"\nkind = \"generic\"\nbetween = [\"box\"]\nat = [0, 0]\nfree = [\"y\", \"turn\"]\nlimits = { y = [-0.1, 0.1] }",
         "[[joint]]\nname = \"a\"\nkind = \"slider\"\nbetween = [\"box\"]\nat = [0, 0]\nalong = [1, 0]\nlimits = [-0.1, 0.1]",
+        "[[joint]]\nname = \"a\"\nkind = \"fixed\"\nbetween = [\"box\"]\nat = [0, 0]\nfrom = 0.1",
+        "[[force]]\nname = \"wind\"\non = \"box\"\nforce = [1, 0]\nfrom = 0.1",
+        "[model]\nwalls = \"settling\"",
+        "[[solid]]\nname = \"a\"\nshape = { ball = { radius = 0.1 } }\nat = [0.5, 1]\nfixed = true\nskin = 0.01",
+        "[[check]]\nseries = \"a.x_m\"\nreference = \"a.csv\"\ndelay = 0.1",
         "[[statistic]]\nrao = { motion = \"box\", wave = \"gauge\" }",
         "[[force]]\nname = \"wind\"\non = \"box\"\nforce = [\"20*sin(t)\", 0.0]\ntorque = 2",
         "[[solid]]\nname = \"a\"\nshape = { polygon = [[0.0, 0.0], [0.1, 0.0], [0.0, 0.1]] }\nat = { draft = \"equilibrium\" }\nfree = { density = 500 }",
@@ -128,7 +134,10 @@ fn every_form_of_a_key_is_valid_by_the_schema() {
         let wrong = violations_of_scene(&format!("{SCENE}{keys}\n"));
         assert!(wrong.is_empty(), "{keys}: {wrong:?}");
     }
-    assert!(violations_of_scene(&format!("frames = \"off\"\n{SCENE}")).is_empty());
+    for top in ["frames = \"off\"", "jitter = 0.01", "scatter = 0.01"] {
+        let wrong = violations_of_scene(&format!("{top}\n{SCENE}"));
+        assert!(wrong.is_empty(), "{top}: {wrong:?}");
+    }
 }
 
 #[test]
@@ -139,6 +148,7 @@ fn a_misspelt_key_or_value_violates_the_schema() {
         ("[model]\ngamma = \"7\"", "gamma"),
         ("[[probe]]\nelevation = { z = 1.0 }", "elevation.z"),
         ("[frames]\nevry = 0.1", "frames"),
+        ("[[solid]]\nname = \"a\"\nshape = { ball = { radius = 0.1 } }\nat = [0.5, \"bed\"]\nfixed = true", "at"),
         ("[[joint]]\nkind = \"revolving\"", "kind"),
     ] {
         let wrong = violations_of_scene(&format!("{SCENE}{keys}\n"));

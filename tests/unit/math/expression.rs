@@ -56,3 +56,13 @@ fn an_invalid_formula_is_refused_with_its_position_and_reason() {
     assert!(message(&"-".repeat(900)).contains("nested"));
     assert!(message(&"1+".repeat(900)).contains("longer"));
 }
+
+/// The extreme of a number and a root of a negative number has no value, in either order; a limit below the root gives one.
+#[test]
+fn an_extreme_of_no_value_has_no_value() {
+    for text in ["max(0, sqrt(t - 0.2))", "max(sqrt(t - 0.2), 0)", "min(0, sqrt(t - 0.2))", "min(sqrt(t - 0.2), 0)"] {
+        assert!(Formula::parse(text).unwrap().value_and_rate(0.1).0.is_nan(), "{text}");
+    }
+    let limited = Formula::parse("sqrt(max(t - 0.2, 0))").unwrap();
+    assert_eq!([0.1, 0.45].map(|t| limited.value_and_rate(t).0), [0.0, 0.5]);
+}

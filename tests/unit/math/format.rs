@@ -60,3 +60,8 @@ fn large_numbers_are_short_or_grouped() {
     assert_eq!([metric_prefix(1.234e6), metric_prefix(5.0), metric_prefix(123.4)], ["1.23 M", "5.00", "123"]);
     assert_eq!([thousands(999), thousands(1234567)], ["999", "1\u{202f}234\u{202f}567"]);
 }
+
+#[test]
+fn a_terminal_obeys_no_title() {
+    assert_eq!(without_control("a \u{1b}[31mred tank,\n1 m³\u{7}"), "a \\u{1b}[31mred tank,\n1 m³\\u{7}");
+}

@@ -56,6 +56,9 @@ fn repeats_share_a_name_and_differ_by_a_jitter_of_a_millionth_of_dp() -> Result<
         let sets = sets.iter().map(|(key, value)| (key.to_string(), value.to_string())).collect();
         ParameterGrid { scene: scene.clone(), overrides: sets, repeat: 3, ..grid(&[0.05], &[]) }.jobs(Path::new("out"))
     };
+    // The largest jitter leaves no room above: repeats have less.
+    let most: Vec<f64> = thrice(&[("jitter", "0.1")])?.iter().filter_map(|job| job.read_scene().ok()?.jitter).collect();
+    assert_eq!(most, [0.1, 0.1 - 1e-6, 0.1 - 2e-6]);
     let jobs = thrice(&[])?;
     assert!(jobs.iter().all(|job| job.name == "dp-0.05" && job.group.is_empty()));
     let folders = ["out/runs/dp-0.05", "out/runs/dp-0.05_repeat-2", "out/runs/dp-0.05_repeat-3"];

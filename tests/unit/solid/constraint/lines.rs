@@ -89,6 +89,42 @@ fn a_damped_spring_reaches_its_static_deflection_for_any_damping() {
     }
 }
 
+/// The tension of a spring belongs to its length at every time, the start included: k (l − l₀) + c l̇.
+#[test]
+fn the_tension_of_a_spring_belongs_to_its_length() {
+    for (damping, tension_only) in [(0.0, false), (0.0, true), (20.0, false)] {
+        let solids = vec![bar::<2>("box", 0.2, point(0.0, 0.0), true)];
+        let ends = [LineEnd { solid: Some(0), at: point(0.0, 0.0) }, LineEnd { solid: None, at: point(0.0, 1.0) }];
+        let spec = SpringSpec {
+            name: "line".into(),
+            ends,
+            stiffness: 2000.0,
+            damping,
+            rest_length: Some(0.9),
+            tension_only,
+            lifetime: Lifetime::default(),
+        };
+        let mut air = DrySystem::new(solids, Constraints { springs: vec![spec], ..Constraints::default() }, G);
+        let law = |air: &DrySystem<2>| {
+            let [length, rate] = [1.0 - air.now()[0].centre[1], -air.now()[0].velocity[1]];
+            let stretch = length - 0.9;
+            (length, if tension_only && stretch < 0.0 { 0.0 } else { 2000.0 * stretch + damping * rate })
+        };
+        let (mut least, mut most, mut off) = (f64::INFINITY, 0.0_f64, 0.0_f64);
+        assert!((air.assembly.spring_reading(0).tension - 200.0).abs() < 1e-9, "{:?}", air.assembly.spring_reading(0));
+        for _ in 0..600 {
+            air.step(1e-3);
+            let ((length, tension), now) = (law(&air), air.assembly.spring_reading(0));
+            assert!((now.length - length).abs() < 1e-12, "{now:?}, {length}");
+            (least, most, off) = (least.min(tension), most.max(tension), off.max((now.tension - tension).abs()));
+        }
+        // The spring swings about its sag under the weight of 20 kg; k l̇ Δt, one step, would be 2 N.
+        assert!(most > 250.0 && least < 190.0, "{least} to {most} N");
+        let bound = if damping == 0.0 { 1e-9 } else { 0.05 };
+        assert!(off < bound, "c = {damping}: the tension is {off} N off");
+    }
+}
+
 /// A box of 20 kg on a vertical damper of `damping` (N s/m) without stiffness, and its weight (N).
 fn damper(damping: f64, more: Constraints<2>, solids: Vec<SolidSpec<2>>) -> (DrySystem<2>, f64) {
     let solids: Vec<_> = std::iter::once(bar::<2>("box", 0.2, point(0.0, 0.0), true)).chain(solids).collect();

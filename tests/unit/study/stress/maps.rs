@@ -68,3 +68,14 @@ fn an_unknown_map_is_refused_with_the_nearest_name() -> Result<()> {
     assert!(error.is_some_and(|e| e.to_string().contains("did you mean \"float\"?")));
     Ok(())
 }
+
+#[test]
+fn an_axis_without_values_is_refused() {
+    for (values, axis) in [("[10, 20, 30]", "x"), ("[\"wendland\", \"cubic\"]", "y")] {
+        let told = read(&TINY.replace(values, "[]"), "tiny").unwrap_err().to_string();
+        assert!(
+            told.contains(&format!("no value along {axis}")) && told.contains(&format!("map.{axis}.values")),
+            "{told}"
+        );
+    }
+}
