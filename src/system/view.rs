@@ -209,7 +209,7 @@ impl<const D: usize> System<D> {
         Vector::from_fn(|i, _| if self.fluid.images.periodic[i].is_some() { 0.0 } else { x[i] })
     }
 
-    /// Power of gravity on the water along periodic axes, Σ m g·v, W (W/m in 2-D).
+    /// Power on the water of gravity along periodic axes and of a current and a towed frame, Σ m g·v, W (W/m in 2-D).
     pub(crate) fn periodic_gravity_power(&self) -> f64 {
         let along = self.properties.gravity - self.non_periodic_gravity();
         if along.norm_squared() == 0.0 {
@@ -289,6 +289,12 @@ impl<const D: usize> System<D> {
         let Fluid { particles, images, .. } = &self.fluid;
         let axes = images.planes.axes_beyond(place) ^ images.planes.axes_beyond(&particles.r[i]);
         reflected(axes, particles.v[i])
+    }
+
+    /// Whether the force of the water on a boundary particle at `x` (m) counts: between the periodic sides and between the faces
+    /// of open boundaries, beyond which a buffer prescribes the pressure.
+    pub(super) fn is_in_counted_water(&self, x: &Vector<D>) -> bool {
+        self.is_between_sides(x) && self.fluid_domain.open_boundaries.iter().all(|face| face.beyond(x) <= 0.0)
     }
 
     /// Whether `x` (m) lies between the periodic sides.
