@@ -91,7 +91,7 @@ pub struct System<const D: usize> {
     constraints: Constraints<D>,
     /// Components of gravity as functions of time, m/s²; empty if it is constant.
     gravity_law: Vec<TimeFunction>,
-    driving: DrivingState,
+    driving: DrivingState<D>,
     fluid_domain: FluidDomain<D>,
     pub(crate) rates: Rates<D>,
     pub(crate) status: Status,

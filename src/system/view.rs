@@ -201,7 +201,12 @@ impl<const D: usize> System<D> {
 
     /// Acceleration of gravity (m/s²) along the axes that have a height: those that are not periodic.
     pub(crate) fn non_periodic_gravity(&self) -> Vector<D> {
-        self.non_periodic(&self.properties.gravity)
+        self.non_periodic(&self.potential_gravity())
+    }
+
+    /// Gravity (m/s²) that has a potential: without the accelerations of a current and of a towed frame, which depend on time.
+    pub(crate) fn potential_gravity(&self) -> Vector<D> {
+        self.properties.gravity - self.driving.acceleration
     }
 
     /// The components of a vector along the axes that are not periodic.
@@ -344,7 +349,7 @@ impl<const D: usize> System<D> {
         let mut forces = BTreeMap::new();
         for (&i, sums) in self.neighbours.boundary_near_fluid().iter().zip(&self.rates.boundary) {
             let r = &self.boundary.particles.r[i as usize];
-            if !skin.contains(&(i as usize)) || !self.fluid.images.is_inside(r) {
+            if !skin.contains(&(i as usize)) || !self.is_in_counted_water(r) {
                 continue;
             }
             if own.division.cut == 0 {
