@@ -14,7 +14,7 @@ use super::{
     power_breakdown::{PowerBreakdown, PowerMeter, gains_of_last_pass, total_power},
 };
 use crate::{
-    math::Vector,
+    math::{Bivector, Vector},
     model::HasPairLoop,
     solid::{Dim, FreeBody, Kinematics, Load, Role, Solid},
     system::{RemovedParticle, System},
@@ -23,7 +23,8 @@ use crate::{
 /// Energies since the start, J (J/m in 2-D). An entry is positive if water and bodies have gained energy.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct EnergyBudget {
-    /// Work of driven solids on the water, of gravity along periodic sides, and of gravity that changes.
+    /// Work of driven solids on the water, of gravity along periodic sides, of gravity that changes, of a current and of a towed
+    /// frame.
     pub driven: f64,
     /// Work of motors.
     pub motors: f64,
@@ -282,7 +283,7 @@ impl<const D: usize> Accounting<D> {
     pub(crate) fn add_shifting(&mut self, system: &System<D>, shifts: &[Vector<D>]) {
         let own = shifts.iter().take(system.fluid().len());
         let mass = system.particle_mass() * system.water_multiplicity();
-        self.budget.shifting -= mass * own.map(|s| system.gravity().dot(s)).sum::<f64>();
+        self.budget.shifting -= mass * own.map(|s| system.potential_gravity().dot(s)).sum::<f64>();
     }
 
     /// Subtracts the energy of removed particles.
@@ -358,8 +359,11 @@ impl<const D: usize> Accounting<D> {
         budget.forces += work(breakdown.forces + breakdown.pushes);
         budget.contacts += work(breakdown.contacts);
         budget.joints += work(breakdown.joints + breakdown.ropes);
-        let sunk = breakdown.weight.force.dot(&(after.centre - before.centre));
-        budget.coupling += work(water + breakdown.weight) - (sunk + self.work[i]) * images;
+        let potential_weight = system.potential_gravity() * body.mass;
+        let driving = Load { force: breakdown.weight.force - potential_weight, torque: Bivector::zero() };
+        budget.driven += work(driving);
+        let sunk = potential_weight.dot(&(after.centre - before.centre));
+        budget.coupling += work(water + breakdown.weight) - work(driving) - (sunk + self.work[i]) * images;
         self.breakdown[i] = breakdown;
     }
 }

@@ -37,7 +37,7 @@ impl<const D: usize> Bodies<D> {
             let Some(engine) = &mut self.engine else { continue };
             engine.set_mass(i, &after, &solid.spec.pose.rotation);
             let now = engine.kinematics(i);
-            let energy = solid.energy(&system.gravity());
+            let energy = solid.energy(&system.potential_gravity());
             // The motion of the same points without the locks.
             let shift = now.centre - was.centre;
             let carried = Kinematics { velocity: was.velocity + was.spin.velocity_at(&shift), ..now };
@@ -50,7 +50,7 @@ impl<const D: usize> Bodies<D> {
             if let Some(accounting) = &mut self.accounting {
                 let change = momentum(&after, &now) - momentum(&before, &was);
                 accounting.add_ballast(i, &after, brought * (1.0 / dt), change * (1.0 / dt));
-                accounting.add_solid_energy(system.solids[i].energy(&system.gravity()) - energy);
+                accounting.add_solid_energy(system.solids[i].energy(&system.potential_gravity()) - energy);
             }
             system.place_boundary(i);
         }

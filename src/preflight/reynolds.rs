@@ -4,15 +4,19 @@
 //! term acts between approaching particles only @monaghan2005. The viscosity of the Riemann dissipation is that at a shear of
 //! U/L. L is the D-th root of the body's volume. For a driven body, U is its largest speed across its faces. For a free body, U
 //! is the largest of three speeds: √(|1 − s| g L), where s is its density over that of the water; its speed at the start; and the
-//! orbital speed π H/T of the waves.
+//! orbital speed π H/T of the waves. Of a slow body under water the resistance of the particles governs the motion.
 
 use serde::Serialize;
 
 use super::{Finding, PreflightContext};
 use crate::{
-    math::format::{three_digits, two_digits_down},
+    math::{
+        Vector,
+        format::{three_digits, two_digits_down},
+    },
     preflight::GeneratedWave,
-    solid::{Role, Solid},
+    scene::world_bounds,
+    solid::{ForceSpec, Lifetime, LineEnd, Role, Solid},
     sph::viscosity::Viscosity,
 };
 
@@ -20,6 +24,14 @@ use crate::{
 /// momentum of the disc and its added mass, ½ π ρ L² U, in the time L/U: at this number the disc loses 1 − e^(−16/30) = 0.41 of its
 /// speed in that time.
 const LEAST: f64 = 30.0;
+
+/// Force with which the particles resist a slow body under water in 2-D, over the pressure there and its size, with h below 2 dp. A disc
+/// of ten or twenty rows that swings at 0.026 to 0.08 m/s under 0.2 to 0.5 m of water finds 0.5 to 1 % of pressure times diameter, and
+/// hardly less without viscosity.
+const RESISTANCE: f64 = 0.006;
+
+/// The same with h of 2 dp or more.
+const RESISTANCE_WIDE: f64 = 0.003;
 
 /// The flow about a moving body.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -45,9 +57,17 @@ pub(super) fn body_flows<const D: usize>(
     findings: &mut Vec<Finding>,
 ) -> Vec<BodyFlow> {
     let model = context.system.model();
-    let flows: Vec<BodyFlow> =
-        context.solids().iter().enumerate().filter_map(|(i, s)| body_flow(context, i, s, waves)).collect();
-    for flow in &flows {
+    let mut flows = Vec::new();
+    for (i, solid) in context.solids().iter().enumerate() {
+        let (speed, size) = (largest_speed(context, i, solid, waves), size(solid));
+        let slow = speed.and_then(|(speed, _)| slow_body(context, i, speed, size));
+        let is_slow = slow.is_some();
+        findings.extend(slow.into_iter().chain(sliding_body(context, i)));
+        let Some(flow) = speed.and_then(|speed| body_flow(context, solid, speed, size)) else { continue };
+        flows.push((flow, is_slow));
+    }
+    // Of a slow body the particles govern the motion, not viscosity.
+    for flow in flows.iter().filter(|(_, is_slow)| !is_slow).map(|(flow, _)| flow) {
         let Some(reynolds) = flow.reynolds.filter(|re| *re < LEAST) else { continue };
         // A laminar viscosity is the scene's own.
         let Viscosity::Artificial(law) = model.viscosity else { continue };
@@ -64,35 +84,127 @@ pub(super) fn body_flows<const D: usize>(
             format!("{LEAST} needs  viscosity = {{ artificial = {{ alpha = {alpha} }} }}  in [model], or a smaller dp");
         findings.push(Finding::warning("viscous_body", what, mend));
     }
-    flows
+    flows.into_iter().map(|(flow, _)| flow).collect()
 }
 
-fn body_flow<const D: usize>(
+/// Size (m) of a solid: the D-th root of its volume.
+fn size<const D: usize>(solid: &Solid<D>) -> f64 {
+    solid.spec.shape.volume_properties().volume.powf(1.0 / D as f64)
+}
+
+/// The largest speed (m/s) of solid number `i` that is known in advance, and its origin; `None` for a fixed solid. Buoyancy does not
+/// drive a body under water that a line holds.
+fn largest_speed<const D: usize>(
     context: &PreflightContext<D>,
     i: usize,
     solid: &Solid<D>,
     waves: &[GeneratedWave],
-) -> Option<BodyFlow> {
-    let volume = solid.spec.shape.volume_properties().volume;
-    let size_m = volume.powf(1.0 / D as f64);
-    let (speed_mps, speed_from) = match &solid.spec.role {
-        Role::Fixed => return None,
-        Role::Driven(_) => (context.driven_speed(i), "motion"),
+) -> Option<(f64, &'static str)> {
+    match &solid.spec.role {
+        Role::Fixed => None,
+        Role::Driven(_) => Some((context.driven_speed(i), "motion")),
         Role::Free(_) => {
+            let volume = solid.spec.shape.volume_properties().volume;
             let ratio = solid.body.map_or(0.0, |body| body.mass) / (context.system.model().rho0 * volume);
             let orbital = waves.iter().filter_map(|w| Some(std::f64::consts::PI * w.height_m / w.period_s?));
+            let is_held = is_on_line(context, i) && depth_under_water(context, i).is_some();
+            let buoyancy = if is_held { 0.0 } else { ((1.0 - ratio).abs() * context.g * size(solid)).sqrt() };
             let speeds = [
-                (((1.0 - ratio).abs() * context.g * size_m).sqrt(), "buoyancy"),
+                (buoyancy, "buoyancy"),
                 (solid.kinematics.velocity.norm(), "start"),
                 (orbital.fold(0.0, f64::max), "waves"),
             ];
-            speeds.into_iter().fold((0.0, "buoyancy"), |most, x| if x.0 > most.0 { x } else { most })
+            Some(speeds.into_iter().fold((0.0, "buoyancy"), |most, x| if x.0 > most.0 { x } else { most }))
         }
-    };
+    }
+}
+
+fn body_flow<const D: usize>(
+    context: &PreflightContext<D>,
+    solid: &Solid<D>,
+    (speed_mps, speed_from): (f64, &'static str),
+    size_m: f64,
+) -> Option<BodyFlow> {
     let known = speed_mps > 0.0 && size_m.is_finite();
     let model = context.system.model();
     let nu = model.viscosity.effective(model.c0, model.h, D, speed_mps / size_m);
     let reynolds = (nu > 0.0).then(|| speed_mps * size_m / nu);
     let name = solid.spec.name.clone();
     known.then_some(BodyFlow { name, speed_mps, speed_from, size_m, viscosity_m2ps: nu, reynolds })
+}
+
+/// Returns a warning if solid number `i`, of this `size` (m), moves at most at `speed` (m/s) under water, so that the particles resist
+/// it more than its drag, ½ ρ U² L. In 3-D the resistance has not been measured.
+fn slow_body<const D: usize>(context: &PreflightContext<D>, i: usize, speed: f64, size: f64) -> Option<Finding> {
+    let depth = depth_under_water(context, i).filter(|_| D == 2)?;
+    let (solid, model) = (&context.solids()[i], context.system.model());
+    let is_wide = model.h >= 2.0 * model.dp * (1.0 - 1e-9);
+    let share = if is_wide { RESISTANCE_WIDE } else { RESISTANCE };
+    let least = (2.0 * share * context.g * depth).sqrt();
+    let rests = speed == 0.0 && !(matches!(solid.spec.role, Role::Free(_)) && is_on_line(context, i));
+    if rests || speed >= least {
+        return None;
+    }
+    let motion = if speed > 0.0 { format!("moves at {} m/s", three_digits(speed)) } else { "hangs on lines".into() };
+    let what = format!(
+        "\"{}\" {motion} under {} m of water: there the particles resist slow motion with about {} N/m, {} % of the pressure times its \
+         size, more than drag does",
+        solid.spec.name,
+        three_digits(depth),
+        three_digits(share * model.rho0 * context.g * depth * size),
+        three_digits(100.0 * share),
+    );
+    let slower = format!("hardly matters above {} m/s", three_digits(least));
+    let mend = if is_wide {
+        format!("it {slower}; a laminar viscosity halves it, and a finer dp does not reduce it")
+    } else {
+        format!(
+            "it {slower};  h_over_dp = 2.1  and  viscosity = {{ laminar = {{ nu0 = 1e-6 }} }}  in [model] reduce it to a quarter, and a finer \
+             dp does not"
+        )
+    };
+    Some(Finding::warning("slow_body", what, mend))
+}
+
+/// Returns a warning if a horizontal force of the scene pushes body number `i` along a fixed solid under it, under water.
+fn sliding_body<const D: usize>(context: &PreflightContext<D>, i: usize) -> Option<Finding> {
+    depth_under_water(context, i)?;
+    let solid = &context.solids()[i];
+    let bounds = |solid: &Solid<D>| world_bounds(&solid.spec.shape, &solid.kinematics.pose);
+    let (own, dp) = (bounds(solid), context.dp());
+    let is_level = |force: &ForceSpec<D>| force.force.iter().take(D - 1).any(|law| law.steady_value() != Some(0.0));
+    let force = context.system.constraints().forces.iter().find(|force| force.solid == i && is_level(force))?;
+    // The inside of a tank lies within its box.
+    let bed = context.solids().iter().find(|bed| {
+        let below = Vector::from_fn(|axis, _| {
+            if axis == D - 1 { own.min[axis] - 0.5 * dp } else { 0.5 * (own.min[axis] + own.max[axis]) }
+        });
+        matches!(bed.spec.role, Role::Fixed) && bed.spec.shape.signed_distance(&bed.kinematics.pose.local(&below)) < 0.0
+    })?;
+    let what = format!(
+        "force \"{}\" pushes \"{}\" along \"{}\" under water: the particles at its lower edges hold a body on a bed with about \
+         4 % of the pressure on its front",
+        force.name, solid.spec.name, bed.spec.name
+    );
+    let mend = "keep it five dp above the bed by  free.locked , or trust only larger forces".into();
+    Some(Finding::warning("sliding_body", what, mend))
+}
+
+/// Depth (m) of the middle of solid number `i` under the still level around it; `None` unless it is whole under water.
+fn depth_under_water<const D: usize>(context: &PreflightContext<D>, i: usize) -> Option<f64> {
+    let solid = &context.solids()[i];
+    let bounds = world_bounds(&solid.spec.shape, &solid.kinematics.pose);
+    let level = context.level_around(i).filter(|level| context.g > 0.0 && bounds.max[D - 1] <= *level)?;
+    Some(level - 0.5 * (bounds.min[D - 1] + bounds.max[D - 1]))
+}
+
+/// Whether a spring, a rope or a mooring line acts on solid number `i` at the start.
+fn is_on_line<const D: usize>(context: &PreflightContext<D>, i: usize) -> bool {
+    let links = context.system.constraints();
+    let acts = |lifetime: &Lifetime, ends: &[LineEnd<D>; 2]| {
+        lifetime.contains(0.0) && ends.iter().any(|end| end.solid == Some(i))
+    };
+    links.springs.iter().any(|spring| acts(&spring.lifetime, &spring.ends))
+        || links.ropes.iter().any(|rope| acts(&rope.lifetime, &rope.ends))
+        || links.moorings.iter().any(|line| acts(&line.lifetime, &line.ends))
 }

@@ -9,7 +9,7 @@ use crate::{
         format::{three_digits, two_digits_down, two_digits_up},
     },
     model::TimeScheme,
-    solid::{Role, Solid},
+    solid::{Lifetime, LineEnd, Role},
     sph::boundary::Slip,
     system::driven_speeds,
 };
@@ -88,7 +88,7 @@ impl<const D: usize> PreflightContext<'_, D> {
             match &solid.spec.role {
                 Role::Fixed => {}
                 Role::Driven(_) => expected.push((format!("\"{name}\", driven"), self.driven_speed(i))),
-                Role::Free(_) => expected.push(self.impact_speed(i, solid)),
+                Role::Free(_) => expected.push(self.impact_speed(i)),
             }
         }
         expected.retain(|(_, speed)| *speed > 0.0);
@@ -142,15 +142,43 @@ impl<const D: usize> PreflightContext<'_, D> {
         fastest
     }
 
-    /// The speed (m/s) of a free body at the start, or with which it will strike the water.
-    fn impact_speed(&self, i: usize, solid: &Solid<D>) -> (String, f64) {
+    /// The speed (m/s) of free body `i` at the start, or with which it will strike the water, if no line holds it above.
+    fn impact_speed(&self, i: usize) -> (String, f64) {
+        let solid = &self.solids()[i];
         let (name, start) = (&solid.spec.name, solid.kinematics.velocity.norm());
         let drop = self.lowest_point(solid) - self.draft_level(i);
-        if drop > 0.0 && self.g > 0.0 {
+        if drop > 0.0 && self.g > 0.0 && self.fall_on_lines(i) >= drop {
             let what = format!("\"{name}\" after a fall of {} m", three_digits(drop));
             return (what, (start * start + 2.0 * self.g * drop).sqrt());
         }
         (format!("\"{name}\" at the start"), start)
+    }
+
+    /// The depth (m) to which free body `i` falls on the springs, ropes and mooring lines that hold it at the start, as if each
+    /// hung straight down from a support that is not free; ∞ without any.
+    fn fall_on_lines(&self, i: usize) -> f64 {
+        let links = self.system.constraints();
+        let weight = self.g * self.solids()[i].body.map_or(0.0, |body| body.mass);
+        let holds = |ends: [Option<usize>; 2]| {
+            let other = if ends[0] == Some(i) { ends[1] } else { ends[0] };
+            ends.contains(&Some(i)) && other.is_none_or(|j| !matches!(self.solids()[j].spec.role, Role::Free(_)))
+        };
+        let acts =
+            |lifetime: &Lifetime, ends: &[LineEnd<D>; 2]| lifetime.contains(0.0) && holds(ends.map(|end| end.solid));
+        let distance = |ends: &[LineEnd<D>; 2]| (ends[1].at - ends[0].at).norm();
+        let springs = links.springs.iter().filter(|spring| acts(&spring.lifetime, &spring.ends)).map(|spring| {
+            let start = distance(&spring.ends);
+            let stretch = start - spring.rest_length.unwrap_or(start);
+            // From rest it swings about its equilibrium.
+            2.0 * (weight / spring.stiffness - stretch).max(0.0)
+        });
+        let ropes = links.ropes.iter().filter(|rope| acts(&rope.lifetime, &rope.ends)).map(|rope| {
+            let start = distance(&rope.ends);
+            rope.max_length.unwrap_or(start) - start
+        });
+        let moorings = links.moorings.iter().filter(|line| acts(&line.lifetime, &line.ends));
+        let moorings = moorings.map(|line| line.length - distance(&line.ends));
+        springs.chain(ropes).chain(moorings).fold(f64::INFINITY, f64::min)
     }
 
     /// Returns the limits of the time step; `springs` (s) is the limit by springs and motors.

@@ -2,7 +2,7 @@
 //!
 //! Water: kinetic Σ ½ m v²; potential −Σ m g·r; compression Σ m e(ρ) with
 //! e = ∫ P/ρ² dρ from ρ₀ to ρ.
-//! Bodies: ½ M V² + ½ Ω·I Ω; potential −M g·R₀.
+//! Bodies: ½ M V² + ½ Ω·I Ω; potential −M g·R₀. Here g is gravity without the accelerations of a current and of a towed frame.
 //! Potential energies start at zero. With symmetry planes all sums include the images.
 
 use serde::{Deserialize, Serialize};
@@ -99,7 +99,8 @@ fn water_potential<const D: usize>(system: &System<D>) -> f64 {
 
 /// Returns −Σ M g·R₀ of the free bodies (J).
 fn bodies_potential<const D: usize>(system: &System<D>) -> f64 {
-    let of_all =
-        |(i, solid): (usize, &Solid<D>)| solid.potential_energy(&system.gravity()) * system.solid_multiplicity(i);
+    let of_all = |(i, solid): (usize, &Solid<D>)| {
+        solid.potential_energy(&system.potential_gravity()) * system.solid_multiplicity(i)
+    };
     system.solids().iter().enumerate().map(of_all).sum()
 }

@@ -67,7 +67,7 @@ where
         let solid = self.system.solids().len() - 1;
         if let Some(accounting) = &mut self.bodies.accounting {
             accounting.add_displaced(energy);
-            accounting.add_solid_energy(self.system.solids()[solid].energy(&self.system.gravity()));
+            accounting.add_solid_energy(self.system.solids()[solid].energy(&self.system.potential_gravity()));
         }
         self.bodies.update_masses(&mut self.system, self.clock.time, self.clock.dt)?;
         self.finish_change(reordering);
@@ -183,7 +183,7 @@ impl<const D: usize> Simulation<D> {
         let energy = return_impulse(&mut self.system, solid, &pending).map_or(0.0, |transfer| transfer.energy);
         if let Some(accounting) = &mut self.bodies.accounting {
             accounting.add_returned(energy);
-            accounting.add_solid_energy(-self.system.solids()[solid].energy(&self.system.gravity()));
+            accounting.add_solid_energy(-self.system.solids()[solid].energy(&self.system.potential_gravity()));
         }
         self.delete_solid(solid);
         let reordering = self.system.rebuild_neighbours();

@@ -87,8 +87,10 @@ impl Driving {
 }
 
 /// What drives water and bodies, and its state.
-pub(super) struct DrivingState {
+pub(super) struct DrivingState<const D: usize> {
     pub(super) driving: Driving,
+    /// Acceleration (m/s²) beside gravity, as last set.
+    pub(super) acceleration: Vector<D>,
     /// Mean velocity (m/s) at the start along the axis of the current.
     start: f64,
     /// State of the current in a checkpoint.
@@ -111,10 +113,10 @@ impl CurrentState {
     }
 }
 
-impl DrivingState {
+impl<const D: usize> DrivingState<D> {
     /// Of what has not begun to act.
     pub(super) fn new(driving: Driving) -> Self {
-        Self { driving, start: 0.0, current: CurrentState::default() }
+        Self { driving, acceleration: Vector::zeros(), start: 0.0, current: CurrentState::default() }
     }
 
     /// Whether nothing but gravity acts.
@@ -123,7 +125,7 @@ impl DrivingState {
     }
 
     /// The acceleration (m/s²) beside gravity at time `t` (s).
-    fn acceleration<const D: usize>(&self, t: f64) -> Vector<D> {
+    fn acceleration_at(&self, t: f64) -> Vector<D> {
         let mut sum = Vector::zeros();
         if let Some(current) = &self.driving.current {
             sum[current.axis] += self.current.acceleration;
@@ -175,8 +177,8 @@ pub(super) fn adapt_current<const D: usize>(system: &mut System<D>, found: f64, 
     current.acceleration = current.integral - 2.0 / response * (now - *start);
 }
 
-/// Sets gravity and the other uniform body forces to their values at time `t` (s). Returns the change (m/s²); `None` if they are
-/// constant.
+/// Sets gravity and the other uniform body forces to their values at time `t` (s). Returns the change of gravity
+/// alone (m/s²); `None` if all are constant.
 pub(crate) fn set_gravity_at<const D: usize>(system: &mut System<D>, t: f64) -> Option<Vector<D>> {
     if system.gravity_law.is_empty() && system.driving.is_none() {
         return None;
@@ -186,9 +188,9 @@ pub(crate) fn set_gravity_at<const D: usize>(system: &mut System<D>, t: f64) -> 
     } else {
         setup::gravity_at(&system.gravity_law, t)
     };
-    let gravity = base + system.driving.acceleration(t);
-    let change = gravity - system.properties.gravity;
-    system.properties.gravity = gravity;
+    let change = base - system.potential_gravity();
+    system.driving.acceleration = system.driving.acceleration_at(t);
+    system.properties.gravity = base + system.driving.acceleration;
     system.pair_loop.set_gravity(&system.properties);
     Some(change)
 }

@@ -93,7 +93,7 @@ pub struct System<const D: usize> {
     constraints: Constraints<D>,
     /// Components of gravity as functions of time, m/s²; empty if it is constant.
     gravity_law: Vec<TimeFunction>,
-    driving: DrivingState,
+    driving: DrivingState<D>,
     fluid_domain: FluidDomain<D>,
     pub(crate) rates: Rates<D>,
     pub(crate) status: Status,
@@ -574,9 +574,9 @@ impl<const D: usize> System<D> {
             let own = place(range.start)..place(range.end);
             let chunks = wet[own.clone()].par_chunks(CHUNK).zip(sums[own].par_chunks(CHUNK));
             let part = |(wet, sums): (&[u32], &[PairSums<D>])| {
-                // Beyond a periodic side the water is an image, and its load has been counted.
+                // Beyond a periodic side the water is an image, and its load has been counted; beyond a face it is a buffer.
                 let own = wet.iter().map(|&i| &r[i as usize]).zip(sums);
-                let own = own.filter(|(r, _)| self.fluid.images.is_inside(r));
+                let own = own.filter(|(r, _)| self.is_in_counted_water(r));
                 if solid.division.cut == 0 {
                     return own.map(|(r, s)| Load::from_force_at(&(r - centre), s.acceleration * mass)).sum();
                 }

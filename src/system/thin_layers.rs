@@ -270,7 +270,7 @@ pub(super) fn loads<const D: usize>(system: &System<D>) -> Vec<Load<D>> {
         for ((k, particle), wet) in particles.iter().enumerate().zip(&mut wet) {
             let i = start + particle.place as usize;
             let r = &system.boundary.particles.r[i];
-            if !system.is_between_sides(r) {
+            if !system.is_in_counted_water(r) {
                 continue;
             }
             let arm = system.place_on_solid(number, i) - solid.kinematics.centre;

@@ -201,7 +201,12 @@ impl<const D: usize> System<D> {
 
     /// Acceleration of gravity (m/s²) along the axes that have a height: those that are not periodic.
     pub(crate) fn non_periodic_gravity(&self) -> Vector<D> {
-        self.non_periodic(&self.properties.gravity)
+        self.non_periodic(&self.potential_gravity())
+    }
+
+    /// Gravity (m/s²) that has a potential: without the accelerations of a current and of a towed frame, which depend on time.
+    pub(crate) fn potential_gravity(&self) -> Vector<D> {
+        self.properties.gravity - self.driving.acceleration
     }
 
     /// The components of a vector along the axes that are not periodic.
@@ -209,7 +214,7 @@ impl<const D: usize> System<D> {
         Vector::from_fn(|i, _| if self.fluid.images.periodic[i].is_some() { 0.0 } else { x[i] })
     }
 
-    /// Power of gravity on the water along periodic axes, Σ m g·v, W (W/m in 2-D).
+    /// Power on the water of gravity along periodic axes and of a current and a towed frame, Σ m g·v, W (W/m in 2-D).
     pub(crate) fn periodic_gravity_power(&self) -> f64 {
         let along = self.properties.gravity - self.non_periodic_gravity();
         if along.norm_squared() == 0.0 {
@@ -292,6 +297,12 @@ impl<const D: usize> System<D> {
         reflected(axes, particles.v[i])
     }
 
+    /// Whether the force of the water on a boundary particle at `x` (m) counts: between the periodic sides and between the faces
+    /// of open boundaries, beyond which a buffer prescribes the pressure.
+    pub(super) fn is_in_counted_water(&self, x: &Vector<D>) -> bool {
+        self.is_between_sides(x) && self.fluid_domain.open_boundaries.iter().all(|face| face.beyond(x) <= 0.0)
+    }
+
     /// Whether `x` (m) lies between the periodic sides.
     pub(crate) fn is_between_sides(&self, x: &Vector<D>) -> bool {
         self.fluid.images.is_inside(x)
@@ -339,7 +350,7 @@ impl<const D: usize> System<D> {
         let mut forces = BTreeMap::new();
         for (&i, sums) in self.neighbours.boundary_near_fluid().iter().zip(&self.rates.boundary) {
             let r = &self.boundary.particles.r[i as usize];
-            if !skin.contains(&(i as usize)) || !self.fluid.images.is_inside(r) {
+            if !skin.contains(&(i as usize)) || !self.is_in_counted_water(r) {
                 continue;
             }
             if own.division.cut == 0 {

@@ -362,7 +362,11 @@ fn check_wind<const D: usize>(wind: &WindSpec<D>, solids: &[SolidSpec<D>]) -> Re
     if !wind.targets.iter().all(|target| free(target.solid)) {
         return Err(Error::scene("a wind acts on a solid that is not free").help("name free solids"));
     }
-    let finite = wind.velocity.iter().all(|law| law.value_and_rate(0.0).0.is_finite()) && wind.level.is_finite();
+    if wind.level.is_nan() || wind.level == f64::INFINITY {
+        let help = "give the height of the still water, m, or −∞ without water";
+        return Err(Error::scene(format!("a wind is over water at the level {} m", wind.level)).help(help));
+    }
+    let finite = wind.velocity.iter().all(|law| law.value_and_rate(0.0).0.is_finite());
     if !(finite && wind.drag >= 0.0 && wind.density >= 0.0 && (wind.drag * wind.density).is_finite()) {
         return Err(Error::scene("a wind is not finite at t = 0").help("check its velocity, drag and density"));
     }

@@ -36,7 +36,7 @@ pub struct MooringReading<const D: usize> {
     pub end_forces: [Vector<D>; 2],
     /// Length of line that lies on fixed solids, m.
     pub on_bed: f64,
-    /// Angle of the second end above the horizontal, rad.
+    /// Angle of the last segment above the horizontal, rad.
     pub anchor_angle: f64,
     /// Number of the segment that has broken.
     pub broken: Option<usize>,

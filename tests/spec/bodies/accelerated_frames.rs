@@ -5,6 +5,7 @@ use pontoon::{
     geometry::Shape,
     math::{Pose, Vector, expression::Formula},
     model::Model,
+    probe::{EnergyBudgetProbe, EnergyProbe, Probe},
     simulation::{Setup, Simulation},
     solid::{Constraints, Dim, FreeBody, HasEngine, Load, PrescribedMotion, Role, SolidSpec, TimeFunction},
 };
@@ -105,5 +106,35 @@ fn a_block_on_an_accelerated_floor_gains_at_most_the_acceleration_that_friction_
         // The contact needs some steps to form.
         assert!((gained / carried - 1.0).abs() < 0.01, "floor {floor} g: block {gained} g");
     }
+    Ok(())
+}
+
+/// A barge afloat in a towed frame keeps its place over the ground and its height: its potential energy stays within that of a rise by 0.1 dp,
+/// also where the towing stops to accelerate. The frame gives water and barge the energy of their motion, ½ m V², in `driven`, and the
+/// budget closes within 0.5 % of it.
+#[test]
+fn towing_a_frame_gives_no_potential_energy_to_a_float() -> Result<()> {
+    let text = "dimension = 2\ndp = 0.02\nuntil = 1.5\ntowed = { along = \"x\", velocity = \"0.3*min(t,1)\" }\n\
+        periodic = { x = [0.0, 1.0] }\ndomain = { min = [-9, -2], max = [9, 5] }\n\
+        water = [{ fill = { box = { min = [0.0, 0.0], max = [1.0, 0.2] } } }]\n\
+        [[solid]]\nname = \"bed\"\nfixed = true\nshape = { box = { size = [2.0, 0.1] } }\nat = [0.5, -0.05]\n\
+        [[contact]]\nbetween = [\"barge\"]\ntouch = false\n\
+        [[solid]]\nname = \"barge\"\nshape = { box = { size = [0.3, 0.16] } }\nat = { x = 0.5, draft = \"equilibrium\" }\nfree = { density = 500 }";
+    let mut sim = common::scene_simulation::<2>(text)?;
+    sim.enable_energy_budget();
+    let (energy, budget) = (EnergyProbe::new(sim.system()), EnergyBudgetProbe::new(sim.system()));
+    let mass = sim.system().solids()[1].body.as_ref().expect("a body").mass;
+    let mut most: f64 = 0.0;
+    while sim.time() < 1.5 {
+        sim.step_to(1.5)?;
+        most = most.max(energy.sample(&sim)[4].abs());
+    }
+    assert!(most < mass * 9.81 * 0.002, "{most} J/m of {} J/m", mass * 9.81 * 0.002);
+    let all = mass + sim.system().fluid().len() as f64 * sim.system().particle_mass();
+    let moving = 0.5 * all * 0.3 * 0.3;
+    let driven = sim.energy_budget().expect("it is recorded").driven;
+    assert!((driven / moving - 1.0).abs() < 0.02, "{driven} J/m of {moving} J/m");
+    let residual = budget.sample(&sim).last().expect("a residual").abs();
+    assert!(residual < 0.005 * moving, "{residual} J/m of {moving} J/m remain");
     Ok(())
 }
