@@ -82,6 +82,10 @@ struct FilmParticle<const D: usize> {
     /// Its index.
     boundary: u32,
     rim: Rim<D>,
+    /// From the particle to its face, m.
+    to_face: Vector<D>,
+    /// Whether it is at a rim where a side of the solid ends, with water beside it.
+    ends_side: bool,
     /// Share (–) of its face that the other solid sees: less than 1 on a curved or inclined face.
     facing: f64,
     /// Indices of the boundary particles of the other solid below it that see water through the solid.
@@ -188,7 +192,11 @@ pub(super) fn update_water<const D: usize>(
 ) {
     let of = |solid: usize, particle: &FilmParticle<D>| {
         let (pressure, away) = water(system, solid, particle.boundary)?;
-        Some(pressure.max(0.0) * particle.rim.share(&away))
+        // As it acts in the pair force, and on the face.
+        let state = &system.equation_of_state;
+        let pressure = state.lattice_pressure(state.compression(pressure.max(0.0)));
+        let on_face = if pressure > 0.0 { pressure + system.properties.gravity.dot(&particle.to_face) } else { 0.0 };
+        Some(on_face.max(0.0) * particle.rim.share(&away))
     };
     let of_film =
         |film: &Film<D>| film.particles.iter().map(|particle| of(film.solid, particle).unwrap_or(0.0)).collect();
@@ -257,11 +265,20 @@ fn films_between<const D: usize>(
         let lower = if depths[found[k]] < THICK * dp { (0.5 * dp - distance(&points[k])).max(0.0) } else { 0.0 };
         points[k] + normal(&points[k]) * lower
     };
-    // In a gap that widens outwards, as below a ball, the water stands between the faces.
+    let past_rim = |k: usize, outwards: &Vector<D>| beside(k) + outwards * (OUTSIDE * dp);
+    let depth = |x: &Vector<D>| -solid.spec.shape.signed_distance(&pose.local(x));
+    // Where the solid goes on past the film, over the end of the other one or in a gap that widens, the water stands half a row before
+    // its face, or between the faces.
     let outside = |k: usize, outwards: &Vector<D>| {
-        let x = beside(k) + outwards * (OUTSIDE * dp);
-        let depth = -solid.spec.shape.signed_distance(&pose.local(&x));
-        if depth > 0.0 { x - normal(&x) * (0.5 * (depth + distance(&x))) } else { x }
+        let x = past_rim(k, outwards);
+        let (depth, n) = (depth(&x), normal(&points[k]));
+        match (n - outwards * outwards.dot(&n)).try_normalize(f64::EPSILON).filter(|_| depth > 0.0) {
+            Some(up) => {
+                let face = x - up * depth;
+                face - up * (0.5 * distance(&face).min(dp))
+            }
+            None => x,
+        }
     };
     let facing = |k: usize| {
         let n = normal(&points[k]);
@@ -310,11 +327,16 @@ fn films_between<const D: usize>(
             }
         }
     }
-    let mut particle = |k: usize| FilmParticle {
-        boundary: found[k] as u32,
-        rim: rim(k),
-        facing: facing(k),
-        covered: std::mem::take(&mut covered[k]),
+    let mut particle = |k: usize| {
+        let rim = rim(k);
+        FilmParticle {
+            boundary: found[k] as u32,
+            rim,
+            to_face: -normal(&points[k]) * depths[found[k]],
+            ends_side: matches!(&rim, Rim::Towards(outwards) if depth(&past_rim(k, outwards)) <= 0.0),
+            facing: facing(k),
+            covered: std::mem::take(&mut covered[k]),
+        }
     };
     let mut film =
         |part: Vec<usize>| Film { solid: i, other: j, particles: part.into_iter().map(&mut particle).collect() };
@@ -401,6 +423,9 @@ fn forces<const D: usize>(
         let (weights, sum) = weighted.fold((0.0, 0.0), |(w, s), (weight, term)| (w + weight, s + term));
         (sum / weights + gravity.dot(x)).max(0.0)
     };
+    // The share of a row of water that the particle at the rim has beside the solid. There the water above the face pushes it towards
+    // the film with this share of the pressure, which is no part of the push across the gap.
+    let beside = system.boundary.coverage.full_weight(0.5 * dp);
     let spread = dp * film.particles.len() as f64 / rim.len() as f64;
     let pose = system.home_pose(film.other);
     let force = |(particle, own): (&FilmParticle<D>, &f64)| {
@@ -417,7 +442,8 @@ fn forces<const D: usize>(
         let size = dp.powi(D as i32 - 1);
         let pushed = acceleration(particle.boundary).map_or(0.0, |by_water| by_water.dot(&normal)) * mass;
         let full = rho0 * still * size * particle.facing * system.boundary.coverage.row_share(depths[i], dp);
-        let flowing = (pushed / full.max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+        let beside = if particle.ends_side { beside } else { 0.0 };
+        let flowing = (pushed / full.max(f64::MIN_POSITIVE) + beside).clamp(0.0, 1.0);
         let share = thin * (1.0 - flowing) * particle.facing * system.computed_share(solid, &x);
         let on_solid = system.place_on_solid(film.solid, i);
         let inflow = (velocity_at(solid, &on_solid) - velocity_at(other, &on_other)).dot(&normal).max(0.0) * spread
