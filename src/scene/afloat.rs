@@ -36,7 +36,9 @@ pub(super) struct PlacedSolids<const D: usize> {
     /// The space that each solid encloses in its place.
     pub(super) enclosures: Vec<Option<Enclosure<D>>>,
     /// The still level (m) at the place of each solid; `None` beside all water.
-    pub(super) levels: Vec<f64>,
+    pub(super) levels: Vec<Option<f64>>,
+    /// The highest level, m.
+    highest: f64,
 }
 
 /// Returns the solids in their places in `water`. If `all` is true, or a body starts at its equilibrium, the result includes
@@ -51,10 +53,9 @@ pub(super) fn placed_solids<const D: usize>(
     let configs = scene.solid.iter().enumerate();
     let specs: Vec<SolidSpec<D>> =
         configs.map(|(i, solid)| solid.build(ctx, &format!("solid.{i}"), &pool)).collect::<Result<_>>()?;
-    let level = |spec: &SolidSpec<D>| pool.level_at(&world_bounds(&spec.shape, &spec.pose)).unwrap_or(pool.still.level);
-    let levels = specs.iter().map(level).collect();
+    let levels = specs.iter().map(|spec| pool.level_at(&world_bounds(&spec.shape, &spec.pose))).collect();
     let floats = scene.solid.iter().any(SolidConfig::is_afloat);
-    let mut placed = PlacedSolids { specs, enclosures: Vec::new(), levels };
+    let mut placed = PlacedSolids { specs, enclosures: Vec::new(), levels, highest: pool.still.level };
     for (i, (config, spec)) in scene.solid.iter().zip(&placed.specs).enumerate() {
         let named = water.iter().any(|body| body.inside == Some(i));
         let found = if all || floats { enclosure(spec, named, &pool, scene.dp) } else { None };
@@ -234,7 +235,7 @@ fn enters<const D: usize>(hollow: &Hollow<D>, pose: &Pose<D>, body: &WaterBody<D
 impl<const D: usize> PlacedSolids<D> {
     /// Returns the level (m) from which the draft of solid number `i` is measured.
     fn level(&self, i: usize) -> f64 {
-        self.levels[i]
+        self.levels[i].unwrap_or(self.highest)
     }
 
     /// Returns whether solid number `i` at `pose` keeps water that surrounds it out of a hollow. So it does, if the scene does not say,

@@ -20,7 +20,7 @@ pub(super) fn build_constraints<const D: usize>(
     scene: &Scene,
     ctx: &Context,
     solids: &[SolidSpec<D>],
-    levels: &[f64],
+    levels: &[Option<f64>],
 ) -> Result<Constraints<D>> {
     let number = |name: &String| scene.solid.iter().position(|solid| solid.name == *name);
     let mut constraints = Constraints::default();

@@ -67,14 +67,15 @@ impl WindConfig {
         ctx.require_positive(&format!("{key}.density"), self.density)
     }
 
-    /// The wind on the `solids`, of which `specs` are the specifications, over still water with the level (m) for each.
+    /// The wind on the `solids`, of which `specs` are the specifications, over still water with the level (m) at the place of each,
+    /// if water is there.
     pub(crate) fn build<const D: usize>(
         &self,
         ctx: &Context,
         key: &str,
         solids: &[SolidConfig],
         specs: &[SolidSpec<D>],
-        levels: &[f64],
+        levels: &[Option<f64>],
     ) -> Result<WindSpec<D>> {
         let law = |value: &TimeValueConfig| value.0.build(ctx, &format!("{key}.velocity"), CoordinateUnit::Si("m/s"));
         let velocity = self.velocity.components().iter().map(law).collect::<Result<Vec<_>>>()?;
@@ -83,7 +84,7 @@ impl WindConfig {
         for (number, ((solid, spec), level)) in solids.iter().zip(specs).zip(levels).enumerate() {
             if self.on.contains(&solid.name) {
                 let lifetime = Lifetime::default().until(solid.until.unwrap_or(f64::INFINITY));
-                wind.level = *level;
+                wind.level = level.unwrap_or(f64::NEG_INFINITY);
                 wind = wind.during(number, &spec.shape, lifetime);
             }
         }

@@ -84,7 +84,7 @@ fn a_wind_that_cannot_be_meant_is_refused() {
     }
 }
 
-/// A float that starts beside the water has no still water around it: the wind takes the highest level, and blows on the whole of it.
+/// A float that starts beside the water has no still water around it: the wind blows on the whole of it.
 #[test]
 fn the_wind_blows_on_a_body_that_starts_beside_the_water() -> Result<()> {
     let mut sim = scene_simulation::<2>(&SCENE.replace("{ x = 0.5, draft = \"equilibrium\" }", "[2.0, 1.0]"))?;

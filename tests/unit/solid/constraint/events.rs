@@ -105,7 +105,7 @@ where
     assert_eq!(air.assembly.spring_reading(0).tension, 0.0);
     air.run(DT, 0.502);
     let tension = air.assembly.spring_reading(0).tension;
-    assert!((tension - 0.1).abs() < 1e-3, "stretched by one step at 1 m/s: {tension}");
+    assert!((tension - 0.2).abs() < 1e-3, "stretched by 2 mm, which is two steps at 1 m/s: {tension}");
 }
 
 #[test]
