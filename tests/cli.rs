@@ -632,7 +632,7 @@ fn stats_watch_and_export_read_a_finished_run() {
     folder.pontoon(&["stats", "b"]).assert_refused(2, &["b"]);
     folder.pontoon(&["report", "a", "--png", "x.jpg"]).assert_refused(2, &["ends in .png"]);
     folder.pontoon(&["report", "a", "--png", "x.png", "--width", "0"]).assert_refused(2, &["200"]);
-    folder.pontoon(&["stats", "a", "--from", "9"]).assert_refused(2, &["the readings in a end at 0.05 s", "--from"]);
+    folder.pontoon(&["stats", "a", "--from", "9"]).assert_refused(2, &["from 9 s", "between 0 and 0.05 s", "--from"]);
     folder.pontoon(&["stats", "a", "--from", "0.04", "--until", "0.01"]).assert_refused(2, &["there is no time"]);
 
     let watched = folder.pontoon(&["watch", "a", "--series", "low.p_Pa"]);

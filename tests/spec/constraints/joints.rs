@@ -358,7 +358,7 @@ fn wrong_keys_of_joints_and_springs_are_refused_with_their_location_and_a_remedy
             "kind = \"generic\"\nfree = [\"turn\"]\nlimits_deg = { trun = [-5, 5] }",
             &["did you mean \"turn\"?"],
         ),
-        ("at      = [0.7, 0.06]", "at      = [0.7]", &["1 numbers, not 2"]),
+        ("at      = [0.7, 0.06]", "at      = [0.7]", &["1 number, not 2"]),
         ("at      = [0.7, 0.06]", "at = [0.7, 0.06]\naxis = [0.0, 1.0]", &["axis has no meaning here"]),
         ("at      = [0.7, 0.06]", "at = [0.7, 0.06]\nlimits_deg = [10.0, 20.0]", &["0 is where it starts"]),
         (motor, "motor = {}", &["no force"]),
