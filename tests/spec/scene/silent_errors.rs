@@ -60,7 +60,7 @@ fn scene(law: &str, more: &str) -> String {
 fn a_formula_without_a_value_during_the_run_is_refused_with_its_time() {
     let root = "sqrt(1-t)";
     let of_gate = scene(&format!("{{ formula = \"{root}\" }}"), "");
-    assert_refused("driven", &of_gate, &[], &["scene.toml:20", "driven.distance", "t = 1 s", "max(0"]);
+    assert_refused("driven", &of_gate, &[], &["scene.toml:20", "driven.distance", "t = 1 s", "sqrt(max("]);
     let chain = "[[line_type]]\nname = \"c\"\ndiameter = 0.01\nmass_per_length = 0.5\nstiffness = 1e4\n[[mooring]]\n\
                  name = \"m\"\nbetween = [\"box\"]\nfrom = [1.0, 0.4]\nto = [0.2, 0.0]\nlength = 1.2\nline = \"c\"\n\
                  paid_out = { formula = \"sqrt(1-t)-1\" }\n";
