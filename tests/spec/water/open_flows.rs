@@ -233,7 +233,7 @@ fn the_force_on_a_bed_is_that_of_the_water_between_the_faces() {
     let faces = "inflow = [{ x = 0.0, velocity = 0.5 }]\noutflow = [{ x = 2.0, velocity = 0.5 }]";
     let text = channel(2.0, 0.05, 2.0, faces).replace("[2.0, 0.4] } }", "[2.0, 0.4] } }\nvelocity = [0.5, 0.0]");
     let mut sim = common::scene_simulation::<2>(&text).expect("a sound scene");
-    let patch = PatchProbe::<2>::new(sim.system(), "bed", &[-9.0, -0.1], &[9.0, 0.1]).expect("a part of the bed");
+    let patch = PatchProbe::<2>::new(sim.system(), "bed", &[-9.0, -0.4], &[9.0, 0.1]).expect("a part of the bed");
     let now = |sim: &Simulation<2>| {
         let bed = sim.system().solids().iter().find(|solid| solid.spec.name == "bed").expect("a bed");
         let weight = sim.system().fluid().len() as f64 * sim.system().particle_mass() * 9.81;
