@@ -135,15 +135,15 @@ at = {{ x = 0.4, bottom = {bottom} }}
 const FIXED: &str = "fixed = true";
 const HELD: &str = "free = { density = 600, locked = [\"x\", \"y\", \"turn\"] }";
 
-/// The film ends where the narrower solid ends, over or under which there is water; without a film the force is −392 N/m. Bound: a
-/// twentieth of the pressure on the narrower face, as for a body on the bed.
+/// The film ends where the narrower solid ends, over or under which there is water; without a film the force is −392 N/m. Bound: the
+/// pressure on half a dp, because the film consists of whole particles, and the end of the pier lies anywhere between two of them.
 #[test]
 fn a_body_wider_than_its_support_is_lifted_as_archimedes_says() -> Result<()> {
     let exact = 1000.0 * G * 0.2 * 0.1;
     for width in [0.1, 0.11, 0.12] {
         let [_, lift] = forces_on_pair([block("pier", width, 0.0, FIXED), block("body", 0.2, 0.1, HELD)])?;
         println!("on a pier of {width} m: {lift:.1} N/m of {exact:.1} N/m");
-        assert!((lift - exact).abs() < 0.05 * 1000.0 * G * 0.3 * width, "on a pier of {width} m: {lift} N/m");
+        assert!((lift - exact).abs() < 0.5 * 0.02 * 1000.0 * G * 0.3, "on a pier of {width} m: {lift} N/m");
     }
     Ok(())
 }
