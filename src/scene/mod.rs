@@ -73,6 +73,7 @@ use crate::error::{Error, Result};
 use toml_source::SceneSource;
 
 pub use context::FileNote;
+#[cfg(feature = "cli")]
 pub(crate) use resolve::MOST_JITTER;
 pub(crate) use section::{
     shape::world_bounds,
@@ -421,6 +422,7 @@ impl Scene {
     }
 
     /// Returns the keys that replaced those of the file, in their order, with numbers in place of names.
+    #[cfg(feature = "cli")]
     pub(crate) fn override_keys(&self) -> &[String] {
         &self.origin.sets
     }
