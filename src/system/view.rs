@@ -299,6 +299,7 @@ impl<const D: usize> System<D> {
 
     /// Whether the force of the water on a boundary particle at `x` (m) counts: between the periodic sides and between the faces
     /// of open boundaries, beyond which a buffer prescribes the pressure.
+    #[inline]
     pub(super) fn is_in_counted_water(&self, x: &Vector<D>) -> bool {
         self.is_between_sides(x) && self.fluid_domain.open_boundaries.iter().all(|face| face.beyond(x) <= 0.0)
     }
