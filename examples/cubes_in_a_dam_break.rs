@@ -28,9 +28,12 @@ const CUBES: usize = 5;
 const COLUMN: [f64; 2] = [0.4, 0.3];
 const TANK: f64 = 1.6;
 
+/// Period of the longest wave in the tank at the end, s: 2 L/√(g d).
+const WAVE: f64 = 3.5;
+
 fn main() -> Result<()> {
     let dp = 0.01;
-    let mut scene = Scene::new(2, dp, 5.0)
+    let mut scene = Scene::new(2, dp, 8.5)
         .title("Cubes in a dam break")
         .water_box([0.0, 0.0], COLUMN)
         .solid(SolidConfig::fixed("tank", ShapeConfig::tank([TANK, 0.8])));
@@ -60,7 +63,7 @@ fn main() -> Result<()> {
         if fell.is_none() && (top.position[0] - 1.0).abs() > 0.5 * EDGE {
             fell = Some(sim.time());
         }
-        if sim.time() > until - 1.0 {
+        if sim.time() > until - WAVE {
             height += cubes.iter().map(|cube| cube.kinematics.centre[1]).sum::<f64>() / CUBES as f64 * sim.dt();
             weight += sim.dt();
         }
