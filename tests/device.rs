@@ -10,7 +10,7 @@ use pontoon::{
     model::{
         Diffusion, KernelKind, Model, PairLoopKind, PressureGradient, Shifting, Slip, TimeScheme, Viscosity, Walls,
     },
-    simulation::{Dimension, Setup, Simulation},
+    simulation::{Dimension, Setup, Simulation, TowedFrame},
     solid::{Dim, FreeBody, PrescribedMotion, SolidSpec, TimeFunction},
     sph::{
         continuity::Continuity,
@@ -384,6 +384,11 @@ fn what_no_device_computes_is_refused_with_the_remedy() {
     assert!(refused(water().gamma(1.4)).contains("gamma"));
     let shaken = dam(water().for_waves(), [0.8, 0.3]).gravity_law([0.0, -9.81]);
     assert!(refused_setup(shaken).contains("near the surface"));
+    let towed = dam(water(), [0.8, 0.3]).towed(TowedFrame::new(0, Formula::parse("0.3*t^2").unwrap()));
+    let mut towed = Simulation::new(towed).unwrap();
+    towed.enable_energy_budget();
+    let error = towed.on_device(&device()).map(|_| ()).unwrap_err();
+    assert!(error.message.contains("energy budgets in a towed frame"), "{error}");
     let error = Simulation::new(dam(water(), [0.8, 0.3])).unwrap().on_device("no such card").map(|_| ()).unwrap_err();
     assert!(error.message.contains("no such card"), "{error}");
 }

@@ -225,7 +225,7 @@ impl<const D: usize> Accounting<D> {
         let along_sides = system.gravity() - system.non_periodic_gravity();
         let powers = [total_power(system, gains), mass * along_sides.dot(&velocity_sum)];
         self.add_powers(system, dt, breakdown, powers);
-        self.budget.shifting -= mass * system.gravity().dot(&shift_sum);
+        self.budget.shifting -= mass * system.potential_gravity().dot(&shift_sum);
         self.budget.damping -= absorbed;
     }
 

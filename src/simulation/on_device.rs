@@ -120,7 +120,9 @@ fn refuse_unsupported<const D: usize>(sim: &Simulation<D>) -> Result<()> {
     let bodies = &sim.bodies;
     let count = sim.system.fluid().len() + sim.system.boundary().len();
     let other_count = sim.device.as_ref().is_some_and(|own| own.device.particle_count() != count);
+    let has_budget = bodies.accounting.as_ref().is_some_and(Accounting::has_energy_budget);
     let cases = [
+        (has_budget && device_state::is_towed(&sim.system), "energy budgets in a towed frame"),
         (sim.custom_terms, "pair terms of your own"),
         (bodies.has_external_bodies(), "bodies that an external program moves"),
         (bodies.constraints().due_removals(f64::MAX).next().is_some(), "solids that are removed during the run"),
@@ -198,6 +200,7 @@ fn measure_powers<const D: usize>(sim: &mut Simulation<D>) -> Result<()> {
     let reads_water = sim.bodies.accounting.as_ref().is_some_and(Accounting::reads_water);
     let without = sim.device.as_ref().filter(|own| reads_water && !own.device.measures_powers());
     if let Some(number) = without.map(|own| own.adapter().number) {
+        refuse_unsupported(sim)?;
         fetch(sim)?;
         sim.device = Some(own_device(sim, &number.to_string())?);
     }

@@ -78,9 +78,12 @@ pub(crate) fn image_width<const D: usize>(system: &System<D>) -> f64 {
 /// Indices of the originals of all images of the water, in the order of the images, and the axes along which the images are
 /// reflected.
 pub(crate) fn originals<const D: usize>(system: &System<D>) -> impl Iterator<Item = (usize, AxisSet)> {
-    let Images { originals, reflections, .. } = &system.fluid.images;
-    let axes = reflections.iter().copied().chain(std::iter::repeat(0));
-    originals.iter().map(|original| *original as usize).zip(axes)
+    system.fluid.images.each_original()
+}
+
+/// Whether a towed frame accelerates water and bodies.
+pub(crate) fn is_towed<const D: usize>(system: &System<D>) -> bool {
+    system.driving.driving.towed.is_some()
 }
 
 /// The boundary particles of solid number `solid` on the computed side of symmetry planes, or of all its copies; and the axes along
@@ -135,9 +138,7 @@ pub(crate) fn fluid_stress<const D: usize>(system: &System<D>) -> Option<&[Matri
 pub(crate) fn set_fluid_stress<const D: usize>(system: &mut System<D>, stress: impl Fn(usize) -> Matrix<D>) {
     let water = system.own_count();
     let Fluid { stress: all, images, .. } = &mut system.fluid;
-    let axes = images.reflections.iter().copied().chain(std::iter::repeat(0));
-    let of_images = images.originals.iter().map(|original| *original as usize).zip(axes);
-    let which = (0..water).map(|i| (i, 0)).chain(of_images);
+    let which = (0..water).map(|i| (i, 0)).chain(images.each_original());
     all.iter_mut().flatten().zip(which).for_each(|(own, (i, axes))| *own = reflected_tensor(axes, &stress(i)));
 }
 

@@ -53,6 +53,13 @@ struct NewImage<const D: usize> {
 }
 
 impl<const D: usize> Images<D> {
+    /// Index of the original of each image, in the order of the images, and the axes along which the image is reflected.
+    #[cfg(feature = "gpu")]
+    pub(super) fn each_original(&self) -> impl Iterator<Item = (usize, AxisSet)> {
+        let axes = self.reflections.iter().copied().chain(std::iter::repeat(0));
+        self.originals.iter().map(|original| *original as usize).zip(axes)
+    }
+
     /// None yet, for a kernel of support `reach` (m).
     pub(super) fn new(periodic: Periodic<D>, planes: SymmetryPlanes<D>, reach: f64) -> Self {
         Self { periodic, planes, width: WIDTH * reach, originals: Vec::new(), reflections: Vec::new() }
