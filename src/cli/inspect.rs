@@ -381,7 +381,7 @@ fn bodies(bodies: &[BodySummary], dimension: usize) -> String {
                 let periods: Vec<String> = free.periods_s.iter().map(|period| three_digits(*period)).collect();
                 let _ = writeln!(
                     ties,
-                    "  with their joints free they have natural periods of {} s, without water that moves along",
+                    "  with their joints free they have natural periods of {} s, without added mass",
                     periods.join(", ")
                 );
             }

@@ -7,7 +7,7 @@ use super::{
     context::{Context, FileNote},
     file_units::require_plausible_units,
     section::{
-        analysis::ProbeSeries,
+        analysis::{CheckConfig, ProbeSeries},
         gravity,
         model::require_depth,
         open_boundary::FaceFlow,
@@ -320,19 +320,19 @@ impl Scene {
     fn resolved_plan(&self, ctx: &Context, still: &StillWaterLevel) -> Result<Plan> {
         let series = ProbeSeries { probes: &self.probe, names: &self.probe_names() };
         let statistics = self.statistic.iter().enumerate();
-        let checkpoint = self.checkpoint.clone().unwrap_or_default();
+        let (checkpoint, probes) = (self.checkpoint.clone().unwrap_or_default(), self.probe_plans());
+        let check = |(i, check): (usize, &CheckConfig)| check.build(ctx, &format!("check.{i}"), &probes);
+        let checks = self.check.iter().enumerate().map(check).collect::<Result<_>>()?;
         Ok(Plan {
             title: self.title.clone().unwrap_or_default(),
             until: self.until,
-            probes: self.probe_plans(),
+            checks,
             contacts: self.probe.iter().filter_map(|probe| probe.to_contact_list(self.until)).collect(),
             frames: (self.frames.as_ref().and_then(|frames| frames.build(ctx)))
                 .map(|frames| FramesPlan { moorings: !self.mooring.is_empty(), ..frames }),
             checkpoint_every: checkpoint.every,
             checkpoint_wall: checkpoint.wall_time(),
-            checks: (self.check.iter().enumerate())
-                .map(|(i, check)| check.build(ctx, &format!("check.{i}"), &self.probe_plans()))
-                .collect::<Result<_>>()?,
+            probes,
             statistics: statistics
                 .map(|(i, statistic)| statistic.build(ctx, &format!("statistic.{i}"), &series, still))
                 .collect::<Result<_>>()?,
