@@ -85,6 +85,8 @@ fn samples_of_a_reference_in_a_gap_of_the_run_do_not_count() {
     };
     let verdict = reference(&[3.0, 4.0, 5.0, 5.5, 6.0, 7.0]);
     assert_eq!((verdict.metrics.relative_l2, verdict.passed), (Some(0.0), Some(true)), "{verdict:?}");
+    // Half of a reference is half of its time: this one has a sample within the run, which ends at 10 s.
+    assert_eq!(reference(&[4.0, 50.0]).passed, None);
     let hidden = reference(&[4.0, 4.5, 5.0, 5.5, 5.8]);
     assert_eq!(hidden.passed, Some(false), "{hidden:?}");
 }
