@@ -199,10 +199,18 @@ pub(super) fn read<T: DeserializeOwned>(
     origin.places = entries.iter().map(|e| (e.path.clone(), e.key.start)).collect();
     expand_bare_choices(root.get_mut());
     let mut marks = OverrideLocations::after(text);
-    for (key, value) in &sets {
-        let key = overrides::apply_override(root.get_mut(), key, value, &mut marks)
+    for (i, (key, value)) in sets.iter().enumerate() {
+        let place = overrides::apply_override(root.get_mut(), key, value, &mut marks)
             .map_err(|e| e.at("--set", None, key.clone()))?;
-        origin.sets.push(key);
+        // An entry of a list has a name and a number.
+        let earlier = sets[..i].iter().zip(&origin.sets).find(|((other, _), before)| **before == place && other != key);
+        if let Some(((other, _), _)) = earlier {
+            return Err(Error::scene(format!("\"{other}\" and \"{key}\" are the same key"))
+                .with_code(ErrorCode::ConflictingKeys)
+                .at("--set", None, key.clone())
+                .help("leave one of the two out"));
+        }
+        origin.sets.push(place);
     }
     rename(root.get_mut(), &mut origin)?;
     expand_bare_choices(root.get_mut());

@@ -251,6 +251,16 @@ fn a_field_of_the_frames_that_is_named_twice_is_refused() {
     assert!(told.contains("\"velocity\" is named twice") && told.contains("frames.fields"), "{told}");
 }
 
+/// The second solid of the scene is the box.
+#[test]
+fn a_key_given_by_the_name_and_by_the_number_of_a_solid_is_refused() {
+    let density = |solid: &str| format!("solid.{solid}.free.density");
+    let error =
+        try_scene(GOOD, &[(&density("box"), "400"), (&density("1"), "600")]).expect_err("one value wins").to_string();
+    assert!(error.contains("\"solid.box.free.density\" and \"solid.1.free.density\" are the same key"), "{error}");
+    try_scene(GOOD, &[(&density("box"), "400"), ("solid.1.contact_skin", "0.01")]).unwrap();
+}
+
 /// A value is said to be set only if `--set` wrote it, or an element of it.
 #[test]
 fn a_value_set_in_part_and_a_table_set_empty_have_the_right_source() {
