@@ -5,10 +5,11 @@
 //! first swing. N is the lesser of twice the draft and the breadth of the waterplane, over dp; both are the diameter of the disc.
 //! In 3-D the breadth is the diameter of a disc with the area of the waterplane.
 //!
-//! Regular waves of a paddle in 2-D were measured with gradients corrected near the surface, h = 2 dp and a height of 5 dp. Half
-//! a wavelength from the paddle they have the share s of the specified height. In every wavelength from there on they lose the
-//! share e. Both depend on the wavelength over dp; e is known within 0.007
-//! (`docs/explanation/decisions/0106-wave-resolution.md`).
+//! A steep regular wave has less than the height that the second-order theory of its paddle promises: in potential theory without the
+//! assumption of small waves the amplitude at its period lacks the share c (kH/2)², where c depends on kd
+//! (`tests/references/steep_waves.py`). In runs in 2-D, with gradients corrected near the surface, h = 2 dp and a height of 5 dp, waves
+//! have the share s of this amplitude half a wavelength from the paddle. In every wavelength from there on they lose the share e. Both
+//! depend on the wavelength over dp; e is known within 0.01 (`docs/explanation/decisions/0106-wave-resolution.md`).
 
 use serde::Serialize;
 
@@ -25,10 +26,13 @@ const HEAVE: f64 = 0.8;
 /// Smoothing length over dp with which the waves were measured, less rounding.
 const WAVE_SMOOTHING: f64 = 2.0 - 1e-9;
 
-/// Wavelength over dp, height at half a wavelength from the paddle over the specified height (s), and loss in a wavelength
+/// kd, and the share of the amplitude that a wave lacks over (kH/2)² (c), –.
+const STEEPNESS: [[f64; 2]; 6] = [[0.7, 3.3], [1.0, 1.3], [1.4, 0.95], [2.0, 1.2], [2.5, 1.4], [3.0, 1.6]];
+
+/// Wavelength over dp, amplitude at half a wavelength from the paddle over that of potential theory (s), and loss in a wavelength
 /// (e), –.
 const WAVES: [[f64; 3]; 5] =
-    [[63.0, 0.893, 0.009], [79.0, 0.939, 0.003], [112.0, 0.975, 0.0], [157.0, 0.988, 0.007], [224.0, 0.984, 0.004]];
+    [[63.0, 1.015, 0.045], [79.0, 1.02, 0.043], [112.0, 1.008, 0.022], [157.0, 1.007, 0.015], [224.0, 1.009, 0.014]];
 
 /// The height of waves that is to be expected at a gauge.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -37,7 +41,7 @@ pub struct WaveAtGauge {
     pub probe: String,
     /// Its distance from the paddle, m.
     pub distance_m: f64,
-    /// Height over that asked for, –.
+    /// Twice the amplitude at the period of the wave, over the height asked for, –.
     pub height_share: f64,
 }
 
@@ -66,21 +70,33 @@ pub(super) fn heights_at_gauges<const D: usize>(
         let place = places.first()?;
         let at = Vector::from_fn(|i, _| place.get(i).copied().unwrap_or(context.still_water.level));
         let distance_m = stand.distance_ahead(&at).filter(|way| (0.5 * wave.length_m..reach).contains(way))?;
-        let height_share = height_share(wave.length_dp, distance_m / wave.length_m);
+        let steepness = std::f64::consts::PI * wave.height_m / wave.length_m;
+        let height_share =
+            amplitude_share(wave.kd?, steepness) * resolved_share(wave.length_dp, distance_m / wave.length_m);
         Some(WaveAtGauge { probe: probe.name.clone(), distance_m, height_share })
     };
     context.plan.probes.iter().filter_map(gauge).collect()
 }
 
-/// Height over the specified height (–) of waves of the length `length_dp` (dp), at the `distance` (wavelengths) from the paddle.
-fn height_share(length_dp: f64, distance: f64) -> f64 {
-    let [low, high] = [WAVES[0], WAVES[WAVES.len() - 1]];
-    let x = length_dp.clamp(low[0], high[0]);
-    let i = WAVES.iter().rposition(|row| row[0] <= x).unwrap_or(0).min(WAVES.len() - 2);
-    let (a, b) = (WAVES[i], WAVES[i + 1]);
-    let t = (x / a[0]).ln() / (b[0] / a[0]).ln();
-    let [start, loss] = [1, 2].map(|k| a[k] + (b[k] - a[k]) * t);
+/// Amplitude (–) of waves of this `kd` and `steepness` kH/2 in potential theory, over half of the specified height.
+fn amplitude_share(kd: f64, steepness: f64) -> f64 {
+    let [_, missing] = interpolated(&STEEPNESS, kd);
+    (1.0 - missing * steepness * steepness).max(0.0)
+}
+
+/// Amplitude (–) of waves of the length `length_dp` (dp), at the `distance` (wavelengths) from the paddle, over that of potential theory.
+fn resolved_share(length_dp: f64, distance: f64) -> f64 {
+    let [_, start, loss] = interpolated(&WAVES, length_dp);
     start * (1.0 - loss).powf(distance - 0.5)
+}
+
+/// The row of `table` at `x` in its first column: linear in the logarithm of `x`, beyond the ends the last row there.
+fn interpolated<const N: usize, const ROWS: usize>(table: &[[f64; N]; ROWS], x: f64) -> [f64; N] {
+    let x = x.clamp(table[0][0], table[ROWS - 1][0]);
+    let i = table.iter().rposition(|row| row[0] <= x).unwrap_or(0).min(ROWS - 2);
+    let (a, b) = (table[i], table[i + 1]);
+    let t = (x / a[0]).ln() / (b[0] / a[0]).ln();
+    std::array::from_fn(|k| a[k] + (b[k] - a[k]) * t)
 }
 
 #[cfg(test)]

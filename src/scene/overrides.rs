@@ -8,6 +8,7 @@ use toml::{
     de::{DeTable, DeValue, ValueDeserializer},
 };
 
+use super::diagnostics;
 use crate::{
     error::{Error, ErrorCode, Result, suggestion},
     probe::ProbeConfig,
@@ -59,10 +60,10 @@ impl OverrideLocations {
 }
 
 /// Puts the value written as `text` at `key` and assigns locations from `marks` to its parts. A text that is not a TOML
-/// value counts as a string. Returns the key with numbers in place of names.
+/// value counts as a string, unless it begins as a list or a table. Returns the key with numbers in place of names.
 ///
 /// # Errors
-/// `Scene` if `key` is not a valid key, or names a list entry that does not exist.
+/// `Scene` if `key` is not a valid key, or names a list entry that does not exist, or if a list or table is not TOML.
 pub(super) fn apply_override<'i>(
     root: &mut DeTable<'i>,
     key: &'i str,
@@ -77,6 +78,11 @@ pub(super) fn apply_override<'i>(
     }
     let value = match DeValue::parse(text) {
         Ok(value) => value.into_inner(),
+        Err(e) if text.trim_start().starts_with(['[', '{']) => {
+            return Err(Error::scene(format!("this is not TOML: {}", e.message()))
+                .with_code(ErrorCode::InvalidToml)
+                .help(diagnostics::toml_help(e.message())));
+        }
         Err(_) => DeValue::String(Cow::Borrowed(text.trim())),
     };
     put_in(root, &parts, "", value, marks)

@@ -261,6 +261,15 @@ fn a_key_given_by_the_name_and_by_the_number_of_a_solid_is_refused() {
     try_scene(GOOD, &[(&density("box"), "400"), ("solid.1.contact_skin", "0.01")]).unwrap();
 }
 
+#[test]
+fn a_list_or_table_of_an_override_without_quotes_is_no_text() {
+    for (key, value) in [("probe", "[{motion=box}]"), ("model.viscosity", "{laminar={nu0=1e-6}"), ("title", "[x")] {
+        let error = try_scene(GOOD, &[(key, value)]).expect_err(value).to_string();
+        assert!(error.contains("this is not TOML") && error.contains("words need quotes"), "{error}");
+    }
+    try_scene(GOOD, &[("title", "x [y]")]).unwrap();
+}
+
 /// A value is said to be set only if `--set` wrote it, or an element of it.
 #[test]
 fn a_value_set_in_part_and_a_table_set_empty_have_the_right_source() {
