@@ -164,7 +164,7 @@ pub(super) fn note_other_solids<const D: usize>(sim: &mut Simulation<D>) {
 /// Gives the state of the host, which was changed, to the device.
 fn load<const D: usize>(sim: &mut Simulation<D>) -> Result<()> {
     if sim.device.as_ref().is_some_and(|own| own.solids_changed) {
-        return renew(sim);
+        return replace_device(sim);
     }
     let Simulation { device: Some(own), system, stepper, clock, .. } = sim else { return Ok(()) };
     device_state::place_solids(system);
@@ -177,7 +177,7 @@ fn load<const D: usize>(sim: &mut Simulation<D>) -> Result<()> {
 }
 
 /// Gives the state of the host to new arrays on the device.
-fn renew<const D: usize>(sim: &mut Simulation<D>) -> Result<()> {
+fn replace_device<const D: usize>(sim: &mut Simulation<D>) -> Result<()> {
     if let Some(number) = sim.device.as_ref().map(|own| own.adapter().number) {
         device_state::place_solids(&mut sim.system);
         sim.device = Some(own_device(sim, &number.to_string())?);
@@ -244,7 +244,7 @@ fn measure_powers<const D: usize>(sim: &mut Simulation<D>) -> Result<()> {
     }
     fetch(sim)?;
     fetch_boundary_sums(sim)?;
-    renew(sim)
+    replace_device(sim)
 }
 
 /// The powers that the next step of `bodies` measures.

@@ -269,7 +269,7 @@ fn symmetry_planes_beside_periodic_sides_agree_with_the_reference() {
 }
 
 #[test]
-fn a_body_on_a_symmetry_plane_between_periodic_sides_agrees_with_the_reference() {
+fn a_driven_body_on_a_symmetry_plane_between_periodic_sides_agrees_with_the_reference() {
     let text = r#"
 dimension = 3
 dp = 0.05
@@ -290,11 +290,8 @@ at = { x = 0.7, y = 0.9, bottom = 0.0 }
 [[solid]]
 name = "box"
 shape = { box = { size = [0.3, 0.25, 0.2] } }
-at = { x = 0.5, y = 0.4, draft = 0.04 }
-free = { density = 500.0 }
-[[contact]]
-between = ["box"]
-touch = false
+at = { x = 0.7, y = 0.4, z = 0.45 }
+driven = { along = [0.0, 0.0, 1.0], distance = { formula = "0.05*(1 - cos(20*t))" } }
 "#;
     let setup = Scene::parse(text, Path::new(""), &[]).unwrap().build::<3>().unwrap().setup;
     assert_bodies_agree("box in a channel", &setup, 40);
