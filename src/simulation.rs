@@ -274,7 +274,8 @@ impl<const D: usize> Simulation<D> {
     /// Advances by one step, not past time `end` (s). On a device it makes steps until time `pause` (s) is reached, and leaves the
     /// state there: call [`Simulation::fetch_from_device`] to read the water.
     #[cfg(feature = "gpu")]
-    pub(crate) fn step_to_pause(&mut self, pause: f64, end: f64) -> Result<()> {
+    #[doc(hidden)]
+    pub fn step_to_pause(&mut self, pause: f64, end: f64) -> Result<()> {
         match self.device {
             Some(_) => on_device::steps(self, (u64::MAX, pause), end, None),
             None => self.step_with_own_water(end),
@@ -313,12 +314,19 @@ impl<const D: usize> Simulation<D> {
         on_device::rates(self)
     }
 
-    /// Brings the state of the water back from the device, if one has it.
+    /// Brings the state of the water and the forces on the boundary particles back from the device, if one has them.
     ///
     /// # Errors
     /// `Usage` if the device failed.
     #[cfg(feature = "gpu")]
     pub fn fetch_from_device(&mut self) -> Result<()> {
+        on_device::fetch(self)?;
+        on_device::fetch_boundary_sums(self)
+    }
+
+    /// The same, without the forces on the boundary particles.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn fetch_water(&mut self) -> Result<()> {
         on_device::fetch(self)
     }
 
@@ -326,6 +334,13 @@ impl<const D: usize> Simulation<D> {
     #[cfg(feature = "gpu")]
     pub(crate) fn fetch_loads(&mut self) -> Result<()> {
         on_device::fetch_loads(self)
+    }
+
+    /// How often the processor has waited for the device. For comparisons.
+    #[cfg(feature = "gpu")]
+    #[doc(hidden)]
+    pub fn device_waits(&self) -> Option<u64> {
+        self.device.as_ref().map(OnDevice::waits)
     }
 
     /// The present state: in the folder for such states, or in memory if there is none or it cannot be written to. Of ranks that have
@@ -625,7 +640,7 @@ impl<const D: usize> Simulation<D> {
         self.system.set_masses_at(self.clock.time);
         self.rollback.restart(state.rollbacks.into_owned());
         #[cfg(feature = "gpu")]
-        on_device::load(self)?;
+        on_device::restore(self)?;
         Ok(())
     }
 

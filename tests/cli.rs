@@ -166,6 +166,11 @@ fn wrong_commands_are_refused_with_a_remedy() {
     fs::write(folder.path("file"), "").unwrap();
     folder.pontoon(&["run", "raft", "--out", "file/x"]).assert_refused(2, &["file/x: cannot be made", "--out"]);
     folder.pontoon(&["run", "raft", "--out", "."]).assert_refused(2, &["is not empty"]);
+    if cfg!(not(feature = "gpu")) {
+        let told = ["cannot use the device \"gpu\"", "--features gpu", "leave --device (model.device) out"];
+        folder.pontoon(&["run", "raft", "--device", "gpu"]).assert_refused(2, &told);
+        folder.pontoon(&["bench", "--devices"]).assert_refused(2, &["built without devices", "--features gpu"]);
+    }
     assert!(!folder.path("runs").exists());
 }
 

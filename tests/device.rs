@@ -4,13 +4,16 @@
 #![cfg(feature = "gpu")]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::print_stdout, clippy::print_stderr, reason = "tests may")]
 
+use std::path::Path;
+
 use pontoon::{
     geometry::Shape,
-    math::{Bivector, Vector, expression::Formula},
+    math::{Bivector, Matrix, Vector, expression::Formula},
     model::{
         Diffusion, KernelKind, Model, PairLoopKind, PressureGradient, Shifting, Slip, TimeScheme, Viscosity, Walls,
     },
-    simulation::{Dimension, Setup, Simulation, TowedFrame},
+    scene::Scene,
+    simulation::{Dimension, Setup, Simulation},
     solid::{Dim, FreeBody, PrescribedMotion, SolidSpec, TimeFunction},
     sph::{
         continuity::Continuity,
@@ -34,8 +37,14 @@ mod films;
 use coupled::assert_repeats_and_resumes;
 #[path = "device/forces.rs"]
 mod forces;
+#[path = "device/patches.rs"]
+mod patches;
 #[path = "device/periodic.rs"]
 mod periodic;
+#[path = "device/runs.rs"]
+mod runs;
+#[path = "device/solids.rs"]
+mod solids;
 #[path = "device/symmetry.rs"]
 mod symmetry;
 #[path = "device/thin_parts.rs"]
@@ -379,18 +388,49 @@ fn what_no_device_computes_is_refused_with_the_remedy() {
         assert!(error.to_string().contains("leave --device (model.device) out"), "{error}");
         error.message
     };
-    let refused = |model: Model| refused_setup(dam(model, [0.8, 0.3]));
     let water = || Model::water(2, 0.05, 0.3);
-    assert!(refused(water().gamma(1.4)).contains("gamma"));
-    let shaken = dam(water().for_waves(), [0.8, 0.3]).gravity_law([0.0, -9.81]);
-    assert!(refused_setup(shaken).contains("near the surface"));
-    let towed = dam(water(), [0.8, 0.3]).towed(TowedFrame::new(0, Formula::parse("0.3*t^2").unwrap()));
-    let mut towed = Simulation::new(towed).unwrap();
-    towed.enable_energy_budget();
-    let error = towed.on_device(&device()).map(|_| ()).unwrap_err();
-    assert!(error.message.contains("energy budgets in a towed frame"), "{error}");
-    let error = Simulation::new(dam(water(), [0.8, 0.3])).unwrap().on_device("no such card").map(|_| ()).unwrap_err();
+    let tank_of = |model: Model| dam(model, [0.8, 0.3]);
+    let dam = || tank_of(water());
+    assert!(refused_setup(tank_of(water().gamma(8.0))).contains("gamma"));
+    let mut fast = dam();
+    fast.limits = fast.limits.density(0.4, 1.2);
+    assert!(refused_setup(fast).contains("density limits"));
+    assert!(refused_setup(dam().with_reference()).contains("double precision"));
+    let stream = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/spec/run/restart/stream.toml");
+    assert!(refused_setup(Scene::read(&stream, &[]).unwrap().build().unwrap().setup).contains("[[outflow]]"));
+    let error = Simulation::new(dam()).unwrap().on_device("no such card").map(|_| ()).unwrap_err();
     assert!(error.message.contains("no such card"), "{error}");
+}
+
+#[test]
+fn without_a_driver_the_error_says_what_to_install() {
+    let this = "without_a_driver_the_error_says_what_to_install";
+    let setup = dam(Model::water(2, 0.05, 0.3), [0.8, 0.3]);
+    let error = || Simulation::new(setup).unwrap().on_device("gpu").map(|_| ()).unwrap_err();
+    if std::env::var_os("PONTOON_NO_DRIVER").is_some() {
+        let error = error();
+        assert!(error.message.contains("no graphics card was found"), "{error}");
+        assert!(error.to_string().contains("libvulkan1") && error.to_string().contains("Without --device"), "{error}");
+        return;
+    }
+    // A process finds its drivers once: another one finds none.
+    let mut other = std::process::Command::new(std::env::current_exe().unwrap());
+    other.args([this, "--exact"]).env("PONTOON_NO_DRIVER", "1");
+    for variable in ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"] {
+        other.env(variable, "/no/driver");
+    }
+    let told = other.output().unwrap();
+    assert!(
+        told.status.success(),
+        "{}{}",
+        String::from_utf8_lossy(&told.stdout),
+        String::from_utf8_lossy(&told.stderr)
+    );
+    // A software driver is no graphics card, unless it is named.
+    if pontoon::device::adapters().iter().all(|adapter| adapter.is_software) {
+        let error = error();
+        assert!(error.message.contains("there is no device \"gpu\"") && error.to_string().contains("0: "), "{error}");
+    }
 }
 
 #[test]
@@ -487,9 +527,10 @@ where
             model.kernel, model.viscosity, model.diffusion, model.shifting, model.gradient
         );
         let (traces, units) = model.pair_traces::<D>(false).expect("traces");
-        // Sums of the first pass: there is no stress yet, and gradients are corrected where few neighbours are.
-        let plain = model.gradient == PressureGradient::Plain;
-        let sim = Simulation::new(dam(model.clone(), size).with_reference()).expect("a sound setup");
+        // Some steps give the water stress, and gradients their corrections.
+        let mut setup = dam(model.clone(), size);
+        setup.model.dt_max = 5e-4;
+        let sim = under(&setup, PairLoopKind::Reference, &run(&setup, 0.01));
         let system = sim.system();
         let (fluid, boundary) = (system.fluid(), system.boundary());
         let (length, speed) = (units.length, units.length / units.time);
@@ -498,7 +539,11 @@ where
         for a in (0..fluid.len()).step_by(fluid.len() / 12) {
             let mut sums = vec![0.0; traces.rows[1]];
             let mut approach = 0.0;
-            let mut add = |trace: &Trace, r: &Vector<D>, v: &Vector<D>, rho: f64, sums: &mut Vec<f64>| {
+            let of_a = system.pair_tensors(a);
+            let mut add = |trace: &Trace,
+                           (r, v, rho): (&Vector<D>, &Vector<D>, f64),
+                           of_b: [Matrix<D>; 2],
+                           sums: &mut Vec<f64>| {
                 let (x_a, x_b) = (compression(fluid.rho[a]), compression(rho));
                 let pressure = |rho: f64| system.pressure(rho) / model.rho0 / speed.powi(2);
                 let repulsion = |rho: f64, x: f64| {
@@ -519,15 +564,22 @@ where
                         system.gravity()[k] / model.c0.powi(2) * length
                     }
                     _ if input.starts_with("sum") => sums[input[3..].parse::<usize>().unwrap()],
-                    // The mark that suppresses shifting comes first, then the repulsion; the others are zero.
                     _ if input.contains("_row") => {
-                        let marks = usize::from(model.shifting != Shifting::None);
-                        let is_repulsion = input[5..].parse::<usize>().unwrap() == marks;
-                        let tensile = model.kernel == KernelKind::Cubic { tensile: true };
-                        match (is_repulsion && tensile, input.starts_with('a')) {
-                            (false, _) => 0.0,
-                            (true, true) => repulsion(fluid.rho[a], x_a),
-                            (true, false) => repulsion(rho, x_b),
+                        let (row, of_own) = (input[5..].parse::<usize>().unwrap(), input.starts_with('a'));
+                        let [stress, correction] = if of_own { of_a } else { of_b };
+                        let entry = |first: Option<usize>, tensor: Matrix<D>| {
+                            let n = row.checked_sub(first?)?;
+                            let mut entries = (0..D).flat_map(|i| (0..=i).map(move |j| (i, j)));
+                            entries.nth(n).map(|at| tensor[at])
+                        };
+                        let layout = &traces.layout;
+                        match layout.repulsion == Some(row) {
+                            true if of_own => repulsion(fluid.rho[a], x_a),
+                            true => repulsion(rho, x_b),
+                            // Else it is a mark, which suppresses shifting.
+                            false => entry(layout.correction, correction)
+                                .or_else(|| entry(layout.stress, stress / speed.powi(2)))
+                                .unwrap_or(0.0),
                         }
                     }
                     _ => {
@@ -549,18 +601,20 @@ where
             };
             system.visit_fluid_near(&fluid.r[a], &mut |b, r, _| {
                 if b != a {
-                    add(&traces.fluid, r, &fluid.v[b], fluid.rho[b], &mut sums);
+                    add(&traces.fluid, (r, &fluid.v[b], fluid.rho[b]), system.pair_tensors(b), &mut sums);
                 }
             });
             system.visit_boundary_near(&fluid.r[a], &mut |b, r, _| {
-                add(&traces.wall, r, &boundary.v[b], boundary.rho[b], &mut sums)
+                add(&traces.wall, (r, &boundary.v[b], boundary.rho[b]), [Matrix::zeros(); 2], &mut sums)
             });
             let acceleration = Vector::<D>::from_fn(|k, _| sums[k] * speed / units.time) + system.gravity();
+            // Corrections make the terms of a gradient larger.
             let (force, rate) = sizes(&sim, a);
+            let force = force * (1.0 + of_a[1].norm());
             let off = (acceleration - sim.system().fluid_acceleration(a)).norm() / force.max(1.0);
             let off_rate =
                 (sums[D] / units.time - sim.system().fluid_density_rate(a) / model.rho0).abs() / rate.max(1e-3);
-            worst = worst.max(if plain { off } else { 0.0 }).max(off_rate);
+            worst = worst.max(off).max(off_rate);
         }
         // Double precision; the constants of both are rounded in other units.
         assert!(worst < 1e-6, "{name}: {worst:.1e} off");
@@ -585,9 +639,20 @@ fn a_pair_takes_no_more_operations_than_before() {
         [traces.fluid.count(), traces.wall.count(), traces.extrapolation.count()]
     };
     let of = |dimension| {
-        let defaults = Model::water(dimension, 0.02, 0.3);
-        let bodies = defaults.clone().for_free_bodies();
-        [count(defaults, dimension), count(bodies, dimension)]
+        let base = || Model::water(dimension, 0.02, 0.3);
+        let sps = || base().viscosity(Viscosity::Sps(Sps::default()));
+        [
+            base(),
+            base().for_free_bodies(),
+            base().viscosity(Viscosity::Artificial(Artificial::default())),
+            base().viscosity(Viscosity::Laminar(Laminar { nu0: 1e-4 })).slip(Slip::Partial),
+            sps(),
+            sps().shifting(Shifting::Everywhere(Shift::default())),
+            base().kernel(KernelKind::Cubic { tensile: false }),
+            base().kernel(KernelKind::Cubic { tensile: true }),
+            base().gradient(PressureGradient::Corrected),
+        ]
+        .map(|model| count(model, dimension))
     };
     let counts = [of(2), of(3)];
     println!("operations of a pair of water, of water and wall, and of an extrapolation: {counts:?}");
@@ -597,25 +662,57 @@ fn a_pair_takes_no_more_operations_than_before() {
     }
 }
 
-/// Operations of the defaults and of the defaults with free bodies, in 2-D and in 3-D.
-const COUNTS: [[[usize; 3]; 2]; 2] = [[[43, 36, 17], [41, 36, 17]], [[47, 40, 20], [45, 40, 20]]];
+/// Operations in 2-D and in 3-D of the defaults, with free bodies, artificial viscosity, laminar viscosity and partial slip, sub-particle
+/// stress, the same with shifting, the cubic kernel, the same with tensile correction, and corrected gradients.
+const COUNTS: [[[usize; 3]; 9]; 2] = [
+    [
+        [43, 36, 17],
+        [41, 36, 17],
+        [41, 36, 17],
+        [43, 42, 17],
+        [62, 55, 17],
+        [66, 60, 17],
+        [48, 41, 23],
+        [59, 52, 23],
+        [60, 36, 17],
+    ],
+    [
+        [47, 40, 20],
+        [45, 40, 20],
+        [45, 40, 20],
+        [48, 47, 20],
+        [85, 77, 20],
+        [90, 83, 20],
+        [52, 45, 26],
+        [63, 56, 26],
+        [79, 40, 20],
+    ],
+];
 
 #[test]
-fn the_traced_equations_of_the_defaults_are_the_recorded_ones() {
-    let setup = dam(Model::water(3, 0.05, 0.3), [0.6, 0.2, 0.3]);
-    let shader = pontoon::device::shaders_of(Simulation::new(setup).unwrap().system(), false).unwrap().sweep;
-    // Only traces have names of a letter and a number.
-    let is_traced = |line: &&str| {
-        let name = line.strip_prefix("let ").and_then(|rest| rest.split(' ').next()).unwrap_or("");
-        name.starts_with("out_") || name.len() > 1 && name[1..].bytes().all(|c| c.is_ascii_digit())
-    };
-    let text: String = shader.lines().map(str::trim).filter(is_traced).map(|line| format!("{line}\n")).collect();
-    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/traces-3d.wgsl");
-    if std::env::var_os("UPDATE_GOLDEN").is_some() {
-        std::fs::write(&path, &text).unwrap();
+fn the_traced_equations_are_the_recorded_ones() {
+    let base = || Model::water(3, 0.05, 0.3);
+    let stress = base().viscosity(Viscosity::Sps(Sps::default())).shifting(Shifting::Everywhere(Shift::default()));
+    for (name, model) in [
+        ("traces-3d.wgsl", base()),
+        ("traces-3d-sps-shifting.wgsl", stress),
+        ("traces-3d-corrected.wgsl", base().gradient(PressureGradient::Corrected)),
+    ] {
+        let setup = dam(model, [0.6, 0.2, 0.3]);
+        let shader = pontoon::device::shaders_of(Simulation::new(setup).unwrap().system(), false).unwrap().sweep;
+        // Only traces have names of a letter and a number.
+        let is_traced = |line: &&str| {
+            let name = line.strip_prefix("let ").and_then(|rest| rest.split(' ').next()).unwrap_or("");
+            name.starts_with("out_") || name.len() > 1 && name[1..].bytes().all(|c| c.is_ascii_digit())
+        };
+        let text: String = shader.lines().map(str::trim).filter(is_traced).map(|line| format!("{line}\n")).collect();
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden").join(name);
+        if std::env::var_os("UPDATE_GOLDEN").is_some() {
+            std::fs::write(&path, &text).unwrap();
+        }
+        let recorded = std::fs::read_to_string(&path).unwrap_or_default();
+        assert!(text == recorded, "{name}: the equations have changed: UPDATE_GOLDEN=1 records them");
     }
-    let recorded = std::fs::read_to_string(&path).unwrap_or_default();
-    assert!(text == recorded, "the equations have changed: UPDATE_GOLDEN=1 records them");
 }
 
 /// Other makers' languages.
@@ -673,6 +770,42 @@ fn every_shader_is_valid_and_translates_to_metal_and_hlsl() {
     }
     check(0.1, [0.8, 0.3]);
     check(0.1, [0.6, 0.2, 0.3]);
+}
+
+#[test]
+fn the_processor_waits_for_no_step_of_fixed_solids_and_twice_in_a_step_beside_bodies() {
+    // A look at the water, the loads and the sums at the end comes beside these.
+    let waits = |setup: Setup<2>, end: f64| {
+        let mut sim = Simulation::new(setup).unwrap().without_rollback().on_device(&device()).unwrap();
+        let (mut calls, before) = (0, sim.device_waits().unwrap());
+        while sim.time() < end {
+            sim.step_to_pause(end, 1.0).unwrap();
+            calls += 1;
+        }
+        (sim.device_waits().unwrap() - before, calls, sim.steps())
+    };
+    let (found, calls, steps) = waits(dam(Model::water(2, 0.02, 0.3), [0.8, 0.3]), 0.1);
+    println!("fixed solids: {found} waits in {steps} steps");
+    assert!(found == calls && 2 * calls < steps, "one at the end of {calls} submissions with {steps} steps: {found}");
+    // Ten bodies, some of which touch.
+    let hull = || Shape::Box { size: [0.2, 0.2].into() };
+    let at = |i: u32| [0.14 + 0.21 * f64::from(i % 5), if i < 5 { 0.42 } else { 0.63 }];
+    let boxes = (0..10).map(|i| SolidSpec::free(format!("box {i}"), hull(), 900.0).at(at(i)));
+    let (found, calls, steps) = waits(dam_with(Model::water(2, 0.02, 0.3).for_free_bodies(), [2.8, 0.3], boxes), 0.02);
+    println!("bodies: {found} waits in {steps} steps");
+    assert!(calls == steps && found == 2 * steps, "{found} in {steps} steps");
+}
+
+#[test]
+fn a_particle_takes_no_more_memory_than_was_allowed() {
+    let bytes = |dimension| {
+        let case = pontoon::bench::BenchCase::with_defaults(dimension, 30_000);
+        pontoon::bench::time_on_device(&case, &device()).unwrap().bytes
+    };
+    let [flat, space] = [bytes(2), bytes(3)];
+    println!("bytes of a particle without and with lists: 2-D {flat:?}, 3-D {space:?}");
+    assert!(space[0] <= 320.0 && space[1] <= 950.0, "{space:?}");
+    assert!(flat[0] <= 320.0 && flat[1] <= 500.0, "{flat:?}");
 }
 
 #[test]

@@ -108,7 +108,7 @@ pub(crate) struct DevicePass<const D: usize> {
     pub(crate) pressure: Option<PressurePass<D>>,
     /// The same with uncorrected gradients, if the model corrects them.
     pub(crate) plain: Option<PressurePass<D>>,
-    /// Sum of the velocities of the water, m/s; zero without periodic sides.
+    /// Sum of the velocities of the water, m/s.
     pub(crate) velocity_sum: Vector<D>,
     /// Sum of the displacements by shifting, m.
     pub(crate) shift_sum: Vector<D>,

@@ -43,6 +43,7 @@ impl Control {
     const APPROACH: usize = 21;
     pub(super) const FAULT: usize = 22;
     pub(super) const LONGEST: usize = 23;
+    pub(super) const LONGEST_OF_BOUNDARY: usize = 30;
     pub(super) const FACTOR: usize = 26;
     pub(super) const FOUND: usize = 27;
     pub(super) const GRAVITY: usize = 32;
@@ -97,8 +98,9 @@ impl Control {
         self.0[Self::FOUND]
     }
 
-    pub(super) fn longest(&self) -> u32 {
-        self.0[Self::LONGEST]
+    /// Entries of the longest list of a water and of a boundary particle.
+    pub(super) fn longest(&self) -> [usize; 2] {
+        [Self::LONGEST, Self::LONGEST_OF_BOUNDARY].map(|at| self.0[at] as usize)
     }
 
     /// Factor on the loads on bodies, –: 1 in an Euler step; in a Verlet step, half of the time over which it integrates, divided
@@ -149,10 +151,29 @@ pub(super) struct Counts {
     kinds: usize,
     /// Most images of a water particle across periodic sides.
     images_of_each: usize,
-    /// Entries of a list.
-    pub(super) most: usize,
-    /// Particles whose lists share a buffer.
-    pub(super) part: usize,
+    /// Entries of a list of a water and of a boundary particle.
+    most: [usize; 2],
+    /// Particles of each of both kinds whose lists share a buffer.
+    part: [usize; 2],
+}
+
+/// Particles of one kind whose lists share a buffer.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ListPart {
+    /// Index of the first, and number of the particles.
+    first: usize,
+    pub(super) count: usize,
+    /// Particles for which there is room, and entries of a list.
+    room: usize,
+    most: usize,
+    pub(super) is_water: bool,
+}
+
+impl ListPart {
+    /// The uniform of the shaders.
+    pub(super) fn words(&self) -> [u32; 4] {
+        [self.first, self.room, self.most, self.first + self.count].map(|x| x as u32)
+    }
 }
 
 impl Counts {
@@ -193,20 +214,45 @@ impl Counts {
         let volume = if D == 2 { std::f64::consts::PI * ratio.powi(2) } else { 4.19 * ratio.powi(3) };
         let (kinds, images_of_each) = (sides.kinds(), sides.images_of_each());
         let mut counts =
-            Self { n, water, size, origin, cells: cells as usize, kinds, images_of_each, most: 0, part: 0 };
-        counts.set_list_length((1.08 * volume) as usize + 4, adapter);
+            Self { n, water, size, origin, cells: cells as usize, kinds, images_of_each, most: [0; 2], part: [0; 2] };
+        // Behind a flat face water fills less than half of the reach.
+        counts.set_list_lengths([1.08, 0.56].map(|share| (share * volume) as usize + 4), adapter);
         Ok(counts)
     }
 
-    /// Sets the length of a list, and so the particles whose lists fit a buffer.
-    pub(super) fn set_list_length(&mut self, most: usize, adapter: &Adapter) {
+    /// Sets the lengths of lists, and so the particles whose lists fit a buffer.
+    fn set_list_lengths(&mut self, most: [usize; 2], adapter: &Adapter) {
         let bytes = adapter.binding_bytes.min(adapter.buffer_bytes) as usize;
-        let fit = (bytes / (4 * most)) / GROUP * GROUP;
-        (self.most, self.part) = (most, fit.max(GROUP).min(self.n.next_multiple_of(GROUP)));
+        let counts = [self.water, self.n - self.water];
+        let part = |kind: usize| {
+            let fit = (bytes / (4 * most[kind])) / GROUP * GROUP;
+            fit.max(GROUP).min(counts[kind].next_multiple_of(GROUP).max(GROUP))
+        };
+        (self.most, self.part) = (most, [part(0), part(1)]);
     }
 
-    pub(super) fn parts(&self) -> usize {
-        self.n.div_ceil(self.part).max(1)
+    /// Makes the lists long enough for the `longest`; returns whether they were too short.
+    pub(super) fn grow_lists(&mut self, longest: [usize; 2], adapter: &Adapter) -> bool {
+        let grown = |kind: usize| match longest[kind] > self.most[kind] {
+            true => longest[kind] + longest[kind] / 8,
+            false => self.most[kind],
+        };
+        let most = [grown(0), grown(1)];
+        let is_longer = most != self.most;
+        if is_longer {
+            self.set_list_lengths(most, adapter);
+        }
+        is_longer
+    }
+
+    /// The particles whose lists share a buffer: water, and boundary particles.
+    pub(super) fn parts(&self) -> [Vec<ListPart>; 2] {
+        let of = |kind: usize, from: usize, to: usize| {
+            let (room, most, is_water) = (self.part[kind], self.most[kind], kind == 0);
+            let part = |first: usize| ListPart { first, count: room.min(to - first), room, most, is_water };
+            (from..to).step_by(room).map(part).collect()
+        };
+        [of(0, 0, self.water), of(1, self.water, self.n)]
     }
 
     /// Room for the images across periodic sides.
@@ -231,8 +277,8 @@ impl Counts {
 
     pub(super) fn words(&self) -> [u32; 16] {
         let mut words = [0; 16];
-        words[12] = self.slots() as u32;
-        words[..4].copy_from_slice(&[self.n, self.water, self.cells, self.most].map(|x| x as u32));
+        (words[12], words[13]) = (self.slots() as u32, self.most[1] as u32);
+        words[..4].copy_from_slice(&[self.n, self.water, self.cells, self.most[0]].map(|x| x as u32));
         for k in 0..4 {
             (words[4 + k], words[8 + k]) = (self.size[k] as u32, self.origin[k] as u32);
         }
@@ -250,7 +296,8 @@ pub(super) struct Buffers {
     pub(super) solids: wgpu::Buffer,
     pub(super) depths: wgpu::Buffer,
     pub(super) loads: wgpu::Buffer,
-    pub(super) lists: Vec<wgpu::Buffer>,
+    /// The lists of water, and of boundary particles.
+    lists: [Vec<wgpu::Buffer>; 2],
     pub(super) pairs: PairBuffers,
     pub(super) search: SearchBuffers,
     /// Copies of the state.
@@ -347,7 +394,7 @@ impl Buffers {
             solids: gpu.buffer(4 * SOLID_WORDS * solids)?,
             depths: gpu.buffer(8 * boundary)?,
             loads: gpu.buffer(32 * chunks.owners.len().max(1))?,
-            lists: Vec::new(),
+            lists: Default::default(),
             pairs,
             search,
             backup: Vec::new(),
@@ -361,11 +408,18 @@ impl Buffers {
 
     /// Makes room for the lists.
     pub(super) fn make_lists(&mut self, gpu: &Gpu, counts: &Counts) -> Result<()> {
-        self.lists.clear();
-        for _ in 0..counts.parts() {
-            self.lists.push(gpu.buffer(4 * counts.most * counts.part)?);
+        self.lists = Default::default();
+        for (lists, parts) in self.lists.iter_mut().zip(counts.parts()) {
+            for part in parts {
+                lists.push(gpu.buffer(4 * part.most * part.room)?);
+            }
         }
         Ok(())
+    }
+
+    /// The particles whose lists share a buffer, and the lists.
+    pub(super) fn lists(&self, counts: &Counts) -> impl Iterator<Item = (ListPart, &wgpu::Buffer)> {
+        counts.parts().into_iter().zip(&self.lists).flat_map(|(parts, lists)| parts.into_iter().zip(lists))
     }
 
     /// The state: control words, places, motion, the step before, and rows that are kept.
@@ -408,12 +462,17 @@ impl Buffers {
         let pairs = pairs.into_iter().chain([normals, slips]);
         let search = [order, count, start, blocks, spare_places, spare, spare_rows];
         let solids = [&self.slot, &self.solids, &self.depths, &self.loads];
-        let all = pairs.chain(search).chain(solids).chain(self.state()).chain(&self.backup).chain(&self.lists);
+        let all = pairs
+            .chain(search)
+            .chain(solids)
+            .chain(self.state())
+            .chain(&self.backup)
+            .chain(self.lists.iter().flatten());
         all.map(wgpu::Buffer::size).sum()
     }
 
     /// Memory of the lists, B.
     pub(super) fn list_bytes(&self) -> u64 {
-        self.lists.iter().map(wgpu::Buffer::size).sum()
+        self.lists.iter().flatten().map(wgpu::Buffer::size).sum()
     }
 }

@@ -1,6 +1,12 @@
 //! Adapters, buffers and passes: what this program asks of `wgpu`.
 
-use std::sync::{Arc, Mutex, OnceLock};
+use std::{
+    ops::Range,
+    sync::{
+        Arc, Mutex, OnceLock,
+        atomic::{AtomicU64, Ordering},
+    },
+};
 
 use bytemuck::Pod;
 use wgpu::util::DeviceExt as _;
@@ -77,6 +83,8 @@ pub(super) struct Gpu {
     queue: wgpu::Queue,
     /// The first error that the driver reported.
     failure: Arc<Mutex<Option<String>>>,
+    /// How often the host has waited for the device.
+    waits: AtomicU64,
 }
 
 /// A pipeline with its buffers, and its number of workgroups.
@@ -158,7 +166,12 @@ impl Gpu {
                 note(&of_loss, format!("the device was lost: {text}"));
             }
         });
-        Ok(Self { adapter: adapter.clone(), device, queue, failure })
+        Ok(Self { adapter: adapter.clone(), device, queue, failure, waits: AtomicU64::new(0) })
+    }
+
+    /// How often the host has waited for the device.
+    pub(super) fn waits(&self) -> u64 {
+        self.waits.load(Ordering::Relaxed)
     }
 
     /// The error that the driver reported, if any.
@@ -281,12 +294,21 @@ impl Gpu {
 
     /// The first `counts` numbers of each of the `buffers`, after all passes have run.
     pub(super) fn read<T: Pod, const N: usize>(&self, buffers: [(&wgpu::Buffer, usize); N]) -> Result<[Vec<T>; N]> {
+        self.read_ranges(buffers.map(|(buffer, count)| (buffer, 0..count)))
+    }
+
+    /// The numbers in these ranges of the buffers, after all passes have run.
+    pub(super) fn read_ranges<T: Pod, const N: usize>(
+        &self,
+        buffers: [(&wgpu::Buffer, Range<usize>); N],
+    ) -> Result<[Vec<T>; N]> {
+        let counts = buffers.each_ref().map(|(_, range)| range.len());
         let mut encoder = self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        let copied = buffers.map(|(buffer, count)| {
-            if count == 0 {
+        let copied = buffers.map(|(buffer, range)| {
+            if range.is_empty() {
                 return None;
             }
-            let size = (count * size_of::<T>()) as u64;
+            let [start, size] = [range.start, range.len()].map(|count| (count * size_of::<T>()) as u64);
             let usage = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
             let copy = self.device.create_buffer(&wgpu::BufferDescriptor {
                 label: None,
@@ -294,7 +316,7 @@ impl Gpu {
                 usage,
                 mapped_at_creation: false,
             });
-            encoder.copy_buffer_to_buffer(buffer, 0, &copy, 0, size);
+            encoder.copy_buffer_to_buffer(buffer, start, &copy, 0, size);
             Some(copy)
         });
         self.queue.submit([encoder.finish()]);
@@ -307,10 +329,11 @@ impl Gpu {
                 }
             });
         }
+        self.waits.fetch_add(1, Ordering::Relaxed);
         self.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|why| self.failed(&why.to_string()))?;
         self.check()?;
         let mut out: [Vec<T>; N] = std::array::from_fn(|_| Vec::new());
-        for ((out, copy), (_, count)) in out.iter_mut().zip(&copied).zip(buffers) {
+        for ((out, copy), count) in out.iter_mut().zip(&copied).zip(counts) {
             let Some(copy) = copy else { continue };
             let range = copy.slice(..).get_mapped_range().map_err(|why| self.failed(&why.to_string()))?;
             *out = bytemuck::pod_collect_to_vec(&range[..count * size_of::<T>()]);

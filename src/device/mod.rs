@@ -301,11 +301,6 @@ impl<const D: usize> Device<D> {
         &self.gpu.adapter
     }
 
-    /// Number of particles, water and boundary.
-    pub(crate) fn particle_count(&self) -> usize {
-        self.counts.n
-    }
-
     /// Memory of the arrays, B: all, and of these the neighbour lists.
     pub(crate) fn memory_bytes(&self) -> [u64; 2] {
         let near = self.near.as_ref().map_or(0, Near::bytes) + self.films.as_ref().map_or(0, FilmReads::bytes);
@@ -428,11 +423,9 @@ impl<const D: usize> Device<D> {
 
     /// If a list was too short, makes longer lists and returns to the state before the submission.
     fn grow_lists(&mut self, control: &Control) -> Result<bool> {
-        let longest = control.longest() as usize;
-        if longest <= self.counts.most {
+        if !self.counts.grow_lists(control.longest(), &self.gpu.adapter) {
             return Ok(false);
         }
-        self.counts.set_list_length(longest + longest / 8, &self.gpu.adapter);
         self.buffers.make_lists(&self.gpu, &self.counts)?;
         self.make_passes()?;
         self.go_back();
@@ -459,7 +452,9 @@ impl<const D: usize> Device<D> {
         let copies = self.buffers.restores();
         self.gpu.run(&copies, [self.passes.derive.as_ref()]);
         self.gpu.write(&self.buffers.control, Control::MOVED * 4, &[Control::FAR]);
-        self.gpu.write(&self.buffers.control, Control::LONGEST * 4, &[0u32]);
+        for longest in [Control::LONGEST, Control::LONGEST_OF_BOUNDARY] {
+            self.gpu.write(&self.buffers.control, longest * 4, &[0u32]);
+        }
     }
 
     /// What the control words say of the steps since the last call.
@@ -557,10 +552,15 @@ impl<const D: usize> Device<D> {
     /// Makes a force pass at the present state. Returns the acceleration (m/s²) and the rate of ρ/ρ₀ (1/s) of each water
     /// particle, in the order of `system`, and the largest values that limit a step.
     pub(crate) fn rates(&mut self, system: &System<D>) -> Result<(Vec<PairSums<D>>, StepLimits)> {
-        self.begin(&StepRequest::NONE);
-        self.gpu.run(&[], self.passes.rates.iter().map(AsRef::as_ref));
+        let control = loop {
+            self.begin(&StepRequest::NONE);
+            self.gpu.run(&self.buffers.backups(), self.passes.rates.iter().map(AsRef::as_ref));
+            let control = self.control()?;
+            if !self.grow_lists(&control)? {
+                break control;
+            }
+        };
         let (n, water) = (self.counts.n, self.counts.water);
-        let control = self.control()?;
         let [sums] = self.gpu.read::<f32, 1>([(&self.buffers.pairs.sums, (D + 1) * n)])?;
         let [slot] = self.gpu.read::<u32, 1>([(&self.buffers.slot, n)])?;
         let Units { length, time } = self.units;

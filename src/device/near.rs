@@ -11,6 +11,7 @@ use super::{
 };
 use crate::{
     error::Result,
+    interaction::PairSums,
     math::{Bounds, Vector},
     system::{
         System,
@@ -188,6 +189,28 @@ impl<const D: usize> Device<D> {
         let weights = near.map_or((loads, 0), |near| (&near.weights, near.weights.size() as usize / 4));
         let films = self.films.as_ref().map_or((loads, 0), FilmReads::words);
         [(loads, 8 * self.chunks.owners.len()), weights, films]
+    }
+
+    /// The boundary particles that have water near them, in ascending order, and their sums in the last force pass: the accelerations alone.
+    pub(crate) fn boundary_sums(&self) -> Result<(Vec<u32>, Vec<PairSums<D>>)> {
+        let Counts { n, water, .. } = self.counts;
+        let Buffers { slot, pairs, .. } = &self.buffers;
+        let rows: [Vec<f32>; D] =
+            self.gpu.read_ranges(std::array::from_fn(|k| (&pairs.sums, k * n + water..(k + 1) * n)))?;
+        let [slot, spans]: [Vec<u32>; 2] =
+            self.gpu.read_ranges([(slot, water..n), (&pairs.spans, 2 * water..2 * n)])?;
+        let scale = self.units.length / self.units.time.powi(2);
+        let of = |(i, slot): (u32, u32)| {
+            let k = slot as usize - water;
+            let acceleration = Vector::from_fn(|axis, _| f64::from(rows[axis][k]) * scale);
+            (spans[2 * k] > 0).then_some((i, PairSums { acceleration, compression_rate: 0.0 }))
+        };
+        Ok((0u32..).zip(slot).filter_map(of).unzip())
+    }
+
+    /// How often the host has waited for the device.
+    pub(crate) fn waits(&self) -> u64 {
+        self.gpu.waits()
     }
 
     /// What these words say of the water at the solids.

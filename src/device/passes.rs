@@ -278,9 +278,8 @@ fn rates(
     ];
     passes.extend(images.place);
     let (mut sweeps, mut corrections) = (Vec::new(), Vec::new());
-    for (number, list) in buffers.lists.iter().take(counts.parts()).enumerate() {
-        let start = number * counts.part;
-        let first = gpu.uniform(&[start as u32, counts.part as u32, 0, 0]);
+    for (part, list) in buffers.lists(counts) {
+        let first = gpu.uniform(&part.words());
         let lists = Maker::new(
             gpu,
             &shaders.lists,
@@ -299,27 +298,24 @@ fn rates(
                 &buffers.before,
             ],
         );
-        passes.push(lists.pass("list_pairs", counts.part.min(n - start))?);
+        passes.push(lists.pass("list_pairs", part.count)?);
         let sweep = Maker::new(gpu, &shaders.sweep, sweep_bindings(params, buffers, [&first, list], &b.sums));
-        let threads = counts.part.min(n - start);
-        if start < counts.water {
-            let water = threads.min(counts.water - start);
+        if part.is_water {
             if let Some(text) = &shaders.moments {
                 let buffers =
                     vec![params, &buffers.control, &first, &b.positions, &b.velocities, list, &b.spans, &b.rows];
-                corrections.push(Maker::new(gpu, text, buffers).pass("sweep_moments", water)?);
+                corrections.push(Maker::new(gpu, text, buffers).pass("sweep_moments", part.count)?);
             }
-            sweeps.push(sweep.pass("sweep_water", water)?);
+            sweeps.push(sweep.pass("sweep_water", part.count)?);
+            continue;
         }
-        if start + threads > counts.water {
-            if let Some(text) = &shaders.sticks {
-                let own = [&b.spans, &buffers.places, &buffers.solids, &buffers.depths, &b.normals, &b.slips];
-                let before = [params, &buffers.control, &first, &b.positions, &b.velocities, list];
-                let sticks = Maker::new(gpu, text, before.into_iter().chain(own).collect());
-                corrections.push(sticks.pass("find_slips", threads)?);
-            }
-            sweeps.push(sweep.pass("sweep_boundary", threads)?);
+        if let Some(text) = &shaders.sticks {
+            let own = [&b.spans, &buffers.places, &buffers.solids, &buffers.depths, &b.normals, &b.slips];
+            let before = [params, &buffers.control, &first, &b.positions, &b.velocities, list];
+            let sticks = Maker::new(gpu, text, before.into_iter().chain(own).collect());
+            corrections.push(sticks.pass("find_slips", part.count)?);
         }
+        sweeps.push(sweep.pass("sweep_boundary", part.count)?);
     }
     if let Some(text) = &shaders.gaps {
         let gaps = Maker::new(gpu, text, gap_bindings(params, buffers, &b.sums));

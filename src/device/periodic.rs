@@ -2,7 +2,7 @@
 //! arrays of places and velocities that the pair loop reads. The device makes them anew with the lists.
 
 use super::layout::{Layout, Place, place_of};
-use crate::system::{System, device_state};
+use crate::system::{AxisSet, System, device_state};
 
 /// The periodic sides and the symmetry planes.
 #[derive(Clone, Copy, Debug)]
@@ -67,47 +67,40 @@ impl<const D: usize> Sides<D> {
         ends.map(|[from, to]| [(from >> 32) as i32 - self.width, (to >> 32) as i32 + self.width])
     }
 
-    /// The constants of the shaders.
-    pub(super) fn constants(&self) -> String {
+    /// The constants and functions of the shaders.
+    pub(super) fn text(&self) -> String {
+        let axes = |of: &dyn Fn(usize) -> bool| {
+            let axes: Vec<_> = (0..3).map(|k| (k < D && of(k)).to_string()).collect();
+            format!("vec3<bool>({})", axes.join(", "))
+        };
+        let is_upper = |k: usize, upper: bool| self.planes[k].is_some_and(|(_, is_upper)| is_upper == upper);
         let end = |k: usize| place_of(self.sides.map(|side| side.map_or(0, |ends| ends[k])));
-        let axes: Vec<_> = (0..3).map(|k| self.sides.get(k).is_some_and(Option::is_some).to_string()).collect();
+        let planes = |times: i64| place_of(self.planes.map(|plane| plane.map_or(0, |(at, _)| times * at)));
         let places = [
             ("FROM", end(0)),
             ("TO", end(1)),
             ("PERIOD", place_of(self.periods())),
             ("MINUS_PERIOD", place_of(self.periods().map(|period| -period))),
+            ("PLANES", planes(1)),
+            ("TWICE_PLANES", planes(2)),
         ];
         let places: String = places.iter().map(|(name, place)| constant(name, place)).collect();
         format!(
-            "const PERIODIC: bool = {};\nconst KINDS: u32 = {}u;\nconst WIDTH: i32 = {};\n\
-             const AXES: vec3<bool> = vec3<bool>({});\n{places}",
+            "const PERIODIC: bool = {};\nconst REFLECTS: bool = {};\nconst KINDS: u32 = {}u;\nconst WIDTH: i32 = {};\n\
+             const AXES: vec3<bool> = {};\nconst UPPER: vec3<bool> = {};\nconst LOWER: vec3<bool> = {};\n{places}{}",
             self.any(),
+            self.has_planes(),
             self.kinds(),
             self.width,
-            axes.join(", ")
-        ) + &self.plane_constants()
-    }
-    /// The functions for the ways to images.
-    pub(super) fn functions(&self) -> &'static str {
-        if self.has_planes() { include_str!("shaders/planes.wgsl") } else { include_str!("shaders/periodic.wgsl") }
+            axes(&|k| self.sides[k].is_some()),
+            axes(&|k| is_upper(k, true)),
+            axes(&|k| is_upper(k, false)),
+            include_str!("shaders/sides.wgsl")
+        )
     }
 
-    /// The constants of the symmetry planes.
-    fn plane_constants(&self) -> String {
-        if !self.has_planes() {
-            return String::new();
-        }
-        let axes = |of: fn(&(i64, bool)) -> bool| {
-            let axis = |k: usize| self.planes.get(k).is_some_and(|plane| plane.as_ref().is_some_and(of)).to_string();
-            (0..3).map(axis).collect::<Vec<_>>().join(", ")
-        };
-        let at = |times: i64| place_of(self.planes.map(|plane| plane.map_or(0, |(at, _)| times * at)));
-        format!(
-            "const UPPER: vec3<bool> = vec3<bool>({});\nconst LOWER: vec3<bool> = vec3<bool>({});\n{}{}",
-            axes(|(_, is_upper)| *is_upper),
-            axes(|(_, is_upper)| !is_upper),
-            constant("PLANES", &at(1)),
-            constant("TWICE_PLANES", &at(2)),
-        )
+    /// The way to an image that is reflected along `axes`.
+    pub(super) fn way(axes: AxisSet) -> u32 {
+        (0..3).map(|k| u32::from(axes >> k & 1) * 3u32.pow(k)).sum()
     }
 }

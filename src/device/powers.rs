@@ -24,8 +24,8 @@ use crate::{
 pub(super) struct Powers {
     shader: Shader,
     pressure: Vec<PressureSums>,
-    /// What each chunk of the water contributes: gains, displacements by shifting, absorbed energy, places.
-    parts: [wgpu::Buffer; 4],
+    /// What each chunk of the water contributes: gains, velocities, displacements by shifting, absorbed energy, places.
+    parts: [wgpu::Buffer; 5],
     passes: PowerPasses,
 }
 
@@ -48,13 +48,13 @@ struct PowerPasses {
 }
 
 /// Functions of the shader.
-const ENTRIES: [&str; 5] = ["clear_sums", "add_gains", "add_shifts", "add_absorbed", "add_places"];
+const ENTRIES: [&str; 6] = ["clear_sums", "add_gains", "add_flow", "add_shifts", "add_absorbed", "add_places"];
 
 impl PowerPasses {
     fn new(
         gpu: &Gpu,
         shader: &Shader,
-        (pressure, parts): (&[PressureSums], &[wgpu::Buffer; 4]),
+        (pressure, parts): (&[PressureSums], &[wgpu::Buffer; 5]),
         shaders: &Shaders,
         (counts, chunks): (&Counts, &SolidChunks),
         buffers: &Buffers,
@@ -65,18 +65,17 @@ impl PowerPasses {
             Maker::new(gpu, shader, state.into_iter().chain([sums, parts]).collect())
         };
         let add = |entry: &str, sums, parts| maker(sums, parts).pass(entry, counts.water);
-        let [gains, shifts, absorbed, places] = parts;
-        let total = vec![add("add_gains", &b.sums, gains)?, add("add_shifts", &b.sums, shifts)?];
+        let [gains, flow, shifts, absorbed, places] = parts;
+        let total = [("add_gains", gains), ("add_flow", flow), ("add_shifts", shifts)];
+        let total = total.map(|(entry, of)| add(entry, &b.sums, of)).into_iter().collect::<Result<_>>()?;
         let mut breakdown = Vec::new();
         for own in pressure {
             breakdown.push(maker(&own.sums, &own.gains).pass("clear_sums", counts.n)?);
-            for (number, list) in buffers.lists.iter().take(counts.parts()).enumerate() {
-                let start = number * counts.part;
-                let threads = counts.part.min(counts.n - start);
-                let first = gpu.uniform(&[start as u32, counts.part as u32, 0, 0]);
+            for (part, list) in buffers.lists(counts) {
+                let first = gpu.uniform(&part.words());
                 let sweep = Maker::new(gpu, &own.sweep, sweep_bindings(&params, buffers, [&first, list], &own.sums));
-                breakdown.push(sweep.pass("sweep_water", threads)?);
-                breakdown.push(sweep.pass("sweep_boundary", threads)?);
+                let entry = if part.is_water { "sweep_water" } else { "sweep_boundary" };
+                breakdown.push(sweep.pass(entry, part.count)?);
             }
             if let Some(text) = &shaders.gaps {
                 let gaps = Maker::new(gpu, text, gap_bindings(&params, buffers, &own.sums));
@@ -113,7 +112,7 @@ impl Powers {
             })
         };
         let pressure = sweeps.iter().map(pressure_sums).collect::<Result<Vec<_>>>()?;
-        let parts = [of_chunks()?, of_chunks()?, of_chunks()?, of_chunks()?];
+        let parts = [of_chunks()?, of_chunks()?, of_chunks()?, of_chunks()?, of_chunks()?];
         let passes = PowerPasses::new(gpu, &shader, (&pressure, &parts), shaders, (counts, chunks), buffers)?;
         Ok(Some(Self { shader, pressure, parts, passes }))
     }
@@ -157,8 +156,7 @@ impl<const D: usize> Device<D> {
         };
         let PowerPasses { total, breakdown, absorbed, .. } = &powers.passes;
         let breakdown = if measured == MeasuredPowers::Breakdown { &breakdown[..] } else { &[] };
-        let velocities = self.passes.velocities.iter();
-        let during = total.iter().chain(velocities).chain(breakdown).map(AsRef::as_ref).collect();
+        let during = total.iter().chain(breakdown).map(AsRef::as_ref).collect();
         [during, vec![absorbed.as_ref()]]
     }
 
@@ -168,13 +166,9 @@ impl<const D: usize> Device<D> {
         let (length, time) = (self.units.length, self.units.time);
         let mass = system.particle_mass() * system.water_multiplicity();
         let words = 4 * self.counts.water.div_ceil(GROUP);
-        let [gains, shifts, absorbed, _] = &powers.parts;
-        let [gains, shifts, absorbed, flow] = self.gpu.read::<f32, 4>([
-            (gains, words),
-            (shifts, words),
-            (absorbed, words),
-            (&self.buffers.pairs.flow, 4 * self.counts.flow_chunks()),
-        ])?;
+        let [gains, flow, shifts, absorbed, _] = &powers.parts;
+        let [gains, flow, shifts, absorbed] =
+            self.gpu.read::<f32, 4>([gains, flow, shifts, absorbed].map(|of| (of, words)))?;
         let gains_of = |words: &[f32]| {
             let [motion, compression]: [f64; 2] = vector_of::<2>(words).into();
             [motion, compression].map(|sum| sum * mass * length * length / time.powi(3))

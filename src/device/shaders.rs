@@ -112,11 +112,10 @@ fn vector<const D: usize>(x: impl Fn(usize) -> String, none: &str) -> String {
 }
 
 impl<const D: usize> ShaderInput<'_, D> {
-    /// The texts; `None` if a constant of the model overflows single precision, or γ is no whole
-    /// number from 1 to 7.
+    /// The texts; `None` if a constant of the model overflows single precision, or γ is above 7.
     pub(super) fn texts(&self) -> Option<ShaderTexts> {
         let properties = self.model.fluid_properties::<D>().in_units(&self.units);
-        let head = format!("{COMMON}{}{}", self.sides.functions(), self.constants(&properties));
+        let head = format!("{COMMON}{}{}", self.sides.text(), self.constants(&properties));
         let with_head = |text: &str| format!("{head}{text}");
         let sum = |k: usize| format!("sums[{k}u * params.n + k]");
         let force = vector::<D>(sum, "0.0f");
@@ -215,7 +214,6 @@ impl<const D: usize> ShaderInput<'_, D> {
             format!("const CHUNKS: u32 = {}u;", chunks[1]),
             self.gravity(properties),
             self.row_sign(),
-            self.sides.constants(),
             format!("const SMOOTHING: f32 = {};", float(properties.h)),
             format!("const SOUND: f32 = {};", float(properties.c0)),
             format!("const COURANT: f32 = {};", float(model.cfl)),
@@ -416,18 +414,22 @@ impl<const D: usize> ShaderInput<'_, D> {
         trace.results.retain(|(name, _)| (first..first + count).any(|row| *name == format!("sum{row}")));
         let moment = pair_body(&trace, "t")?;
         let everywhere = self.model.gradient == PressureGradient::Corrected;
-        let weight = properties.gravity.norm() * properties.dp;
         let close = Trace::record(&mut |recorder| {
             let p = recorder.input("p");
+            let weight = match self.gravity_changes {
+                true => recorder.input("weight"),
+                false => recorder.constant(properties.gravity.norm() * properties.dp),
+            };
             let share = if everywhere { recorder.constant(1.0) } else { gradient_correction::near_surface(p, weight) };
             let correction = gradient_correction::correction(&tensor::<D>(recorder, "moment"));
             entries(D)
                 .enumerate()
                 .for_each(|(n, (i, j))| recorder.result(&format!("correction{n}"), share * correction[i][j]));
         });
-        let mut text = statements(&close, "w", |name| match name.strip_prefix("moment") {
-            Some(n) => format!("sum{}", first + n.parse::<usize>().unwrap_or(0)),
-            None => name.into(),
+        let mut text = statements(&close, "w", |name| match (name.strip_prefix("moment"), name) {
+            (Some(n), _) => format!("sum{}", first + n.parse::<usize>().unwrap_or(0)),
+            (_, "weight") => format!("(length(gravity()) * {})", float(properties.dp)),
+            _ => name.into(),
         })?;
         for n in 0..count {
             text += &format!("rows[{}u * params.slots + k] = out_correction{n};\n", row + n);

@@ -26,7 +26,7 @@ pub(super) struct SolidChunks {
     /// planes. For the device, each set has a solid of its own.
     pub(super) sets: Vec<SolidSet>,
     /// Index of each boundary particle of a first copy that has others, particles of a copy, and copies; or index of each mirror
-    /// image, of its original, the axes along which it is reflected, and 1.
+    /// image, of its original, the way to it, and 1.
     pub(super) copied: Vec<[u32; 4]>,
     /// Positions of the boundary particles in the frames of their solids, in the units of the pair loop; then the share of the load that
     /// counts beside symmetry planes.
@@ -80,7 +80,7 @@ impl SolidChunks {
                 sets.push(SolidSet { solid: number, copy: 0, axes: part[0].0, count: part.len() });
             }
             let images = (range.end..).zip(&mirrored);
-            copied.extend(images.clone().map(|(i, (axes, own))| [i as u32, *own as u32, u32::from(*axes), 1]));
+            copied.extend(images.clone().map(|(i, (axes, own))| [i as u32, *own as u32, Sides::<D>::way(*axes), 1]));
             if moves(number) {
                 let own = device_state::local_boundary(system, number);
                 range.clone().zip(own.iter().cycle()).for_each(|(i, r)| set(i, r));

@@ -129,7 +129,7 @@ pub enum ProbeReads {
     Solids,
     /// The water too.
     Water,
-    /// The force on each boundary particle.
+    /// The water, and the force on each boundary particle.
     BoundaryForces,
 }
 

@@ -102,11 +102,21 @@ impl<const D: usize> PatchProbe<D> {
         }
         Ok(Self { solid: number, behind, places })
     }
+
+    /// The places on the part now, m.
+    fn places(&self, system: &System<D>) -> impl Iterator<Item = Vector<D>> {
+        let pose = system.solids()[self.solid].kinematics.pose;
+        self.places.iter().map(move |place| system.wrapped(&pose.point(place)))
+    }
 }
 
 impl<const D: usize> Probe<D> for PatchProbe<D> {
     fn reads(&self) -> ProbeReads {
         ProbeReads::BoundaryForces
+    }
+
+    fn water_ranges(&self, system: &System<D>) -> Option<Vec<Bounds<D>>> {
+        Some(self.places(system).map(|place| system.reading_range(&place)).collect())
     }
 
     fn columns(&self) -> Vec<String> {
@@ -128,8 +138,8 @@ impl<const D: usize> Probe<D> for PatchProbe<D> {
             }
         });
         let (mut sum, mut most) = (0.0, f64::NEG_INFINITY);
-        for place in &self.places {
-            let p = pressure(system, &system.wrapped(&solid.kinematics.pose.point(place)));
+        for place in self.places(system) {
+            let p = pressure(system, &place);
             (sum, most) = (sum + p, most.max(p));
         }
         force.iter().copied().chain([sum / self.places.len() as f64, most]).collect()

@@ -4,8 +4,6 @@ use super::{
     orders::{Leader, Order},
     outputs::Outputs,
 };
-#[cfg(feature = "gpu")]
-use crate::device::refused;
 #[cfg(not(feature = "gpu"))]
 use crate::error::ErrorCode;
 #[cfg(feature = "gpu")]
@@ -34,25 +32,16 @@ pub(super) fn check_ranks(scene: &Scene, ranks: &Ranks) -> Result<()> {
 
 /// Puts the water of `sim` on the device that `scene` names, if it names one.
 #[cfg(feature = "gpu")]
-pub(super) fn place_on_device<const D: usize>(
-    scene: &Scene,
-    sim: Simulation<D>,
-    outputs: &Outputs<D>,
-) -> Result<Simulation<D>> {
-    let Some(name) = scene.device_name() else { return Ok(sim) };
-    match outputs.boundary_force_probe() {
-        Some(probe) => Err(refused(&format!("the force on a patch, which probe {probe:?} reads,"))),
-        None => sim.on_device(name),
+pub(super) fn place_on_device<const D: usize>(scene: &Scene, sim: Simulation<D>) -> Result<Simulation<D>> {
+    match scene.device_name() {
+        Some(name) => sim.on_device(name),
+        None => Ok(sim),
     }
 }
 
 /// Refuses a device: this program has none.
 #[cfg(not(feature = "gpu"))]
-pub(super) fn place_on_device<const D: usize>(
-    scene: &Scene,
-    sim: Simulation<D>,
-    _outputs: &Outputs<D>,
-) -> Result<Simulation<D>> {
+pub(super) fn place_on_device<const D: usize>(scene: &Scene, sim: Simulation<D>) -> Result<Simulation<D>> {
     let Some(name) = scene.device_name() else { return Ok(sim) };
     Err(Error::new(ErrorKind::Usage, format!("this program cannot use the device {name:?}"))
         .with_code(ErrorCode::NoDevice)
@@ -71,15 +60,33 @@ pub(super) fn step<const D: usize>(
     if sim.device().is_some() {
         sim.step_to_pause(outputs.next_due(), until)?;
         let reads = outputs.reads_at(sim.time());
-        return match (reads.contains(&ProbeReads::Water), reads.is_empty()) {
-            (true, _) => sim.fetch_from_device(),
-            (_, false) => sim.fetch_loads(),
-            (false, true) => Ok(()),
+        return if reads.contains(&ProbeReads::BoundaryForces) {
+            sim.fetch_from_device()
+        } else if reads.contains(&ProbeReads::Water) {
+            sim.fetch_water()
+        } else if !reads.is_empty() {
+            sim.fetch_loads()
+        } else {
+            Ok(())
         };
     }
     leader.order(Order::Step, sim.time())?;
     sim.step_with_own_water(until)?;
     let ranges = outputs.water_ranges(sim.system(), sim.time());
+    fetch(sim, leader, ranges)
+}
+
+/// Fetches the data that the last readings need.
+pub(super) fn fetch_for_last_readings<const D: usize>(
+    sim: &mut Simulation<D>,
+    outputs: &Outputs<D>,
+    leader: &Leader,
+) -> Result<()> {
+    #[cfg(feature = "gpu")]
+    if outputs.reads_at(f64::INFINITY).contains(&ProbeReads::BoundaryForces) {
+        sim.fetch_from_device()?;
+    }
+    let ranges = outputs.water_ranges(sim.system(), f64::INFINITY);
     fetch(sim, leader, ranges)
 }
 
@@ -91,7 +98,7 @@ pub(super) fn fetch<const D: usize>(
     ranges: Option<Vec<Bounds<D>>>,
 ) -> Result<()> {
     #[cfg(feature = "gpu")]
-    sim.fetch_from_device()?;
+    sim.fetch_water()?;
     match ranges {
         _ if sim.system().status.has_all_water => {}
         Some(ranges) if ranges.is_empty() => {}

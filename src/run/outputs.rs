@@ -220,13 +220,6 @@ impl<const D: usize> Outputs<D> {
         self.probes.iter().filter(move |own| own.mean.is_some() || own.due.is_due(t))
     }
 
-    /// Returns the name of the first probe that reads the force on each boundary particle.
-    #[cfg(feature = "gpu")]
-    pub(crate) fn boundary_force_probe(&self) -> Option<String> {
-        let own = self.probes.iter().find(|own| own.probe.reads() == ProbeReads::BoundaryForces)?;
-        own.table.path().file_stem().map(|name| name.to_string_lossy().into_owned())
-    }
-
     /// Writes the outputs that are due now, except for the checkpoint, and returns which events occurred.
     ///
     /// # Errors

@@ -35,7 +35,7 @@ pub(crate) fn water_ranges<'a, const D: usize>(
     probes: impl Iterator<Item = &'a dyn Probe<D>>,
     system: &System<D>,
 ) -> Option<Vec<Bounds<D>>> {
-    let of_water = probes.filter(|probe| probe.reads() == ProbeReads::Water);
+    let of_water = probes.filter(|probe| probe.reads() != ProbeReads::Solids);
     let ranges: Option<Vec<_>> = of_water.map(|probe| probe.water_ranges(system)).collect();
     ranges.map(|ranges| ranges.concat())
 }

@@ -80,6 +80,10 @@ where
         let mut notes: Vec<String> = notes.map(|note| format!("{}: {}", note.what, note.remedy)).collect();
         let in_force = scene.to_toml()?;
         let values = scene.resolve()?.into_iter().map(ValueInForce::from).collect();
+        // An unusable device leaves no folder, and all files of a resumed run as they are.
+        if let RunOrigin::Fresh { .. } = origin {
+            sim = device::place_on_device(scene, sim)?;
+        }
         let (folder, mut checkpoint, resumed, warning, lock) = match origin {
             RunOrigin::Fresh { file, text, out, overrides } => {
                 let folder = run_folder::create_run_folder(file, out)?;
@@ -95,11 +99,11 @@ where
         if resumed {
             // This precedes the truncation of tables, so that an unusable state leaves all files unchanged.
             sim.restore(&std::mem::take(&mut checkpoint.state))?;
+            sim = device::place_on_device(scene, sim)?;
         }
         sim.store_rollback_states_in(&folder);
         let outputs = Outputs::new(&plan, probes, &folder, resumed.then_some(&checkpoint.outputs))?;
         let controls = Controls::new(&plan.controls, &sim)?;
-        let sim = device::place_on_device(scene, sim, &outputs)?;
         if resumed {
             run_folder::remove_end_files(&folder)?;
         }
@@ -212,8 +216,7 @@ impl<const D: usize> Runner<D> {
             self.write_removed()?;
             return Ok(RunStatus::Interrupted);
         }
-        let ranges = self.outputs.water_ranges(self.sim.system(), f64::INFINITY);
-        device::fetch(&mut self.sim, &self.leader, ranges)?;
+        device::fetch_for_last_readings(&mut self.sim, &self.outputs, &self.leader)?;
         self.outputs.finish(&self.sim, &self.leader)?;
         self.write_removed()?;
         Ok(RunStatus::Finished)

@@ -1,5 +1,7 @@
 //! Adding and removing solids during a simulation.
 
+#[cfg(feature = "gpu")]
+use super::on_device;
 use super::{Dimension, Simulation, SimulationState, external_bodies::refuse_ballast, state_bytes::read};
 use crate::{
     coupling::AcousticAddedMass,
@@ -150,6 +152,8 @@ where
         self.system.add_body(spec, start)?;
         let last = self.system.solids().len() - 1;
         self.bodies.add_body(AcousticAddedMass::for_solid(&mut self.system, last), start);
+        #[cfg(feature = "gpu")]
+        on_device::note_other_solids(self);
         Ok(())
     }
 }
@@ -221,6 +225,8 @@ impl<const D: usize> Simulation<D> {
         let skin = self.system.solids()[solid].boundary.clone();
         self.bodies.remove_body(solid, skin.len() as u32);
         self.system.remove_body(solid);
+        #[cfg(feature = "gpu")]
+        on_device::note_other_solids(self);
     }
 
     /// Completes a change of the solids: restarts the stepper, records the removed particles, and computes the rates.

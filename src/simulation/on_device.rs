@@ -24,6 +24,8 @@ pub(super) struct OnDevice<const D: usize> {
     host_is_current: bool,
     /// Whether the loads of the solids are those of the last force pass.
     loads_are_current: bool,
+    /// Whether the host has the sums of the boundary particles in the last force pass.
+    sums_are_current: bool,
     /// Whether the host changes nothing between two outputs: no solid moves, no thin part pushes water, and gravity is constant.
     runs_alone: bool,
     /// Numbers of the solids whose boundary particles the host places too.
@@ -36,12 +38,24 @@ pub(super) struct OnDevice<const D: usize> {
     next_state: u64,
     /// Whether the state of the host was changed by hand, and must go to the device.
     pub(super) host_changed: bool,
+    /// Whether solids were added or removed, so that the device needs other arrays.
+    solids_changed: bool,
 }
 
 impl<const D: usize> OnDevice<D> {
     /// The device.
     pub(super) fn adapter(&self) -> &Adapter {
         self.device.adapter()
+    }
+
+    /// How often the host has waited for the device.
+    pub(super) fn waits(&self) -> u64 {
+        self.device.waits()
+    }
+
+    /// The host's state is no longer that of the device.
+    fn leave_host_behind(&mut self) {
+        (self.host_is_current, self.loads_are_current, self.sums_are_current) = (false, false, false);
     }
 
     /// Memory of its arrays, B: all, and of these the neighbour lists.
@@ -101,34 +115,24 @@ fn own_device<const D: usize>(sim: &Simulation<D>, name: &str) -> Result<OnDevic
     let device = Device::new(name, &sim.system, &sim.stepper, sim.clock.time, reads)?;
     let all_fixed = sim.system.solids().iter().all(|solid| matches!(solid.spec.role, Role::Fixed));
     let runs_alone = !moored && !pushes && all_fixed && !device_state::gravity_changes(&sim.system);
-    let (host_is_current, loads_are_current) = (true, true);
     Ok(OnDevice {
         device,
-        host_is_current,
-        loads_are_current,
+        host_is_current: true,
+        loads_are_current: true,
+        sums_are_current: true,
         runs_alone,
         watched_solids,
         thin_boxes: thin_faces::boxes(&sim.system),
         poses_of_films: None,
         next_state: 0,
         host_changed: false,
+        solids_changed: false,
     })
 }
 
 /// Refuses a simulation with something that no device computes yet.
 fn refuse_unsupported<const D: usize>(sim: &Simulation<D>) -> Result<()> {
-    let bodies = &sim.bodies;
-    let count = sim.system.fluid().len() + sim.system.boundary().len();
-    let other_count = sim.device.as_ref().is_some_and(|own| own.device.particle_count() != count);
-    let has_budget = bodies.accounting.as_ref().is_some_and(Accounting::has_energy_budget);
-    let cases = [
-        (has_budget && device_state::is_towed(&sim.system), "energy budgets in a towed frame"),
-        (sim.custom_terms, "pair terms of your own"),
-        (bodies.has_external_bodies(), "bodies that an external program moves"),
-        (bodies.constraints().due_removals(f64::MAX).next().is_some(), "solids that are removed during the run"),
-        (other_count, "solids that are added or removed during the run"),
-    ];
-    cases.into_iter().find(|(has, _)| *has).map_or(Ok(()), |(_, what)| Err(refused(what)))
+    if sim.custom_terms { Err(refused("pair terms of your own")) } else { Ok(()) }
 }
 
 /// Makes a force pass on the device at the present state; returns acceleration (m/s²) and rate of the excess density (1/s) of each
@@ -139,17 +143,45 @@ pub(super) fn rates<const D: usize>(sim: &mut Simulation<D>) -> Result<Option<(V
     let rates = own.device.rates(system)?;
     let loads = own.device.loads(system)?;
     device_state::set_loads(system, loads);
+    own.sums_are_current = false;
     Ok(Some(rates))
 }
 
+/// Gives a restored state of the host to the device.
+pub(super) fn restore<const D: usize>(sim: &mut Simulation<D>) -> Result<()> {
+    device_state::set_boundary_sums(&mut sim.system, None);
+    load(sim)
+}
+
+/// Notes that a solid was added or removed on the host.
+pub(super) fn note_other_solids<const D: usize>(sim: &mut Simulation<D>) {
+    if let Some(own) = &mut sim.device {
+        (own.host_changed, own.solids_changed) = (true, true);
+        device_state::set_boundary_sums(&mut sim.system, None);
+    }
+}
+
 /// Gives the state of the host, which was changed, to the device.
-pub(super) fn load<const D: usize>(sim: &mut Simulation<D>) -> Result<()> {
+fn load<const D: usize>(sim: &mut Simulation<D>) -> Result<()> {
+    if sim.device.as_ref().is_some_and(|own| own.solids_changed) {
+        return replace_device(sim);
+    }
     let Simulation { device: Some(own), system, stepper, clock, .. } = sim else { return Ok(()) };
     device_state::place_solids(system);
     own.device.load(system, stepper, clock.time)?;
-    (own.host_is_current, own.loads_are_current, own.host_changed) = (true, true, false);
+    (own.host_is_current, own.loads_are_current, own.sums_are_current) = (true, true, true);
+    own.host_changed = false;
     own.poses_of_films = None;
     own.next_state = own.next_state.min(clock.steps + STATE_EVERY);
+    Ok(())
+}
+
+/// Gives the state of the host to new arrays on the device.
+fn replace_device<const D: usize>(sim: &mut Simulation<D>) -> Result<()> {
+    if let Some(number) = sim.device.as_ref().map(|own| own.adapter().number) {
+        device_state::place_solids(&mut sim.system);
+        sim.device = Some(own_device(sim, &number.to_string())?);
+    }
     Ok(())
 }
 
@@ -162,6 +194,15 @@ pub(super) fn fetch<const D: usize>(sim: &mut Simulation<D>) -> Result<()> {
     let Simulation { device: Some(own), system, stepper, .. } = sim else { return Ok(()) };
     if !std::mem::replace(&mut own.host_is_current, true) {
         own.device.fetch(system, stepper)?;
+    }
+    Ok(())
+}
+
+/// Brings the sums of the boundary particles in the last force pass back.
+pub(super) fn fetch_boundary_sums<const D: usize>(sim: &mut Simulation<D>) -> Result<()> {
+    let Simulation { device: Some(own), system, .. } = sim else { return Ok(()) };
+    if !std::mem::replace(&mut own.sums_are_current, true) {
+        device_state::set_boundary_sums(system, Some(own.device.boundary_sums()?));
     }
     Ok(())
 }
@@ -198,13 +239,12 @@ pub(super) fn steps<const D: usize>(
 /// Lets the device measure powers, if an accounting that reads the water has begun since the water went to the device.
 fn measure_powers<const D: usize>(sim: &mut Simulation<D>) -> Result<()> {
     let reads_water = sim.bodies.accounting.as_ref().is_some_and(Accounting::reads_water);
-    let without = sim.device.as_ref().filter(|own| reads_water && !own.device.measures_powers());
-    if let Some(number) = without.map(|own| own.adapter().number) {
-        refuse_unsupported(sim)?;
-        fetch(sim)?;
-        sim.device = Some(own_device(sim, &number.to_string())?);
+    if !reads_water || sim.device.as_ref().is_none_or(|own| own.device.measures_powers()) {
+        return Ok(());
     }
-    Ok(())
+    fetch(sim)?;
+    fetch_boundary_sums(sim)?;
+    replace_device(sim)
 }
 
 /// The powers that the next step of `bodies` measures.
@@ -242,9 +282,11 @@ fn advance<const D: usize>(
     let factor = sim.rollback.step_factor(sim.clock.time);
     let request = StepRequest { longest: sim.host_step_limit(), factor, pause, end };
     let done = if runs_alone && hook.is_none() && sim.bodies.accounting.is_none() {
+        // A solid that is removed ends the last step before.
+        let event = sim.clock.time + sim.bodies.constraints().next_event(sim.clock.time);
         let Some(own) = &mut sim.device else { return Ok(()) };
-        (own.host_is_current, own.loads_are_current) = (false, false);
-        own.device.run(most, &request)?
+        own.leave_host_behind();
+        own.device.run(most, &StepRequest { end: end.min(event), ..request })?
     } else {
         let request = StepRequest { pause: f64::INFINITY, ..request };
         let done = match hook {
@@ -264,7 +306,8 @@ fn body_step<const D: usize>(
     hook: &mut Hook<D>,
 ) -> Result<Option<DeviceSteps>> {
     let Simulation { device: Some(own), system, bodies, clock, stepper, .. } = sim else { return Ok(None) };
-    (own.host_is_current, own.loads_are_current) = (false, true);
+    own.leave_host_behind();
+    own.loads_are_current = true;
     let start: Vec<_> = system.solids.iter().map(|solid| solid.kinematics).collect();
     let gauges = device_state::with_originals(system, system.absorption_ranges(clock.time));
     let measured = due_powers(bodies);
@@ -344,9 +387,21 @@ fn reads_all_water<const D: usize>(system: &System<D>, bodies: &Bodies<D>) -> bo
 /// Removes the water that has left the domain on the host, and loads the remaining water onto the device.
 fn remove_escaped<const D: usize>(sim: &mut Simulation<D>) -> Result<()> {
     fetch(sim)?;
+    fetch_boundary_sums(sim)?;
     device_state::ask_for_lists(&mut sim.system);
     sim.rebuild_neighbours();
     load(sim)
+}
+
+/// Removes the solids whose time is over on the host, and gives the rest to the device.
+fn remove_due<const D: usize>(sim: &mut Simulation<D>) -> Result<()> {
+    let is_there = |solid: usize| !sim.system.solids()[solid].boundary.is_empty();
+    if sim.bodies.constraints().due_removals(sim.clock.time).any(is_there) {
+        fetch(sim)?;
+        sim.remove_due()?;
+        load(sim)?;
+    }
+    Ok(())
 }
 
 /// Counts the steps of a device, and handles the event that ended them.
@@ -355,10 +410,10 @@ fn take_steps<const D: usize>(sim: &mut Simulation<D>, done: &DeviceSteps) -> Re
     (sim.clock.time, sim.clock.dt) = (done.time, done.dt);
     device_state::count_device_passes(&mut sim.system, done.passes);
     match done.end {
-        StepsEnd::Steps | StepsEnd::Time => sim.remove_due(),
+        StepsEnd::Steps | StepsEnd::Time => remove_due(sim),
         StepsEnd::Escape => {
             remove_escaped(sim)?;
-            sim.remove_due()
+            remove_due(sim)
         }
         StepsEnd::Fault(particle) => {
             fetch(sim)?;

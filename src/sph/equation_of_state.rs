@@ -10,15 +10,32 @@ pub struct EquationOfState {
     gamma: f64,
 }
 
-/// The binomial coefficients of γ = 7 but the first and the last.
-const SEVEN: [f64; 6] = [7.0, 21.0, 35.0, 35.0, 21.0, 7.0];
+/// The binomial coefficients of γ = 7, without that of x⁰.
+const SEVEN: [f64; 7] = [1.0, 7.0, 21.0, 35.0, 35.0, 21.0, 7.0];
 
-/// `stiffness` [(1 + x)^γ − 1], which loses no digit near x = 0, with such coefficients of γ.
+/// Terms of a binomial series: for exponents from 0 to 7 the rest is below 10⁻⁸ of the sum where |x| ≤ 0.5.
+#[cfg(feature = "gpu")]
+const TERMS: u32 = 20;
+
+/// `stiffness` [(1 + x)^γ − 1], which loses no digit near x = 0, with such coefficients of γ, that of the highest power first.
 #[inline(always)]
 fn binomial<N: Num>(stiffness: f64, coefficients: &[f64], x: N) -> N {
     let of = |c: f64| x.constant(c);
-    let sum = coefficients.iter().fold(of(1.0), |sum, c| x.fma(sum, of(*c)));
+    let [highest, others @ ..] = coefficients else { return of(0.0) };
+    let sum = others.iter().fold(of(*highest), |sum, c| x.fma(sum, of(*c)));
     of(stiffness) * x * sum
+}
+
+/// The binomial coefficients of `gamma`, without that of x⁰, the highest power first.
+#[cfg(feature = "gpu")]
+fn series(gamma: f64) -> Vec<f64> {
+    let next = |c: &mut f64, k: u32| {
+        *c = *c * (gamma - f64::from(k - 1)) / f64::from(k);
+        (*c != 0.0).then_some(*c)
+    };
+    let mut coefficients: Vec<f64> = (1..=TERMS).scan(1.0, next).collect();
+    coefficients.reverse();
+    coefficients
 }
 
 /// xⁿ.
@@ -55,12 +72,10 @@ impl EquationOfState {
         ((p / self.stiffness).ln_1p() / self.gamma).exp_m1()
     }
 
-    /// The binomial coefficients of γ but the first and the last, if γ is a whole number from 1 to 7.
+    /// The coefficients of the binomial series in x, as far as they count in single precision for |x| ≤ 0.5, if γ is at most 7.
     #[cfg(feature = "gpu")]
     pub(crate) fn coefficients(&self) -> Option<Vec<f64>> {
-        let whole = (1..=7).find(|n| f64::from(*n) == self.gamma)?;
-        let coefficient = |k: u32| (1..=k).fold(1.0, |c, i| c * f64::from(whole - k + i) / f64::from(i));
-        Some((1..whole).rev().map(coefficient).collect())
+        (self.gamma <= 7.0).then(|| series(self.gamma))
     }
 
     /// P/ρ₀ at excess density `x` with the [`coefficients`](Self::coefficients) of γ, in single precision too.
@@ -75,9 +90,14 @@ impl EquationOfState {
     pub(crate) fn binomial_compression<N: Num>(&self, coefficients: &[f64], p: N) -> N {
         let of = |c: f64| p.constant(c);
         let q = (p * of(1.0 / (self.gamma * self.stiffness))).max(of(-0.12));
-        // (1 + x)^γ = 1 + γq; from above the iteration is monotone, and x = q is above.
+        // (1 + x)^(γ−1)
+        let slope = |x: N| match self.gamma.fract() == 0.0 {
+            true => power(x + of(1.0), self.gamma as u32 - 1),
+            false => binomial(1.0, &series(self.gamma - 1.0), x) + of(1.0),
+        };
+        // (1 + x)^γ = 1 + γq; the iteration is monotone from x = q, which is above for γ > 1, and below for γ < 1.
         (0..4).fold(q, |x, _| {
-            let slope = power(x + of(1.0), coefficients.len() as u32);
+            let slope = slope(x);
             x - (binomial(1.0 / self.gamma, coefficients, x) - q) / slope
         })
     }

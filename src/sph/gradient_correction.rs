@@ -31,9 +31,10 @@ pub(crate) const PASSES: u64 = 20;
 const SURFACE_DEPTH: f64 = 4.0;
 
 /// s (–) of water with pressure `p` (P/ρ₀, m²/s²), where one dp of water weighs `weight` (|g| dp, m²/s²).
-pub fn near_surface<N: Num>(p: N, weight: f64) -> N {
+pub fn near_surface<N: Num>(p: N, weight: N) -> N {
     let of = |x: f64| p.constant(x);
-    if weight > 0.0 { (of(2.0) - p / of(SURFACE_DEPTH * weight)).max(of(0.0)).min(of(1.0)) } else { of(1.0) }
+    let share = (of(2.0) - p / (of(SURFACE_DEPTH) * weight)).max(of(0.0)).min(of(1.0));
+    weight.select_below(of(1e-30), of(1.0), share)
 }
 
 /// C = B − 1 (–) from the `moment` M of a particle (`[i][j]` with j ≤ i is read).

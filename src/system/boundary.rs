@@ -6,6 +6,8 @@ use std::{borrow::Cow, ops::Range};
 
 use rayon::prelude::*;
 
+#[cfg(feature = "gpu")]
+use super::device_state::BoundaryOnDevice;
 use super::{
     System,
     boundary_extension::ExtensionParticle,
@@ -56,9 +58,9 @@ pub(crate) struct Boundary<const D: usize> {
     pub(super) thin: ThinLayers<D>,
     /// Poses of the solids when the neighbour lists were built; `None` if they must be built anew.
     pub(super) poses_at_rebuild: Option<Vec<Pose<D>>>,
-    /// Whether a device has the particles: the host places none.
+    /// What the host has of them, if a device has the particles.
     #[cfg(feature = "gpu")]
-    pub(super) on_device: bool,
+    pub(super) on_device: Option<BoundaryOnDevice<D>>,
 }
 
 /// The density to which a boundary particle relaxes.
@@ -95,7 +97,7 @@ impl<const D: usize> Boundary<D> {
             thin: ThinLayers::new(model),
             poses_at_rebuild: None,
             #[cfg(feature = "gpu")]
-            on_device: false,
+            on_device: None,
         }
     }
 
@@ -280,7 +282,7 @@ impl<const D: usize> System<D> {
     /// Puts the boundary particles of solid `i` where its kinematics say.
     pub(crate) fn place_boundary(&mut self, i: usize) {
         #[cfg(feature = "gpu")]
-        if self.boundary.on_device {
+        if self.boundary.on_device.is_some() {
             return;
         }
         self.boundary.place(i, &self.solids[i], &self.fluid.images);

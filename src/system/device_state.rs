@@ -11,8 +11,9 @@ use super::{
     thin_layers::{self, WaterAround},
 };
 use crate::{
+    interaction::PairSums,
     math::{Bounds, Matrix, Vector},
-    model::PressureGradient,
+    model::PairLoopKind,
     solid::{Load, Role, Solid},
 };
 
@@ -36,20 +37,10 @@ pub(crate) fn unsupported_on_device<const D: usize>(system: &System<D>) -> Optio
     let (model, region) = (&system.model, &system.fluid_domain);
     let [least, most] = region.limits.density;
     let cases = [
-        (
-            system.symmetry_planes().any() && system.periodic().iter().any(Option::is_some),
-            "symmetry planes beside periodic sides",
-        ),
+        (model.pair_loop == PairLoopKind::Reference, "in double precision throughout (model.sweep = \"reference\")"),
         (!region.open_boundaries.is_empty(), "open boundaries ([[inflow]], [[outflow]])"),
-        (
-            gravity_changes(system) && model.gradient == PressureGradient::NearSurface,
-            "gravity that changes with time beside gradients that are corrected near the surface",
-        ),
         (!(0.5..1.0).contains(&least) || !(1.0..=1.5).contains(&most), "density limits beyond 0.5 to 1.5"),
-        (
-            system.equation_of_state.coefficients().is_none(),
-            "an exponent model.gamma that is not a whole number from 1 to 7",
-        ),
+        (system.equation_of_state.coefficients().is_none(), "an exponent model.gamma above 7"),
     ];
     cases.into_iter().find(|(has, _)| *has).map(|(_, what)| what)
 }
@@ -79,11 +70,6 @@ pub(crate) fn image_width<const D: usize>(system: &System<D>) -> f64 {
 /// reflected.
 pub(crate) fn originals<const D: usize>(system: &System<D>) -> impl Iterator<Item = (usize, AxisSet)> {
     system.fluid.images.each_original()
-}
-
-/// Whether a towed frame accelerates water and bodies.
-pub(crate) fn is_towed<const D: usize>(system: &System<D>) -> bool {
-    system.driving.driving.towed.is_some()
 }
 
 /// The boundary particles of solid number `solid` on the computed side of symmetry planes, or of all its copies; and the axes along
@@ -177,9 +163,23 @@ pub(crate) fn solid_of_boundary<const D: usize>(system: &System<D>, i: usize) ->
     system.owner(i)
 }
 
+/// The boundary particles while a device has them: the host places none.
+#[derive(Default)]
+pub(super) struct BoundaryOnDevice<const D: usize> {
+    /// The particles near water, in ascending order, and their sums in the last force pass, if the host has read these.
+    pub(super) sums: Option<(Vec<u32>, Vec<PairSums<D>>)>,
+}
+
 /// The particles are on a device from now on: the host places no boundary particles.
 pub(crate) fn leave_to_device<const D: usize>(system: &mut System<D>) {
-    system.boundary.on_device = true;
+    system.boundary.on_device = Some(BoundaryOnDevice::default());
+}
+
+/// Takes the boundary particles near water and their `sums` in the last force pass from a device. Without them those of the host hold.
+pub(crate) fn set_boundary_sums<const D: usize>(system: &mut System<D>, sums: Option<(Vec<u32>, Vec<PairSums<D>>)>) {
+    if let Some(own) = &mut system.boundary.on_device {
+        own.sums = sums;
+    }
 }
 
 /// Acceleration (1/s²) that an arm of solid number `solid` gives a point of it: α + Ω².

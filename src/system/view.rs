@@ -19,6 +19,9 @@ use crate::{
     sph::{FluidProperties, boundary::WallExtrapolation},
 };
 
+#[cfg(feature = "gpu")]
+use crate::math::Matrix;
+
 impl<const D: usize> System<D> {
     /// The model.
     pub fn model(&self) -> &Model {
@@ -327,6 +330,14 @@ impl<const D: usize> System<D> {
         });
     }
 
+    /// Stress (m²/s²) and correction of the gradients (–) of water particle `i`, as the pair loop reads them. For comparisons.
+    #[cfg(feature = "gpu")]
+    #[doc(hidden)]
+    pub fn pair_tensors(&self, i: usize) -> [Matrix<D>; 2] {
+        let of = |tensors: &Option<Vec<Matrix<D>>>| tensors.as_ref().map_or_else(Matrix::zeros, |tensors| tensors[i]);
+        [of(&self.fluid.stress), of(&self.fluid.gradient_correction)]
+    }
+
     /// The box (m) of the water whose support holds `x` (m).
     pub(crate) fn reading_range(&self, x: &Vector<D>) -> Bounds<D> {
         Bounds { min: *x, max: *x }.grown(self.model.support_radius())
@@ -343,13 +354,22 @@ impl<const D: usize> System<D> {
         });
     }
 
+    /// The boundary particles near water, in ascending order, and their sums in the last force pass, which a device may have made.
+    fn boundary_sums(&self) -> (&[u32], &[PairSums<D>]) {
+        #[cfg(feature = "gpu")]
+        if let Some((near, sums)) = self.boundary.on_device.as_ref().and_then(|own| own.sums.as_ref()) {
+            return (near, sums);
+        }
+        (self.neighbours.boundary_near_fluid(), &self.rates.boundary)
+    }
+
     /// Calls `visit` with the index of each boundary particle of solid number `solid` beside water, and the force (N; N/m in 2-D)
     /// of the water on it at the last force pass. They sum up to the solid's load.
     pub(crate) fn visit_boundary_forces(&self, solid: usize, visit: &mut dyn FnMut(usize, Vector<D>)) {
         let (mass, own) = (self.particle_mass(), &self.solids[solid]);
         let skin = if own.copied_axes != 0 { own.boundary.clone() } else { own.boundary_of_copy(0) };
-        let mut forces = BTreeMap::new();
-        for (&i, sums) in self.neighbours.boundary_near_fluid().iter().zip(&self.rates.boundary) {
+        let (mut forces, (near, sums)) = (BTreeMap::new(), self.boundary_sums());
+        for (&i, sums) in near.iter().zip(sums) {
             let r = &self.boundary.particles.r[i as usize];
             if !skin.contains(&(i as usize)) || !self.is_in_counted_water(r) {
                 continue;

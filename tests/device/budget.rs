@@ -4,13 +4,17 @@ use pontoon::{
     coupling::EnergyBudget,
     model::{Model, PairLoopKind, Shifting, Slip, TimeScheme, Viscosity},
     probe::{EnergyBudgetProbe, Probe as _},
-    simulation::{Dimension, Setup, Simulation},
+    simulation::{Dimension, Setup, Simulation, TowedFrame},
     solid::{Dim, SolidSpec},
     sph::{particle_shifting::Shift, viscosity::Laminar},
     system::SpongeLayer,
 };
 
-use super::{Shape, dam, dam_with, device, forces::shaken, run, under};
+use super::{
+    Shape, dam, dam_with, device,
+    forces::{law, shaken},
+    run, under,
+};
 
 fn entries<const D: usize>(sim: &Simulation<D>) -> Vec<(&'static str, f64)> {
     sim.energy_budget().map(EnergyBudget::entries).unwrap().to_vec()
@@ -95,6 +99,10 @@ fn energy_budgets_agree_with_the_reference() {
     agree("Verlet", with_layer(dam(water().scheme(verlet).cfl(0.2), [0.8, 0.3])), &["damping"]);
     agree("shifting", with_layer(dam(water().shifting(shifting), [0.8, 0.3])), &["shifting", "damping"]);
     agree("shaken", shaken(floating(water())), &["driven", "walls"]);
+    // The frame's acceleration works on water and body.
+    let towed = |setup: Setup<2>| setup.towed(TowedFrame::new(0, law("2*t^2")));
+    agree("towed", towed(dam(water(), [0.8, 0.3])), &["driven", "walls"]);
+    agree("towed, floating", towed(floating(water())), &["driven", "walls"]);
 }
 
 #[test]

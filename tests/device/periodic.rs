@@ -1,11 +1,12 @@
 //! Periodic sides: images of the water, walls beyond the sides, and solids that pass through them.
 
-use std::f64::consts::TAU;
+use std::{f64::consts::TAU, path::Path};
 
 use pontoon::{
     geometry::Shape,
     math::{Vector, expression::Formula},
     model::{Model, PressureGradient, Shifting, Slip, TimeScheme},
+    scene::Scene,
     simulation::{Current, Setup, Simulation},
     solid::{FreeBody, PrescribedMotion, SolidSpec, TimeFunction},
     sph::{
@@ -17,7 +18,9 @@ use pontoon::{
 use super::{
     KernelKind, PairLoopKind, Viscosity, assert_rates_agree, beside,
     coupled::{assert_repeats_and_resumes, setup_of, solids_apart},
-    device, distances, run, under,
+    device, distances, run,
+    symmetry::assert_bodies_agree,
+    under,
 };
 
 const DP: f64 = 0.05;
@@ -237,4 +240,59 @@ fn a_current_that_is_held_agrees_with_the_reference() {
         assert!(there.abs() > 0.1 && (here - there).abs() < 2e-5, "{name}: {here} and {there} m/s²");
         assert_repeats_and_resumes(name, &setup, 200, 2e-4);
     }
+}
+
+#[test]
+fn symmetry_planes_beside_periodic_sides_agree_with_the_reference() {
+    // Half of a swirl under a lid: water crosses the side and the plane, and the corner of both.
+    let lid = SolidSpec::fixed("lid", Shape::Box { size: [9.0, 0.4].into() }).at([0.5, 1.2]);
+    let mut no_slip = model().slip(Slip::None);
+    // Without slip images limit the step of the reference, too.
+    no_slip.dt_max = 1e-3;
+    for (name, model) in [
+        ("laminar", model()),
+        ("no slip", no_slip),
+        ("Verlet", model().scheme(TimeScheme::Verlet { euler_every: 40 }).cfl(0.2)),
+        ("sps", model().viscosity(Viscosity::Sps(Sps::default()))),
+    ] {
+        let setup = Setup::new(model).solid(lid.clone()).fill_box([0.0, 0.0], [1.0, 1.0]).unwrap();
+        let setup = setup.velocity(|r| Vector::from([2.0 - (TAU * r[1]).cos(), (TAU * r[0]).sin() * (1.0 - r[1])]));
+        let setup = setup.pressure(|_| 3000.0).periodic(0, 0.0, 1.0).symmetry_plane(1, 0.0);
+        assert_rates_agree(name, &setup, &run(&setup, 0.02));
+        let [on_device, reference] = beside(&setup, 0.02, 150);
+        let [r, v] = distances(&on_device, &reference);
+        println!("{name}: positions {r:.1e} dp, velocities {v:.1e} c0, after {} s", reference.time());
+        // The bound of a dam break.
+        assert!(r < 2e-4, "{name}: positions {r} dp off");
+        assert_repeats_and_resumes(name, &setup, 100, 2e-4);
+    }
+}
+
+#[test]
+fn a_driven_body_on_a_symmetry_plane_between_periodic_sides_agrees_with_the_reference() {
+    let text = r#"
+dimension = 3
+dp = 0.05
+until = 1.0
+symmetry = { y = 0.4 }
+periodic = { x = [0.0, 1.4] }
+water = [{ fill = { box = { min = [0.0, 0.0, 0.0], max = [1.4, 0.8, 0.4] } } }]
+[[solid]]
+name = "channel"
+fixed = true
+shape = { box = { size = [3.4, 1.2, 0.2] } }
+at = { x = 0.7, y = 0.4, bottom = -0.2 }
+[[solid]]
+name = "wall"
+fixed = true
+shape = { box = { size = [3.4, 0.2, 0.7] } }
+at = { x = 0.7, y = 0.9, bottom = 0.0 }
+[[solid]]
+name = "box"
+shape = { box = { size = [0.3, 0.25, 0.2] } }
+at = { x = 0.7, y = 0.4, z = 0.45 }
+driven = { along = [0.0, 0.0, 1.0], distance = { formula = "0.05*(1 - cos(20*t))" } }
+"#;
+    let setup = Scene::parse(text, Path::new(""), &[]).unwrap().build::<3>().unwrap().setup;
+    assert_bodies_agree("box in a channel", &setup, 40);
 }

@@ -61,7 +61,7 @@ fn water_beside_a_symmetry_plane_agrees_with_the_reference() {
 }
 
 /// A body that a plane at its middle cuts, let go above its draft.
-fn floating(shape: &str, density: f64) -> Setup<2> {
+pub fn floating(shape: &str, density: f64) -> Setup<2> {
     setup_of(&format!(
         r#"
 dimension = 2
@@ -82,7 +82,7 @@ free = {{ density = {density:?} }}
     ))
 }
 
-fn assert_bodies_agree<const D: usize>(name: &str, setup: &Setup<D>, steps: usize)
+pub fn assert_bodies_agree<const D: usize>(name: &str, setup: &Setup<D>, steps: usize)
 where
     Dim<D>: Dimension<D>,
 {

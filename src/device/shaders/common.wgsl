@@ -4,10 +4,11 @@ struct Params {
     n: u32,          // particles, water first
     water: u32,      // water particles
     cells: u32,      // cells of one kind
-    most: u32,       // room of a list
+    most: u32,       // room of a list of a water particle
     size: vec4<i32>,   // cells along each axis
     origin: vec4<i32>, // where they begin, in 2^-8 of the support
     slots: u32,      // particles and room for the images across periodic sides
+    most_of_boundary: u32, // room of a list of a boundary particle
 };
 struct Place { hi: vec4<i32>, lo: vec4<u32> };
 struct Control {
@@ -38,7 +39,8 @@ struct Control {
     found: atomic<u32>,   // water particles that the host asked for
     outside: atomic<u32>, // whether water has left the domain in this step
     renewed: u32,         // whether there were new lists in this step
-    pad: array<u32, 2>,
+    longest_of_boundary: atomic<u32>,
+    pad: u32,
     gravity: vec4<f32>,   // where it changes
 };
 struct Solid {

@@ -9,8 +9,7 @@
 @group(0) @binding(7) var<storage, read> order: array<u32>;
 @group(0) @binding(8) var<storage, read> slot: array<u32>;
 @group(0) @binding(9) var<storage, read_write> rows: array<f32>;
-// First copy of a boundary particle, particles of a copy, copies; or its mirror image, itself, the axes along which the image is
-// reflected, and 1.
+// First copy of a boundary particle, particles of a copy, copies; or its mirror image, itself, the way to the image, and 1.
 @group(0) @binding(10) var<storage, read> copied: array<vec4<u32>>;
 @group(0) @binding(11) var<storage, read_write> flow: array<vec4<f32>>;
 

@@ -2,7 +2,7 @@
 // have water alone. Entry m of the k-th particle of a part is at m · part + k.
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var<storage, read_write> control: Control;
-// The first particle of the part, and how many there are in a part.
+// The first particle of the part, for how many there is room, the room of a list, and the particle after the part.
 @group(0) @binding(2) var<uniform> first: vec4<u32>;
 @group(0) @binding(3) var<storage, read> places: array<Place>;
 @group(0) @binding(4) var<storage, read_write> positions: array<vec4<i32>>;
@@ -19,7 +19,7 @@ fn list_pairs(@builtin(global_invocation_id) id: vec3<u32>) {
     if (control.rebuild == 0u) { return; }
     let local = index(id);
     let k = first.x + local;
-    if (local >= first.y || k >= params.n) { return; }
+    if (k >= first.w) { return; }
     let x = positions[k].xyz;
     let is_water = k < params.water;
     let c = cell_of(places[k].hi);
@@ -35,7 +35,7 @@ fn list_pairs(@builtin(global_invocation_id) id: vec3<u32>) {
                 for (var j = start[row]; j < end; j++) {
                     let r = vec3<f32>(x - positions[j].xyz);
                     if (dot(r, r) < LOOK2 && j != k) {
-                        if (m < params.most) { list[m * first.y + local] = j; }
+                        if (m < first.z) { list[m * first.y + local] = j; }
                         m++;
                     }
                 }
@@ -44,7 +44,7 @@ fn list_pairs(@builtin(global_invocation_id) id: vec3<u32>) {
         middle = select(middle, m, turn == KINDS - 2u);
     }
     spans[k] = vec2<u32>(middle, m);
-    atomicMax(&control.longest, m);
+    if (is_water) { atomicMax(&control.longest, m); } else { atomicMax(&control.longest_of_boundary, m); }
     if (!is_water && m == 0u) {
         // A boundary particle without water rests at the reference density, and nothing acts on it.
         positions[k].w = 0;

@@ -12,10 +12,10 @@
 fn sweep_moments(@builtin(global_invocation_id) id: vec3<u32>) {
     let local = index(id);
     let k = first.x + local;
-    if (control.halt != 0u || control.correct == 0u || local >= first.y || k >= params.water) { return; }
+    if (control.halt != 0u || control.correct == 0u || k >= first.w) { return; }
     let position = positions[k];
     let velocity = velocities[k];
-    let span = min(spans[k], vec2<u32>(params.most));
+    let span = min(spans[k], vec2<u32>(first.z));
 {{ZERO_SUMS}}    for (var m = 0u; m < span.y; m++) {
         let j = list[m * first.y + local];
         let other = positions[j];

@@ -53,6 +53,15 @@ fn add_gains(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_
     add_up(group, l, mine);
 }
 
+// The velocities of the water in a force pass.
+@compute @workgroup_size(128)
+fn add_flow(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) l: u32) {
+    let k = group_index(group) * GROUP + l;
+    var mine = vec4<f32>(0.0f);
+    if (k < params.water) { mine = vec4<f32>(velocities[k].xyz, 0.0f); }
+    add_up(group, l, mine);
+}
+
 // The ways by which the water is shifted.
 @compute @workgroup_size(128)
 fn add_shifts(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) l: u32) {

@@ -24,6 +24,11 @@ fn wall_change(wall: vec4<f32>, own: f32, relaxation: f32) -> f32 {
 {{CHANGE}}    return out_change;
 }
 
+// Whether a list is too short.
+fn lacks_room() -> bool {
+    return atomicLoad(&control.longest) > params.most || atomicLoad(&control.longest_of_boundary) > params.most_of_boundary;
+}
+
 fn acceleration(k: u32) -> vec3<f32> { return vec3<f32>({{FORCE}}) + gravity(); }
 
 fn compression_rate(k: u32) -> f32 { return sums[{{RATE}}u * params.n + k]; }
@@ -76,7 +81,7 @@ fn limit() {
     if (control.halt != 0u) { return; }
     let force2 = atomicLoad(&control.force2);
     let approach = atomicLoad(&control.approach);
-    if (atomicLoad(&control.longest) > params.most) {
+    if (lacks_room()) {
         control.halt = 4u;
         return;
     }
@@ -148,7 +153,7 @@ fn guard(k: u32, place: Place, v: vec3<f32>, x: i32) {
 @compute @workgroup_size(128)
 fn whole_step(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocation_index) l: u32) {
     let k = index(id);
-    let runs = control.halt == 0u && atomicLoad(&control.longest) <= params.most;
+    let runs = control.halt == 0u && !lacks_room();
     if (runs && k < params.n && (k < params.water || spans[k].y > 0u)) {
         let start = motion[k];
         let start_excess = bitcast<i32>(start.w);
@@ -207,7 +212,7 @@ fn verlet(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocatio
 @compute @workgroup_size(1)
 fn finish() {
     if (control.halt != 0u) { return; }
-    if (atomicLoad(&control.longest) > params.most) {
+    if (lacks_room()) {
         control.halt = 4u;
         return;
     }

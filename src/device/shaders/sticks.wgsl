@@ -17,10 +17,10 @@
 fn find_slips(@builtin(global_invocation_id) id: vec3<u32>) {
     let local = index(id);
     let k = first.x + local;
-    if (control.halt != 0u || local >= first.y || k < params.water || k >= params.n) { return; }
+    if (control.halt != 0u || k >= first.w) { return; }
     let position = positions[k];
     let velocity = velocities[k];
-{{ZERO_FIT}}    let end = min(spans[k].x, params.most);
+{{ZERO_FIT}}    let end = min(spans[k].x, first.z);
     for (var m = 0u; m < end; m++) {
         let j = list[m * first.y + local];
         let other = positions[j];

@@ -21,13 +21,13 @@ var<workgroup> most_approach: atomic<u32>;
 fn sweep_water(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocation_index) l: u32) {
     let local = index(id);
     let k = first.x + local;
-    if (control.halt == 0u && local < first.y && k < params.water) {
+    if (control.halt == 0u && k < first.w) {
         let position = positions[k];
         let velocity = velocities[k];
         let a_compression = f32(position.w) * EXCESS;
         let a_volume = 1.0f / (1.0f + a_compression);
         let a_pressure = velocity.w;
-        let span = min(spans[k], vec2<u32>(params.most));
+        let span = min(spans[k], vec2<u32>(first.z));
         let slope = density_slope();
         var approach = 0.0f;
 {{ZERO_SUMS}}        for (var m = 0u; m < span.x; m++) {
@@ -49,8 +49,8 @@ fn sweep_water(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invo
 fn sweep_boundary(@builtin(global_invocation_id) id: vec3<u32>) {
     let local = index(id);
     let k = first.x + local;
-    if (control.halt != 0u || local >= first.y || k < params.water || k >= params.n) { return; }
-    let end = min(spans[k].x, params.most);
+    if (control.halt != 0u || k >= first.w) { return; }
+    let end = min(spans[k].x, first.z);
     if (end > 0u) {
         let position = positions[k];
         let velocity = velocities[k];

@@ -129,6 +129,9 @@ fn splash(dimension: usize, gradient: &str) -> String {
         [[probe]]
         front = true
         every = 0.05
+        [[probe]]
+        patch = {{ solid = "tank", box = {{ min = {}, max = {} }} }}
+        every = 0.013
         "#,
         ["0.02", "0.03"][dimension - 2],
         of(min),
@@ -141,6 +144,8 @@ fn splash(dimension: usize, gradient: &str) -> String {
         of(flap),
         of(end),
         of(axis),
+        of(["[-0.1, 0.0]", "[-0.1, 0.0, 0.0]"]),
+        of(["[0.1, 0.4]", "[0.1, 0.3, 0.4]"]),
     )
 }
 
