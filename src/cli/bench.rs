@@ -147,14 +147,15 @@ pub fn bench(args: &BenchArgs) -> Result<String> {
 fn on_devices(args: &BenchArgs) -> Result<String> {
     let Some(name) = &args.device else {
         let mut rows = vec![
-            ["", "device", "interface", "kind", "largest buffer, GB", "binding, GB", "driver"]
+            ["", "device", "interface", "kind", "memory, GB", "largest buffer, GB", "binding, GB", "driver"]
                 .map(String::from)
                 .to_vec(),
         ];
         let gb = |bytes: u64| format!("{:.2}", bytes as f64 / 1e9);
         rows.extend(bench::adapters().into_iter().map(|of| {
-            let sizes = [gb(of.buffer_bytes), gb(of.binding_bytes)];
-            vec![of.number.to_string(), of.name, of.backend, of.kind, sizes[0].clone(), sizes[1].clone(), of.driver]
+            let memory = of.memory_bytes.map_or("–".into(), gb);
+            let (buffer, binding) = (gb(of.buffer_bytes), gb(of.binding_bytes));
+            vec![of.number.to_string(), of.name, of.backend, of.kind, memory, buffer, binding, of.driver]
         }));
         if rows.len() == 1 {
             return Ok("no device was found: docs/how-to/use-a-graphics-card.md says what to install\n".into());

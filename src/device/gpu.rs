@@ -27,6 +27,8 @@ pub struct Adapter {
     pub kind: String,
     /// Driver and its version.
     pub driver: String,
+    /// Memory of the card, B; `None` where the interface does not tell it.
+    pub memory_bytes: Option<u64>,
     /// Largest part of a buffer that a shader reads, B.
     pub binding_bytes: u64,
     /// Largest buffer, B.
@@ -62,6 +64,7 @@ fn all_adapters(instance: &wgpu::Instance) -> Vec<(wgpu::Adapter, Adapter)> {
             backend: format!("{:?}", info.backend),
             kind: format!("{:?}", info.device_type),
             driver: format!("{} {}", info.driver, info.driver_info).trim().into(),
+            memory_bytes: memory(&adapter),
             binding_bytes: limits.max_storage_buffer_binding_size,
             buffer_bytes: limits.max_buffer_size,
             is_software: info.device_type == wgpu::DeviceType::Cpu,
@@ -69,6 +72,26 @@ fn all_adapters(instance: &wgpu::Instance) -> Vec<(wgpu::Adapter, Adapter)> {
         (adapter, summary)
     };
     found.into_iter().enumerate().map(describe).collect()
+}
+
+/// The largest heap (B) of the card's own memory, which Vulkan tells.
+#[cfg(any(target_os = "linux", target_os = "windows"))]
+#[allow(unsafe_code)]
+fn memory(adapter: &wgpu::Adapter) -> Option<u64> {
+    /// `VK_MEMORY_HEAP_DEVICE_LOCAL_BIT`.
+    const OWN: u32 = 1;
+    // SAFETY: the handle is only read, and belongs to the adapter, which lives longer.
+    let vulkan = unsafe { adapter.as_hal::<wgpu::hal::api::Vulkan>() }?;
+    let (instance, device) = (vulkan.shared_instance().raw_instance(), vulkan.raw_physical_device());
+    // SAFETY: the device is one of this instance.
+    let memory = unsafe { instance.get_physical_device_memory_properties(device) };
+    let heaps = memory.memory_heaps.iter().take(memory.memory_heap_count as usize);
+    heaps.filter(|heap| heap.flags.as_raw() & OWN != 0).map(|heap| heap.size).max()
+}
+
+#[cfg(not(any(target_os = "linux", target_os = "windows")))]
+fn memory(_: &wgpu::Adapter) -> Option<u64> {
+    None
 }
 
 /// The adapters of this machine.

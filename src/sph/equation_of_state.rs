@@ -122,7 +122,8 @@ impl EquationOfState {
             // P ≈ c₀² x ρ₀ (1 + (γ−1) x/2): the series to third order, free of cancellation.
             return self.stiffness * g * x * x * (0.5 + x * ((g - 1.0) / 6.0 - 2.0 / 3.0));
         }
-        self.stiffness * (((1.0 + x).powf(g - 1.0) - 1.0) / (g - 1.0) + s - 1.0)
+        let work = if g == 1.0 { x.ln_1p() } else { ((1.0 + x).powf(g - 1.0) - 1.0) / (g - 1.0) };
+        self.stiffness * (work + s - 1.0)
     }
 }
 

@@ -141,6 +141,15 @@ fn a_run_on_a_device_writes_the_files_of_a_run_on_the_processor() {
     }
 }
 
+/// A software driver has the memory of the machine.
+#[cfg(target_os = "linux")]
+#[test]
+fn the_list_of_devices_has_their_memory() {
+    for adapter in pontoon::device::adapters() {
+        assert!(adapter.memory_bytes.is_some_and(|memory| memory > 100_000_000), "{adapter:?}");
+    }
+}
+
 #[test]
 fn a_device_that_cannot_compute_a_run_is_an_error_with_the_remedy() {
     let home = TestFolder::new("refused");
