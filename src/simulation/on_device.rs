@@ -12,7 +12,7 @@ use crate::{
     model::TimeScheme,
     solid::{Role, Solid},
     system::{
-        System, device_films, device_state, has_water_beside,
+        System, device_films, device_state, has_water_beside, squeezed_water,
         thin_faces::{self, has_thin_faces},
     },
 };
@@ -107,7 +107,7 @@ fn own_device<const D: usize>(sim: &Simulation<D>, name: &str) -> Result<OnDevic
     watched_solids.dedup();
     let absorbs = |solid: &Solid<D>| matches!(&solid.spec.role, Role::Driven(motion) if motion.absorber().is_some());
     let moored = !sim.bodies.moorings.is_empty();
-    let pushes = has_thin_faces(&sim.system);
+    let pushes = has_thin_faces(&sim.system) || device_films::may_be(&sim.system);
     let near = moored || pushes || !sim.bodies.added_masses().is_empty() || sim.system.solids().iter().any(absorbs);
     let offset_rows = if device_state::has_hollows(&sim.system) { D } else { 0 };
     let powers = sim.bodies.accounting.as_ref().is_some_and(Accounting::reads_water);
@@ -331,6 +331,7 @@ fn body_step<const D: usize>(
         own.update_films(system)?;
         let mut ranges = bodies.water_ranges(system, over);
         ranges.extend(thin_faces::ranges_beside(system, &own.thin_boxes));
+        ranges.extend(squeezed_water::ranges(system));
         let ranges = device_state::with_originals(system, ranges);
         if let Some(second) = own.device.second_half(system, request.end, &ranges, measured)? {
             break (over, second);
@@ -349,7 +350,7 @@ fn body_step<const D: usize>(
         pressure.for_each(|(_, loads)| device_state::complete_loads(system, &films, loads));
         accounting.add_device_pass(system, over.dt, pass);
     }
-    let pushes = has_thin_faces(system);
+    let pushes = has_thin_faces(system) || squeezed_water::flows(system);
     if bodies.read_water() || pushes {
         device_state::take_near(system, near);
         if pushes {

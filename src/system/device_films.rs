@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use super::{
     System,
     device_state::{has_free_solids, place_solid},
-    film,
+    film, squeezed_water,
 };
 use crate::{
     math::{Pose, Vector},
@@ -24,10 +24,15 @@ pub(crate) struct BoundaryWater<const D: usize> {
     pub(crate) away: Vector<D>,
 }
 
+/// Whether there may be films.
+pub(crate) fn may_be<const D: usize>(system: &System<D>) -> bool {
+    has_free_solids(system) && system.boundary.films.are_possible()
+}
+
 /// Places the boundary particles of solids with films on the host. Finds the films anew if a solid has moved by the margin of the
 /// neighbour lists since the poses `then`, or without these; then returns the boundary particles that films read, in ascending order.
 pub(crate) fn update<const D: usize>(system: &mut System<D>, then: &mut Option<Vec<Pose<D>>>) -> Option<Vec<u32>> {
-    if !has_free_solids(system) || !system.boundary.films.are_possible() {
+    if !may_be(system) {
         return None;
     }
     let holds = |then: &Vec<Pose<D>>| system.solids_displacement(then) < system.neighbours.margin();
@@ -49,9 +54,21 @@ fn place<const D: usize>(system: &mut System<D>, solids: BTreeSet<usize>) {
 
 /// The loads of the films by the `water` at boundary particles, in ascending order of their indices; an empty list without a film.
 pub(super) fn loads<const D: usize>(system: &mut System<D>, water: &[(u32, BoundaryWater<D>)]) -> Vec<Load<D>> {
-    let at = |i: u32| water.binary_search_by_key(&i, |(particle, _)| *particle).ok().map(|place| &water[place].1);
+    let at = |i: u32| water_at(water, i);
     film::update_water(system, |system, _, i| {
         at(i).map(|water| (system.equation_of_state.pressure(water.compression), water.away))
     });
     film::loads_by(system, |i| at(i).map(|water| water.acceleration))
+}
+
+/// Finds the speeds at which caught water leaves the films.
+pub(super) fn update_outflow<const D: usize>(system: &mut System<D>, water: &[(u32, BoundaryWater<D>)]) {
+    if !system.boundary.films.is_empty() {
+        squeezed_water::update(system, |_, i| water_at(water, i).map(|water| water.acceleration));
+    }
+}
+
+/// What the `water` does at boundary particle `i`, if it is among those read.
+fn water_at<const D: usize>(water: &[(u32, BoundaryWater<D>)], i: u32) -> Option<&BoundaryWater<D>> {
+    water.binary_search_by_key(&i, |(particle, _)| *particle).ok().map(|place| &water[place].1)
 }

@@ -230,6 +230,7 @@ pub(crate) fn set_loads<const D: usize>(system: &mut System<D>, of: WaterLoads<D
     let films = device_films::loads(system, &at_films);
     complete_loads(system, &films, &mut loads);
     system.solids.iter_mut().zip(loads).for_each(|(solid, load)| solid.load = load);
+    device_films::update_outflow(system, &at_films);
     if let Some(wetness) = &mut system.boundary.wetness {
         *wetness = weights;
     }

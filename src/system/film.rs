@@ -95,9 +95,9 @@ impl<const D: usize> Rim<D> {
 }
 
 /// A boundary particle of a free solid whose face looks at the other solid across a narrow gap.
-struct FilmParticle<const D: usize> {
+pub(super) struct FilmParticle<const D: usize> {
     /// Its index.
-    boundary: u32,
+    pub(super) boundary: u32,
     rim: Rim<D>,
     /// From the particle to its face, m.
     to_face: Vector<D>,
@@ -108,22 +108,43 @@ struct FilmParticle<const D: usize> {
 }
 
 impl<const D: usize> FilmParticle<D> {
-    fn at_rim(&self) -> bool {
+    /// The unit vector away from the film; `None` if it does not end here on one side.
+    pub(super) fn outwards(&self) -> Option<Vector<D>> {
+        if let Rim::Towards(outwards, _) = self.rim { Some(outwards) } else { None }
+    }
+
+    pub(super) fn at_rim(&self) -> bool {
         !matches!(self.rim, Rim::Elsewhere)
     }
 }
 
 /// One film: a connected part of the gap between two solids.
 pub(super) struct Film<const D: usize> {
-    solid: usize,
-    other: usize,
-    particles: Vec<FilmParticle<D>>,
+    pub(super) solid: usize,
+    pub(super) other: usize,
+    pub(super) particles: Vec<FilmParticle<D>>,
+}
+
+/// The gap at a particle of a film.
+pub(super) struct Gap<const D: usize> {
+    /// The place of the particle on the solid and on the other one, m.
+    pub(super) at: [Vector<D>; 2],
+    /// Unit normal of the face of the other solid.
+    pub(super) normal: Vector<D>,
+    /// Distance of the particle from that face, m.
+    pub(super) height: f64,
+    /// The gap, m.
+    width: f64,
+    /// How narrow the gap is: 0 from one dp on, 1 up to half a dp.
+    pub(super) narrow: f64,
 }
 
 /// What a film does at one of its particles.
-struct FilmForce<const D: usize> {
+pub(super) struct FilmForce<const D: usize> {
     /// The place on the solid and on the other one, m.
     at: [Vector<D>; 2],
+    /// What water and film press more than still water at the rim would, P/ρ₀ in m²/s², times [`Gap::narrow`].
+    pub(super) excess: f64,
     /// The force on the solid, N (N/m in 2-D).
     force: Vector<D>,
     /// How far the gap is closed to water, 0 to 1.
@@ -132,10 +153,12 @@ struct FilmForce<const D: usize> {
 
 /// The films between all solids.
 pub(super) struct Films<const D: usize> {
-    films: Vec<Film<D>>,
+    pub(super) films: Vec<Film<D>>,
     /// Pressure of the water at each particle of each film at the last force pass, extrapolated, times [`Rim::share`], P/ρ₀ in m²/s²; 0
     /// without water.
-    pressures: Vec<Vec<f64>>,
+    pub(super) pressures: Vec<Vec<f64>>,
+    /// Speed (m/s) at which caught water leaves each film since the last force pass; empty if none does.
+    pub(super) outflow: Vec<f64>,
     /// Whether walls have the pressure of the water before them.
     possible: bool,
 }
@@ -145,7 +168,8 @@ pub(super) type NearWater<const D: usize> = (f64, Vector<D>);
 
 impl<const D: usize> Films<D> {
     pub(super) fn new(model: &Model) -> Self {
-        Self { films: Vec::new(), pressures: Vec::new(), possible: model.walls == Walls::RelaxedAdami }
+        let possible = model.walls == Walls::RelaxedAdami;
+        Self { films: Vec::new(), pressures: Vec::new(), outflow: Vec::new(), possible }
     }
 
     /// Whether there is none.
@@ -179,7 +203,7 @@ impl<const D: usize> Films<D> {
 
     /// Takes these films, without the pressures of a force pass.
     pub(super) fn set(&mut self, films: Vec<Film<D>>) {
-        (self.films, self.pressures) = (films, Vec::new());
+        (self.films, self.pressures, self.outflow) = (films, Vec::new(), Vec::new());
     }
 }
 
@@ -367,8 +391,13 @@ fn has_room<const D: usize>(system: &System<D>, x: &Vector<D>, poses: &[Pose<D>]
 /// The loads of the films on the computed part of each solid, about its centre; an empty list without a film. `sums` are those of the
 /// boundary particles near water.
 pub(crate) fn loads<const D: usize>(system: &System<D>, sums: &[PairSums<D>]) -> Vec<Load<D>> {
+    loads_by(system, |i| acceleration_of(system, sums, i))
+}
+
+/// The acceleration (m/s²) of boundary particle `i` by the `sums` of those near water.
+pub(super) fn acceleration_of<const D: usize>(system: &System<D>, sums: &[PairSums<D>], i: u32) -> Option<Vector<D>> {
     let near = system.neighbours.boundary_near_fluid();
-    loads_by(system, |i| near.binary_search(&i).ok().map(|place| sums[place].acceleration))
+    near.binary_search(&i).ok().map(|place| sums[place].acceleration)
 }
 
 /// The same by the `acceleration` (m/s²) of each boundary particle with water near it.
@@ -387,7 +416,7 @@ pub(super) fn loads_by<const D: usize>(
             loads[film.other] += Load::from_force_at(&(at[1] - other.kinematics.centre), -force);
         };
         let (r, mass) = (&system.boundary.particles.r, system.particle_mass());
-        for (particle, FilmForce { at, force, share }) in
+        for (particle, FilmForce { at, force, share, .. }) in
             film.particles.iter().zip(forces(system, film, pressures, &acceleration))
         {
             act(at, force);
@@ -404,7 +433,7 @@ pub(super) fn loads_by<const D: usize>(
 }
 
 /// What `film` does at each of its particles; an empty list if its rim is dry.
-fn forces<const D: usize>(
+pub(super) fn forces<const D: usize>(
     system: &System<D>,
     film: &Film<D>,
     pressures: &[f64],
@@ -425,6 +454,8 @@ fn forces<const D: usize>(
     if wet().next().is_none() {
         return Vec::new();
     }
+    // Caught water raises the pressure at the rim near it.
+    let least = wet().map(|(x, p)| p - gravity.dot(x)).fold(f64::INFINITY, f64::min);
     let inside = |x: &Vector<D>| {
         let weighted = counted.iter().map(|(y, p)| {
             let weight = (x - y).norm().powi(1 - D as i32);
@@ -437,16 +468,10 @@ fn forces<const D: usize>(
     // it towards the film, with this share of the pressure.
     let beside = system.boundary.coverage.full_weight(0.5 * dp);
     let spread = dp * film.particles.len() as f64 / rim.len() as f64;
-    let pose = system.home_pose(film.other);
     let force = |(particle, own): (&FilmParticle<D>, &f64)| {
         let i = particle.boundary as usize;
         let x = particles.r[i];
-        let at_home = system.fluid.images.wrapped(&x);
-        let local = pose.local(&at_home);
-        let on_other = at_home + other.kinematics.pose.position - pose.position;
-        let gap = other.spec.shape.signed_distance(&local) - depths[i];
-        let normal = pose.rotation * other.spec.shape.outward_normal(&local, 0.05 * dp);
-        let thin = ((FADING[1] - gap / dp) / (FADING[1] - FADING[0])).clamp(0.0, 1.0);
+        let Gap { at, normal, width, narrow, .. } = gap(system, film, particle);
         let still = if particle.at_rim() { *own } else { inside(&x) };
         // The water's particles do a part of it already.
         let size = dp.powi(D as i32 - 1);
@@ -454,20 +479,38 @@ fn forces<const D: usize>(
         let full = rho0 * still * size * particle.facing * system.boundary.coverage.row_share(depths[i], dp);
         let end = if let Rim::Towards(_, end) = particle.rim { Some(end) } else { None };
         let beside = if end == Some(End::Side) { beside } else { 0.0 };
-        let lack = 1.0 - (pushed / full.max(f64::MIN_POSITIVE) + beside).clamp(0.0, 1.0);
+        let borne = pushed / full.max(f64::MIN_POSITIVE) + beside;
+        let lack = 1.0 - borne.clamp(0.0, 1.0);
         let past_rim = if end == Some(End::Overhang) { PAST_RIM * lack } else { 0.0 };
-        let share = thin * lack * particle.facing * system.computed_share(solid, &x);
-        let on_solid = system.place_on_solid(film.solid, i);
-        let inflow = (velocity_at(solid, &on_solid) - velocity_at(other, &on_other)).dot(&normal).max(0.0) * spread
-            / gap.max(FADING[0] * dp);
+        let share = narrow * lack * particle.facing * system.computed_share(solid, &x);
+        let opening = (velocity_at(solid, &at[0]) - velocity_at(other, &at[1])).dot(&normal).max(0.0);
+        let inflow = opening * spread / width.max(FADING[0] * dp);
         let pressure = (still - 0.5 * inflow * inflow).max(0.0);
         FilmForce {
-            at: [on_solid, on_other],
+            at,
+            excess: narrow * (still * borne + pressure * lack - (least + gravity.dot(&x)).max(0.0)),
             force: normal * (rho0 * pressure * share * (1.0 + past_rim) * size),
             share,
         }
     };
     film.particles.par_iter().zip(pressures).with_min_len(PARTICLES_PER_TASK).map(force).collect()
+}
+
+/// The gap at a `particle` of `film`.
+pub(super) fn gap<const D: usize>(system: &System<D>, film: &Film<D>, particle: &FilmParticle<D>) -> Gap<D> {
+    let (dp, i, other) = (system.model.dp, particle.boundary as usize, &system.solids[film.other]);
+    let pose = system.home_pose(film.other);
+    let x = system.fluid.images.wrapped(&system.boundary.particles.r[i]);
+    let local = pose.local(&x);
+    let height = other.spec.shape.signed_distance(&local);
+    let width = height - system.boundary.depths.as_ref().map_or(0.0, |depths| depths[i]);
+    Gap {
+        at: [system.place_on_solid(film.solid, i), x + other.kinematics.pose.position - pose.position],
+        normal: pose.rotation * other.spec.shape.outward_normal(&local, 0.05 * dp),
+        height,
+        width,
+        narrow: ((FADING[1] - width / dp) / (FADING[1] - FADING[0])).clamp(0.0, 1.0),
+    }
 }
 
 /// Velocity (m/s) of the point `x` (m) of `solid`.

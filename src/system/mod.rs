@@ -23,6 +23,7 @@ pub(crate) mod periodic;
 mod setup;
 mod slip_rates;
 mod sponge_layer;
+pub(crate) mod squeezed_water;
 mod step_check;
 mod symmetric_setup;
 pub(crate) mod symmetry;
@@ -463,6 +464,7 @@ impl<const D: usize> System<D> {
         }
         let loads = self.loads(&self.rates.boundary);
         self.solids.iter_mut().zip(loads).for_each(|(solid, load)| solid.load = load);
+        squeezed_water::update_by_pass(self);
         self.status.passes += 1;
     }
 

@@ -14,7 +14,7 @@
 
 use rayon::prelude::*;
 
-use super::{MomentumTransfer, System, impulses::change_velocities, own_water};
+use super::{MomentumTransfer, System, impulses::change_velocities, own_water, squeezed_water};
 #[cfg(feature = "gpu")]
 use crate::math::Bounds;
 use crate::{
@@ -47,13 +47,13 @@ const BOX: f64 = 16.0;
 const DEEPEST: f64 = 0.5 * THIN;
 
 /// A push of a solid on a water particle.
-struct Push<const D: usize> {
-    particle: usize,
-    solid: usize,
+pub(super) struct Push<const D: usize> {
+    pub(super) particle: usize,
+    pub(super) solid: usize,
     /// Change of the particle's velocity, m/s.
-    change: Vector<D>,
+    pub(super) change: Vector<D>,
     /// Place of the particle from the centre of the solid, m.
-    arm: Vector<D>,
+    pub(super) arm: Vector<D>,
 }
 
 impl<const D: usize> Push<D> {
@@ -198,19 +198,24 @@ pub(crate) fn find_known_water<const D: usize>(system: &mut System<D>) {
     system.boundary.thin.faces.beside = Some(water_within(system, REACH * system.model.dp, water));
 }
 
-/// Pushes the water beside thin parts over a step `dt` (s), and adds the loads on the solids; they act on bodies by the factor `weight`
-/// (–). Returns what the water received and the impulse (N s, N m s) on each solid, or `None` without thin parts.
+/// Pushes the water beside thin parts and in [narrow gaps](squeezed_water) over a step `dt` (s), and adds the loads on the solids; they
+/// act on bodies by the factor `weight` (–). Returns what the water received and the impulse (N s, N m s) on each solid, or `None` if
+/// there is no such water.
 pub(crate) fn repel<const D: usize>(
     system: &mut System<D>,
     dt: f64,
     weight: f64,
 ) -> Option<(MomentumTransfer<D>, Vec<Load<D>>)> {
-    if !has_thin_faces(system) {
+    let flows = squeezed_water::flows(system);
+    if !has_thin_faces(system) && !flows {
         return None;
     }
-    let beside = system.boundary.thin.faces.beside.take().unwrap_or_else(|| water_beside(system));
-    let mut own = pushes(system, &beside, dt);
-    system.boundary.thin.faces.beside = Some(beside);
+    let mut own = if flows { squeezed_water::pushes(system) } else { Vec::new() };
+    if has_thin_faces(system) {
+        let beside = system.boundary.thin.faces.beside.take().unwrap_or_else(|| water_beside(system));
+        own.extend(pushes(system, &beside, dt));
+        system.boundary.thin.faces.beside = Some(beside);
+    }
     let (mass, numbers) = (system.particle_mass(), own.iter().flat_map(Push::numbers).collect());
     let numbers = own_water::gather_numbers(&system.neighbours, numbers);
     let mut all: Vec<Push<D>> = numbers.chunks_exact(Push::<D>::NUMBERS).map(Push::of).collect();

@@ -249,3 +249,36 @@ driven = {{ along = [1.0, 0.0], distance = {{ formula = "-0.05*t" }} }}
     assert!(level(sim.time()) > 0.08 - 0.5 * dp, "it has left the bed at a level of {} m", level(sim.time()));
     Ok(())
 }
+
+/// A sinking box catches a row of water, which leaves the gap. Bounds: a twentieth of dp; 2 % of the pressure on the bed times the
+/// width, to which a film carries it.
+#[test]
+fn a_sunk_body_comes_to_lie_on_the_bed_with_its_weight_less_its_buoyancy() -> Result<()> {
+    for density in [1500.0, 3000.0] {
+        let text = format!(
+            r#"dimension = 2
+dp = 0.02
+until = 3.0
+[[water]]
+fill = {{ box = {{ min = [0.0, 0.0], max = [0.8, 0.5] }} }}
+[[solid]]
+name = "tank"
+fixed = true
+shape = {{ tank = {{ size = [0.8, 0.8] }} }}
+[[solid]]
+name = "body"
+shape = {{ box = {{ size = [0.2, 0.2] }} }}
+at = {{ x = 0.4, bottom = 0.1 }}
+free = {{ density = {density} }}
+"#
+        );
+        let mut sim = scene_simulation::<2>(&text)?;
+        let pressing = |sim: &Simulation<2>| [sim.contacts().iter().map(|contact| contact.normal_force).sum()];
+        let [force] = time_mean(&mut sim, 2.0, 3.0, pressing)?;
+        let (height, exact) = (sim.system().solids()[1].kinematics.centre[1] - 0.1, (density - 1000.0) * 0.04 * G);
+        println!("{density} kg/m³: {force:.1} N/m of {exact:.1} N/m, {:.2} mm above the bed", 1e3 * height);
+        assert!(height.abs() < 0.05 * 0.02, "{density} kg/m³: {height} m above the bed");
+        assert!((force - exact).abs() < 0.02 * 1000.0 * G * 0.5 * 0.2, "{density} kg/m³: {force} N/m of {exact} N/m");
+    }
+    Ok(())
+}
