@@ -131,7 +131,7 @@ fn pushes_of<const D: usize>(system: &System<D>, film: &Film<D>, speed: f64) -> 
 fn own_water_near<const D: usize>(system: &System<D>) -> Vec<u32> {
     let count = system.own_count();
     #[cfg(feature = "gpu")]
-    if system.boundary.on_device {
+    if system.boundary.on_device.is_some() {
         let known = system.neighbours.known_water().unwrap_or_default();
         return known.iter().copied().filter(|i| (*i as usize) < count).collect();
     }
