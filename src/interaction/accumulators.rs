@@ -43,24 +43,29 @@ impl RequiredSums {
         self.shift || self.suppression || self.stress || self.renormalization
     }
 
+    #[inline(always)]
     pub(super) const fn held_at(self, dimension: usize) -> usize {
         dimension + 1 + if self.shift { dimension + 1 } else { 0 }
     }
 
+    #[inline(always)]
     pub(super) const fn strain_at(self, dimension: usize) -> usize {
         self.held_at(dimension) + if self.suppression { 1 } else { 0 }
     }
 
+    #[inline(always)]
     const fn moment_at(self, dimension: usize) -> usize {
         self.strain_at(dimension) + if self.stress { entries(dimension) } else { 0 }
     }
 
     /// Number of rows of sums: acceleration and density rate, then those that the terms need.
+    #[inline(always)]
     pub(super) const fn sum_rows(self, dimension: usize) -> usize {
         self.moment_at(dimension) + if self.renormalization { entries(dimension) } else { 0 }
     }
 
     /// Number of rows of the sums `requested`.
+    #[inline(always)]
     pub(super) const fn requested_rows(self, dimension: usize, requested: RequestedSums) -> usize {
         match requested {
             RequestedSums::Rates => dimension + 1,

@@ -36,6 +36,7 @@ pub(super) trait BoundarySums<const D: usize>: Send + Sync {
 pub(super) struct KernelSums<K>(pub(super) K);
 
 /// Number of rows of sums, with the velocity or without.
+#[inline(always)]
 pub(super) const fn row_count(dimension: usize, flow: bool) -> usize {
     dimension + 2 + if flow { dimension } else { 0 }
 }
@@ -117,7 +118,7 @@ struct BoundarySlabTask<'a, K, const FLOW: bool, const D: usize> {
     sums: &'a mut [LaneRow],
 }
 
-impl<K: Kernel, const FLOW: bool, const D: usize> SimdTask for BoundarySlabTask<'_, K, FLOW, D> {
+impl<'a, K: Kernel, const FLOW: bool, const D: usize> SimdTask for BoundarySlabTask<'a, K, FLOW, D> {
     type Output = ();
 
     #[inline(always)]
@@ -128,43 +129,47 @@ impl<K: Kernel, const FLOW: bool, const D: usize> SimdTask for BoundarySlabTask<
         sums.fill(LaneRow::default());
         for c in first..end {
             for l in 0..LANES {
-                let is_water = c < middle;
+                let (is_water, slot) = (c < middle, (c - first) * LANES + l);
+                let others = |part: &ListPart<'a>| if is_water { part.boundary } else { part.water };
+                // Most of the water is far from boundary particles.
+                if slab.list(slot).all(|part| others(&part).is_empty()) {
+                    continue;
+                }
                 let PackedCluster { x, v, s } = &packed.clusters[c];
                 let all = |x: f32| f32x8::splat(simd, x);
                 let (p, volume) = (all(s[2][l]), all(s[3][l]));
                 let moves: [f32x8<S>; D] = std::array::from_fn(|k| all(v[k][l]));
                 let mine: [i32x8<S>; D] = std::array::from_fn(|k| i32x8::splat(simd, x[k][l]));
                 let mut sum = WallExtrapolation::filled_with(zero);
-                let others = |ListPart { base, water, boundary }| {
-                    let entries: &[u16] = if is_water { boundary } else { water };
-                    entries.iter().map(move |&entry| base + usize::from(entry))
-                };
-                for place in slab.list((c - first) * LANES + l).flat_map(others) {
-                    let PackedCluster { x, v, s } = &packed.clusters[first + place];
-                    let mut r = [zero; D];
-                    for k in 0..D {
-                        r[k] = f32x8::float_from(mine[k] - simd::load_integers(simd, &x[k]));
-                    }
-                    let mut r2 = r[0] * r[0];
-                    for d in &r[1..] {
-                        r2 = d.mul_add(*d, r2);
-                    }
-                    let w = kernel.w(r2);
-                    if is_water {
-                        // One water particle beside eight boundary particles, which receive its contribution.
-                        let theirs = &mut sums[place * rows..][..rows];
-                        let mut fit = WallExtrapolation::filled_with(zero);
-                        for_each_row(&mut fit, FLOW, |row, x| *x = simd::load(simd, &theirs[row].0));
-                        fit.add(w, p, volume, r.map(|x| -x));
-                        if FLOW {
-                            fit.add_velocity(w, volume, moves);
+                for part in slab.list(slot) {
+                    for &entry in others(&part) {
+                        let place = part.base + usize::from(entry);
+                        let PackedCluster { x, v, s } = &packed.clusters[first + place];
+                        let mut r = [zero; D];
+                        for k in 0..D {
+                            r[k] = f32x8::float_from(mine[k] - simd::load_integers(simd, &x[k]));
                         }
-                        for_each_row(&mut fit, FLOW, |row, x| x.store_array(&mut theirs[row].0));
-                    } else {
-                        let volume = simd::load(simd, &s[3]);
-                        sum.add(w, simd::load(simd, &s[2]), volume, r);
-                        if FLOW {
-                            sum.add_velocity(w, volume, std::array::from_fn(|k| simd::load(simd, &v[k])));
+                        let mut r2 = r[0] * r[0];
+                        for d in &r[1..] {
+                            r2 = d.mul_add(*d, r2);
+                        }
+                        let w = kernel.w(r2);
+                        if is_water {
+                            // One water particle beside eight boundary particles, which receive its contribution.
+                            let theirs = &mut sums[place * rows..][..rows];
+                            let mut fit = WallExtrapolation::filled_with(zero);
+                            for_each_row(&mut fit, FLOW, |row, x| *x = simd::load(simd, &theirs[row].0));
+                            fit.add(w, p, volume, r.map(|x| -x));
+                            if FLOW {
+                                fit.add_velocity(w, volume, moves);
+                            }
+                            for_each_row(&mut fit, FLOW, |row, x| x.store_array(&mut theirs[row].0));
+                        } else {
+                            let volume = simd::load(simd, &s[3]);
+                            sum.add(w, simd::load(simd, &s[2]), volume, r);
+                            if FLOW {
+                                sum.add_velocity(w, volume, std::array::from_fn(|k| simd::load(simd, &v[k])));
+                            }
                         }
                     }
                 }

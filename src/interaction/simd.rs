@@ -128,8 +128,11 @@ impl<const D: usize> SimdPairLoop<D> {
             // No copy of the last sums beside the next ones.
             self.sums = Vec::with_capacity(count);
         }
-        self.sums.resize(count, LaneRow::default());
-        self.sums[offset..].fill(LaneRow::default());
+        // Passes differ in their rows; what a pass does not need stays, so that the next one need not fill it.
+        if self.sums.len() < count {
+            self.sums.resize(count, LaneRow::default());
+        }
+        self.sums[offset..count].fill(LaneRow::default());
         lengths
     }
 

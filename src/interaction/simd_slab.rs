@@ -50,9 +50,10 @@ struct BroadcastParticle<S: Simd, const D: usize> {
     side: PairSide<f32x8<S>, D>,
 }
 
-/// Data that every pair of a slab needs.
+/// Data that every pair of a slab needs. The pair loop is compiled with and without `AUXILIARY` sums, so that the number of rows is
+/// a constant and a pass without these sums keeps its registers.
 #[derive(Clone, Copy)]
-struct SlabInput<'a, S: Simd, K, const D: usize> {
+struct SlabInput<'a, S: Simd, K, const AUXILIARY: bool, const D: usize> {
     simd: S,
     kernel: K,
     eta2: f32x8<S>,
@@ -67,9 +68,6 @@ struct SlabInput<'a, S: Simd, K, const D: usize> {
     first: usize,
     /// The needs of all terms together.
     needs: RequiredSums,
-    /// Whether the auxiliary sums of these needs are computed, and the rows of sums of a cluster.
-    auxiliary: bool,
-    sum_rows: usize,
 }
 
 impl<K: Kernel, T: Term<D>, W: Term<D>, const D: usize> SimdTask for SlabTask<'_, K, T, W, D> {
@@ -77,10 +75,22 @@ impl<K: Kernel, T: Term<D>, W: Term<D>, const D: usize> SimdTask for SlabTask<'_
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> f32 {
-        let Self { laws, packed, requested, slab, sums } = self;
+        if const { RequiredSums::of_terms::<(T, W), D>().any_auxiliary() } && self.requested == RequestedSums::All {
+            self.sum::<S, true>(simd)
+        } else {
+            self.sum::<S, false>(simd)
+        }
+    }
+}
+
+impl<K: Kernel, T: Term<D>, W: Term<D>, const D: usize> SlabTask<'_, K, T, W, D> {
+    /// Computes the sums, with the auxiliary ones if `AUXILIARY`.
+    #[inline(always)]
+    fn sum<S: Simd, const AUXILIARY: bool>(self, simd: S) -> f32 {
+        let Self { laws, packed, slab, sums, .. } = self;
         let [first, middle, end] = packed.clusters_of(slab);
         let needs = const { RequiredSums::of_terms::<(T, W), D>() };
-        let given = SlabInput {
+        let given = SlabInput::<'_, S, K, AUXILIARY, D> {
             simd,
             kernel: laws.kernel,
             eta2: f32x8::splat(simd, laws.eta2 as f32),
@@ -91,9 +101,8 @@ impl<K: Kernel, T: Term<D>, W: Term<D>, const D: usize> SimdTask for SlabTask<'_
             corrected: &packed.corrected,
             first,
             needs,
-            auxiliary: needs.any_auxiliary() && requested == RequestedSums::All,
-            sum_rows: needs.requested_rows(D, requested),
         };
+        let rows = given.sum_rows();
         sums.fill(LaneRow::default());
         let mut closing = given.zero;
         for c in first..end {
@@ -125,9 +134,9 @@ impl<K: Kernel, T: Term<D>, W: Term<D>, const D: usize> SimdTask for SlabTask<'_
                     let others = if is_water { boundary } else { water };
                     given.add_pairs::<_, true>(&laws.wall, &one, (base, others), sums, &mut sum, &mut closing);
                 }
-                let mine = &mut sums[(c - first) * given.sum_rows..][..given.sum_rows];
+                let mine = &mut sums[(c - first) * rows..][..rows];
                 sum.for_each_rate(|row, sum| mine[row].0[l] += simd::sum_lanes(*sum));
-                if given.auxiliary {
+                if AUXILIARY {
                     for_each_auxiliary(&mut sum.auxiliary, needs, needs, |row, sum| {
                         mine[row].0[l] += simd::sum_lanes(*sum)
                     });
@@ -138,7 +147,13 @@ impl<K: Kernel, T: Term<D>, W: Term<D>, const D: usize> SimdTask for SlabTask<'_
     }
 }
 
-impl<S: Simd, K: Kernel, const D: usize> SlabInput<'_, S, K, D> {
+impl<S: Simd, K: Kernel, const AUXILIARY: bool, const D: usize> SlabInput<'_, S, K, AUXILIARY, D> {
+    /// Rows of sums of a cluster.
+    #[inline(always)]
+    fn sum_rows(&self) -> usize {
+        self.needs.requested_rows(D, if AUXILIARY { RequestedSums::All } else { RequestedSums::Rates })
+    }
+
     /// The particle in lane `l` of cluster `c`.
     #[inline(always)]
     fn particle_in_lane(&self, c: usize, l: usize) -> BroadcastParticle<S, D> {
@@ -217,7 +232,7 @@ impl<S: Simd, K: Kernel, const D: usize> SlabInput<'_, S, K, D> {
         closing: &mut f32x8<S>,
     ) {
         let (simd, zero, own) = (self.simd, self.zero, const { RequiredSums::of_terms::<L, D>() });
-        let rows = self.sum_rows;
+        let rows = self.sum_rows();
         let nowhere = sums.len() - rows;
         for &entry in others {
             let place = base + usize::from(entry);
@@ -246,7 +261,7 @@ impl<S: Simd, K: Kernel, const D: usize> SlabInput<'_, S, K, D> {
             b.for_each_rate(|row, b| *b = load(&theirs[row].0));
             pair.add_rates(sum, &mut b);
             b.for_each_rate(|row, b| b.store_array(&mut theirs[row].0));
-            if self.auxiliary && own.any_auxiliary() {
+            if AUXILIARY && own.any_auxiliary() {
                 for_each_auxiliary(&mut b.auxiliary, own, self.needs, |row, b| *b = load(&theirs[row].0));
                 pair.add_auxiliary(law, sum, &mut b);
                 for_each_auxiliary(&mut b.auxiliary, own, self.needs, |row, b| b.store_array(&mut theirs[row].0));
