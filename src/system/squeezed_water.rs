@@ -1,6 +1,6 @@
 //! Water that a narrow gap squeezes out.
 //!
-//! Particles of water in a gap narrower than dp lie between the boundary particles of both faces, which lock them like teeth: a caught
+//! Particles of water in a gap narrower than dp lie between the boundary particles of both faces and cannot slide along them: a caught
 //! row would carry a sunk body for ever. The faces are smooth, and such water leaves. Where water and [film](super::film) press two
 //! faces apart with more than still water at the rim would, particles flow along the gap to the nearest rim with Bernoulli's speed
 //!
