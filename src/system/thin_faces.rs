@@ -14,7 +14,7 @@
 
 use rayon::prelude::*;
 
-use super::{MomentumTransfer, System, impulses::change_velocities, own_water};
+use super::{MomentumTransfer, System, impulses::change_velocities, own_water, thin_sides};
 #[cfg(feature = "gpu")]
 use crate::math::Bounds;
 use crate::{
@@ -47,13 +47,13 @@ const BOX: f64 = 16.0;
 const DEEPEST: f64 = 0.5 * THIN;
 
 /// A push of a solid on a water particle.
-struct Push<const D: usize> {
-    particle: usize,
-    solid: usize,
+pub(super) struct Push<const D: usize> {
+    pub(super) particle: usize,
+    pub(super) solid: usize,
     /// Change of the particle's velocity, m/s.
-    change: Vector<D>,
+    pub(super) change: Vector<D>,
     /// Place of the particle from the centre of the solid, m.
-    arm: Vector<D>,
+    pub(super) arm: Vector<D>,
 }
 
 impl<const D: usize> Push<D> {
@@ -205,12 +205,13 @@ pub(crate) fn repel<const D: usize>(
     dt: f64,
     weight: f64,
 ) -> Option<(MomentumTransfer<D>, Vec<Load<D>>)> {
-    if !has_thin_faces(system) {
+    if !has_thin_faces(system) && !thin_sides::has_thin_sides(system) {
         return None;
     }
     let beside = system.boundary.thin.faces.beside.take().unwrap_or_else(|| water_beside(system));
     let mut own = pushes(system, &beside, dt);
     system.boundary.thin.faces.beside = Some(beside);
+    own.extend(thin_sides::pushes(system, dt));
     let (mass, numbers) = (system.particle_mass(), own.iter().flat_map(Push::numbers).collect());
     let numbers = own_water::gather_numbers(&system.neighbours, numbers);
     let mut all: Vec<Push<D>> = numbers.chunks_exact(Push::<D>::NUMBERS).map(Push::of).collect();
