@@ -48,7 +48,7 @@ use crate::{
     system::{
         LimitViolation, SavedWater, System, SystemState,
         own_water::{self, OwnNames},
-        set_buffer_time, set_gravity_at, thin_sides, update_buffer, update_current,
+        set_buffer_time, set_gravity_at, update_buffer, update_current,
     },
     time_integration::{Stepper, step_size},
 };
@@ -396,9 +396,7 @@ impl<const D: usize> Simulation<D> {
     }
 
     fn advance(&mut self, end: f64, hook: &mut Hook<D>) -> Result<()> {
-        let divided = own_water::may_be_divided(&self.system)
-            && !self.bodies.read_all_water()
-            && !thin_sides::has_thin_sides(&self.system);
+        let divided = own_water::may_be_divided(&self.system) && !self.bodies.read_all_water();
         own_water::divide(&mut self.system, divided);
         set_buffer_time(&mut self.system, self.clock.time);
         self.rebuild_neighbours();

@@ -28,7 +28,7 @@ mod symmetric_setup;
 pub(crate) mod symmetry;
 pub(crate) mod thin_faces;
 mod thin_layers;
-pub(crate) mod thin_sides;
+mod thin_sides;
 mod view;
 mod water_column;
 

@@ -208,6 +208,7 @@ pub(crate) fn repel<const D: usize>(
     if !has_thin_faces(system) && !thin_sides::has_thin_sides(system) {
         return None;
     }
+    thin_sides::know_water(system);
     let beside = system.boundary.thin.faces.beside.take().unwrap_or_else(|| water_beside(system));
     let mut own = pushes(system, &beside, dt);
     system.boundary.thin.faces.beside = Some(beside);

@@ -13,7 +13,7 @@
 
 use rayon::prelude::*;
 
-use super::{System, symmetry::reflected, thin_faces::Push, thin_layers::thin_particles};
+use super::{System, known_water, own_water, symmetry::reflected, thin_faces::Push, thin_layers::thin_particles};
 use crate::{
     geometry::cells::PointCells,
     math::{Bounds, Vector},
@@ -101,8 +101,24 @@ fn ramp(x: f64, limits: [f64; 2]) -> f64 {
 }
 
 /// Whether solids have parts of which the sides are told apart.
-pub(crate) fn has_thin_sides<const D: usize>(system: &System<D>) -> bool {
+pub(super) fn has_thin_sides<const D: usize>(system: &System<D>) -> bool {
     D == 2 && !system.boundary.thin.is_empty()
+}
+
+/// Gives all ranks the water around layers that may be wet on both sides.
+pub(super) fn know_water<const D: usize>(system: &mut System<D>) {
+    if !has_thin_sides(system) {
+        return;
+    }
+    let (thin, r) = (thin_particles(system), &system.boundary.particles.r);
+    let reach = 2.0 * system.model.support_radius();
+    let range = |(_, particles): (usize, Vec<(usize, f64, Vector<D>)>)| {
+        let wet = particles.iter().filter(|(_, wet, _)| *wet > BOTH_WET);
+        let places: Vec<Vector<D>> = wet.map(|(particle, ..)| r[*particle]).collect();
+        (!places.is_empty()).then(|| Bounds::around(&places).grown(reach))
+    };
+    let ranges: Vec<Bounds<D>> = thin.filter_map(range).collect();
+    known_water::know_within(system, &ranges);
 }
 
 /// The pushes of thin parts on the water on their two sides over a step `dt` (s).
@@ -110,14 +126,18 @@ pub(super) fn pushes<const D: usize>(system: &System<D>, dt: f64) -> Vec<Push<D>
     if !has_thin_sides(system) {
         return Vec::new();
     }
+    let (these, own) = own_water::own(&system.neighbours, system.own_count());
     let mut pushes = Vec::new();
     for (solid, particles) in thin_particles(system) {
         let Some(layer) = Layer::new(system, solid, particles) else { continue };
         let sides: Vec<Sides<D>> = layer.particles.iter().map(|particle| layer.sides(particle)).collect();
-        let (own, centre) = (system.own_count(), system.solids[solid].kinematics.centre);
+        let centre = system.solids[solid].kinematics.centre;
         let push = |k: usize| {
             let particle = layer.water[k];
-            let change = layer.acceleration(k, &sides).filter(|_| particle < own)? * dt;
+            if !these.contains(&particle) || own.is_some_and(|own| !own[particle]) {
+                return None;
+            }
+            let change = layer.acceleration(k, &sides)? * dt;
             // A copy across periodic sides is one period away from the solid.
             let (nearest, _) = layer.points.nearest(&layer.around.places[k], system.model.support_radius())?;
             let LayerParticle { particle: on, x, .. } = layer.particles[nearest];

@@ -298,7 +298,8 @@ fn a_thin_vessel_carries_the_weight_of_its_water() -> Result<()> {
 fn light_thin_plates_move_alike_at_all_steps() -> Result<()> {
     for density in ["1000.0", "300.0"] {
         let height = |cfl: &str| -> Result<f64> {
-            let mut sim: Simulation<3> = measurement("thin-plate", &[("solid.plate.free.density", density), ("time.cfl", cfl)])?;
+            let mut sim: Simulation<3> =
+                measurement("thin-plate", &[("solid.plate.free.density", density), ("time.cfl", cfl)])?;
             run_to(&mut sim, 0.6)?;
             Ok(sim.system().solids()[1].kinematics.centre[2])
         };
