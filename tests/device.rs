@@ -396,6 +396,8 @@ fn what_no_device_computes_is_refused_with_the_remedy() {
     fast.limits = fast.limits.density(0.4, 1.2);
     assert!(refused_setup(fast).contains("density limits"));
     assert!(refused_setup(dam().with_reference()).contains("double precision"));
+    let shelf = SolidSpec::fixed("shelf", Shape::Box { size: [0.16, 0.01].into() }).at([0.16, 0.09]);
+    assert!(refused_setup(dam_with(water(), [0.8, 0.3], [shelf])).contains("thinner than dp"));
     let stream = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/spec/run/restart/stream.toml");
     assert!(refused_setup(Scene::read(&stream, &[]).unwrap().build().unwrap().setup).contains("[[outflow]]"));
     let error = Simulation::new(dam()).unwrap().on_device("no such card").map(|_| ()).unwrap_err();

@@ -51,7 +51,7 @@ pub(crate) struct Boundary<const D: usize> {
     /// The box around the boundary particles of each solid, in its frame, m.
     pub(super) local_bounds: Vec<Bounds<D>>,
     /// The mirror images of the boundary particles of each solid, in their order in the arrays; empty without a symmetry plane.
-    mirrored: Vec<Vec<MirroredParticle>>,
+    pub(super) mirrored: Vec<Vec<MirroredParticle>>,
     /// The films of water between solids.
     pub(super) films: Films<D>,
     /// The parts thinner than dp.

@@ -41,6 +41,7 @@ pub(crate) fn unsupported_on_device<const D: usize>(system: &System<D>) -> Optio
         (!region.open_boundaries.is_empty(), "open boundaries ([[inflow]], [[outflow]])"),
         (!(0.5..1.0).contains(&least) || !(1.0..=1.5).contains(&most), "density limits beyond 0.5 to 1.5"),
         (system.equation_of_state.coefficients().is_none(), "an exponent model.gamma above 7"),
+        (D == 2 && thin_layers::may_be_wet_on_both_sides(system), "parts of solids thinner than dp in 2-D"),
     ];
     cases.into_iter().find(|(has, _)| *has).map(|(_, what)| what)
 }

@@ -39,7 +39,7 @@ pub(super) struct GapPressure<const D: usize> {
     /// Radius of the kernel's support, m; `None` if walls have no pressure of the water before them.
     support: Option<f64>,
     /// V₀ ∂W (1/m²) of the squared distance (m²).
-    slope: Box<dyn Fn(f64) -> f64 + Send + Sync>,
+    pub(super) slope: Box<dyn Fn(f64) -> f64 + Send + Sync>,
 }
 
 impl<const D: usize> GapPressure<D> {

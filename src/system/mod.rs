@@ -29,6 +29,7 @@ mod symmetric_setup;
 pub(crate) mod symmetry;
 pub(crate) mod thin_faces;
 mod thin_layers;
+mod thin_sides;
 mod view;
 mod water_column;
 

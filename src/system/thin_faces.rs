@@ -14,7 +14,7 @@
 
 use rayon::prelude::*;
 
-use super::{MomentumTransfer, System, impulses::change_velocities, own_water, squeezed_water};
+use super::{MomentumTransfer, System, impulses::change_velocities, own_water, squeezed_water, thin_sides};
 #[cfg(feature = "gpu")]
 use crate::math::Bounds;
 use crate::{
@@ -207,14 +207,19 @@ pub(crate) fn repel<const D: usize>(
     weight: f64,
 ) -> Option<(MomentumTransfer<D>, Vec<Load<D>>)> {
     let flows = squeezed_water::flows(system);
-    if !has_thin_faces(system) && !flows {
+    let (has_faces, has_sides) = (has_thin_faces(system), thin_sides::has_thin_sides(system));
+    if !has_faces && !has_sides && !flows {
         return None;
     }
     let mut own = if flows { squeezed_water::pushes(system) } else { Vec::new() };
-    if has_thin_faces(system) {
+    if has_faces {
         let beside = system.boundary.thin.faces.beside.take().unwrap_or_else(|| water_beside(system));
         own.extend(pushes(system, &beside, dt));
         system.boundary.thin.faces.beside = Some(beside);
+    }
+    if has_sides {
+        thin_sides::know_water(system);
+        own.extend(thin_sides::pushes(system, dt));
     }
     let (mass, numbers) = (system.particle_mass(), own.iter().flat_map(Push::numbers).collect());
     let numbers = own_water::gather_numbers(&system.neighbours, numbers);

@@ -179,6 +179,24 @@ impl<const D: usize> ThinLayers<D> {
     }
 }
 
+/// Of each copy of a solid with thin particles: the number of the solid, and index, share of the surroundings that is water, and outward
+/// normal of each.
+pub(super) fn thin_particles<const D: usize>(
+    system: &System<D>,
+) -> impl Iterator<Item = (usize, Vec<(usize, f64, Vector<D>)>)> + '_ {
+    let thin = &system.boundary.thin;
+    let mut first = 0;
+    thin.each(&system.solids).filter(|each| !each.2.is_empty()).map(move |(number, start, particles)| {
+        let rotation = &system.solids[number].kinematics.pose.rotation;
+        let wet = thin.wet.get(first..first + particles.len()).unwrap_or_default();
+        first += particles.len();
+        let of = |(particle, wet): (&ThinParticle<D>, &f64)| {
+            (start + particle.place as usize, *wet, rotation * particle.normal)
+        };
+        (number, particles.iter().zip(wet).map(of).collect())
+    })
+}
+
 /// The boundary particles in the middle of thin parts.
 #[cfg(feature = "gpu")]
 pub(super) fn particles<const D: usize>(system: &System<D>) -> impl Iterator<Item = u32> + '_ {
@@ -191,6 +209,13 @@ pub(super) fn particles<const D: usize>(system: &System<D>) -> impl Iterator<Ite
 pub(super) fn has_hollows<const D: usize>(system: &System<D>) -> bool {
     let all = system.boundary.thin.of_solid.iter().flatten();
     all.flat_map(|particle| particle.hollows).any(|hollow| hollow.is_some())
+}
+
+/// Whether a thin part is beside no hollow, so that water may be on both of its sides.
+#[cfg(feature = "gpu")]
+pub(super) fn may_be_wet_on_both_sides<const D: usize>(system: &System<D>) -> bool {
+    let all = system.boundary.thin.of_solid.iter().flatten();
+    all.into_iter().any(|particle| particle.hollows.iter().all(Option::is_none))
 }
 
 /// Reads the `water` around the thin parts, if there is any around a boundary particle, and finds the ends of parts that have turned.

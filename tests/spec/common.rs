@@ -71,11 +71,14 @@ where
     Simulation::new(Scene::parse(text, Path::new(""), &[])?.build::<D>()?.setup)
 }
 
-/// The simulation of the 3-D scene `docs/measurements/NAME.toml` with these values set.
-pub fn measurement(name: &str, sets: &[(&str, &str)]) -> Result<Simulation<3>> {
+/// The simulation of the scene `docs/measurements/NAME.toml` with these values set.
+pub fn measurement<const D: usize>(name: &str, sets: &[(&str, &str)]) -> Result<Simulation<D>>
+where
+    Dim<D>: Dimension<D>,
+{
     let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("docs/measurements/{name}.toml"));
     let sets: Vec<_> = sets.iter().map(|(key, value)| (key.to_string(), value.to_string())).collect();
-    Simulation::new(Scene::read(&scene, &sets)?.build::<3>()?.setup)
+    Simulation::new(Scene::read(&scene, &sets)?.build::<D>()?.setup)
 }
 
 /// Makes `n` steps.

@@ -189,6 +189,15 @@ fn the_energy_budget_closes_beside_thin_parts_in_3d() {
     assert!(off < 0.01 * turnover, "{off} J of {turnover} J");
 }
 
+/// Within the bound of the others. The water on each side of the plate acts with its own pressure, once a step.
+#[test]
+fn the_energy_budget_closes_beside_a_thin_plate_in_2d() {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/spec/run/restart/thin-sides.toml");
+    let sim = Simulation::new(Scene::read(&file, &[]).unwrap().build::<2>().unwrap().setup).unwrap();
+    let (off, turnover) = residual(sim, 400);
+    assert!(off < 0.01 * turnover, "{off} J of {turnover} J");
+}
+
 #[test]
 fn added_and_removed_solids_and_water_enter_the_energy_budget() {
     let mut sim = simulation("");

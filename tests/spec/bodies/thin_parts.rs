@@ -284,7 +284,7 @@ fn faces_of_thin_parts_are_stable_at_the_largest_steps() -> Result<()> {
 #[test]
 fn a_thin_vessel_carries_the_weight_of_its_water() -> Result<()> {
     for thickness in ["0.01", "0.002"] {
-        let mut sim = measurement("thin-vessel", &[("solid.vessel.shape.tank.thickness", thickness)])?;
+        let mut sim: Simulation<3> = measurement("thin-vessel", &[("solid.vessel.shape.tank.thickness", thickness)])?;
         let [force] = time_mean(&mut sim, 0.3, 0.6, |sim| [sim.system().solids()[0].load.force[2]])?;
         println!("{thickness} m: {force} N");
         assert!((force / (-1000.0 * G * 0.008) - 1.0).abs() < 0.02, "{thickness} m: {force} N for 78.5 N of water");
@@ -298,7 +298,8 @@ fn a_thin_vessel_carries_the_weight_of_its_water() -> Result<()> {
 fn light_thin_plates_move_alike_at_all_steps() -> Result<()> {
     for density in ["1000.0", "300.0"] {
         let height = |cfl: &str| -> Result<f64> {
-            let mut sim = measurement("thin-plate", &[("solid.plate.free.density", density), ("time.cfl", cfl)])?;
+            let mut sim: Simulation<3> =
+                measurement("thin-plate", &[("solid.plate.free.density", density), ("time.cfl", cfl)])?;
             run_to(&mut sim, 0.6)?;
             Ok(sim.system().solids()[1].kinematics.centre[2])
         };
@@ -325,7 +326,7 @@ fn thin_plates_have_the_buoyancy_of_their_volume_in_3d() -> Result<()> {
             ("solid.plate.at.z", z),
             ("solid.plate.free.locked", locked),
         ];
-        let mut sim = measurement("thin-plate", &sets)?;
+        let mut sim: Simulation<3> = measurement("thin-plate", &sets)?;
         let [force] = time_mean(&mut sim, 0.4, 0.8, |sim| [sim.system().solids()[1].load.force[2]])?;
         let weight = 1000.0 * G * 0.04;
         let off = (force / weight - thickness.parse::<f64>().unwrap()) / 0.02;
@@ -347,7 +348,7 @@ fn water_gets_under_a_thin_plate_on_the_bed() -> Result<()> {
             ("solid.plate.at.z", z.as_str()),
             ("solid.plate.free.locked", r#"["x", "y", "z", "turn_x", "turn_y", "turn_z"]"#),
         ];
-        let mut sim = measurement("thin-plate", &sets)?;
+        let mut sim: Simulation<3> = measurement("thin-plate", &sets)?;
         let [force] = time_mean(&mut sim, 0.3, 0.6, |sim| [sim.system().solids()[1].load.force[2]])?;
         let off = (force / (1000.0 * G * 0.04) - thickness) / 0.02;
         println!("{thickness} m: {force} N, off by {off} dp");
@@ -360,7 +361,7 @@ fn water_gets_under_a_thin_plate_on_the_bed() -> Result<()> {
 /// particles passed.
 #[test]
 fn a_thin_paddle_that_ends_at_thick_walls_lets_no_water_pass() -> Result<()> {
-    let mut sim = measurement("thin-paddle", &[])?;
+    let mut sim: Simulation<3> = measurement("thin-paddle", &[])?;
     let count = sim.system().fluid().r.len();
     run_to(&mut sim, 0.6)?;
     let front = sim.system().solids()[1].kinematics.centre[0];
@@ -368,5 +369,45 @@ fn a_thin_paddle_that_ends_at_thick_walls_lets_no_water_pass() -> Result<()> {
     let behind = water.iter().filter(|r| r[0] < front - dp).count();
     println!("{behind} of {} behind x = {front} m", water.len());
     assert!(behind == 0 && water.len() == count, "{behind} of {} particles are behind the plate", water.len());
+    Ok(())
+}
+
+/// Added mass over ρ π a² and drag coefficient, by Fourier averages over the first period, of a heave plate 0.1 dp thick and 20 dp across,
+/// driven from rest with the amplitude `kc` 0.4 m/2π.
+fn heave_plate(kc: f64, gravity: &str) -> Result<[f64; 2]> {
+    let (half, omega) = (0.2, std::f64::consts::TAU);
+    let amplitude = kc * 2.0 * half / omega;
+    let formula = format!("\"{amplitude}*(1-cos(2*pi*t))\"");
+    let sets = [("solid.plate.driven.distance.formula", formula.as_str()), ("gravity", gravity)];
+    let mut sim: Simulation<2> = measurement("heave-plate", &sets)?;
+    let [mut inertia, mut inertias, mut power, mut powers] = [0.0; 4];
+    while sim.time() < 1.0 {
+        let before = sim.time();
+        sim.step_to(1.0)?;
+        let (dt, middle) = (sim.time() - before, 0.5 * (sim.time() + before));
+        let force = sim.system().solids()[1].load.force[1];
+        let speed = amplitude * omega * (omega * middle).sin();
+        let acceleration = amplitude * omega * omega * (omega * middle).cos();
+        inertia -= force * acceleration * dt;
+        inertias += 1000.0 * std::f64::consts::PI * half * half * acceleration.powi(2) * dt;
+        power -= force * speed * dt;
+        powers += 1000.0 * half * speed.abs().powi(3) * dt;
+    }
+    Ok([inertia / inertias, power / powers])
+}
+
+/// Measurements fit Cd = 8 KC^(−1/3) (Graham 1980) and 10 KC^(−1/3), and an added mass of 1 + 0.35 KC^(2/3) times ρ π a² (Luhar and Nepf
+/// 2016). A vortex method agrees with Graham's drag in the first period (tests/references/heave_plate.py); later the vortices of earlier
+/// periods raise it in 2-D. Bound: the 10 % of the project. At KC = 0.1 the pressure of gravity would govern the drag, because particles
+/// resist rearrangement. There, where the sides of the layer were not told apart, the added mass was 1.31 and the drag coefficient 60.
+#[test]
+fn a_thin_heave_plate_has_the_added_mass_and_damping_of_a_thin_plate() -> Result<()> {
+    for (kc, gravity) in [(0.1, "1.0"), (1.0, "9.81"), (2.0, "9.81")] {
+        let (drag, mass) = (8.0 * f64::powf(kc, -1.0 / 3.0), 1.0 + 0.35 * f64::powf(kc, 2.0 / 3.0));
+        let [added_mass, drag_coefficient] = heave_plate(kc, gravity)?;
+        println!("KC {kc}: added mass {added_mass} ({mass}), drag coefficient {drag_coefficient} ({drag})");
+        assert!((added_mass / mass - 1.0).abs() < 0.1, "KC {kc}: added mass {added_mass} ρ π a², measured {mass}");
+        assert!((drag_coefficient / drag - 1.0).abs() < 0.1, "KC {kc}: Cd {drag_coefficient}, measured {drag}");
+    }
     Ok(())
 }

@@ -23,11 +23,12 @@ use crate::{
 };
 
 /// The scenes with all components that have state, and three times (s) that part them.
-const SCENES: [(&str, f64, f64); 8] = [
+const SCENES: [(&str, f64, f64); 9] = [
     ("sea", 0.15, 0.3),
     ("ties", 0.15, 0.4),
     ("three", 0.1, 0.18),
     ("thin", 0.1, 0.18),
+    ("thin-sides", 0.08, 0.15),
     ("vortices", 0.1, 0.25),
     ("spill", 0.2, 0.4),
     ("moorings", 0.15, 0.35),

@@ -101,6 +101,7 @@ fn a_three_dimensional_run_with_corrected_gradients_survives_a_restart() -> Resu
 #[test]
 fn water_beside_thin_parts_survives_a_restart() -> Result<()> {
     survives_restart::<3>("thin", [0.1, 0.18], |_| ())?;
+    survives_restart::<2>("thin-sides", [0.08, 0.15], |_| ())?;
     Ok(())
 }
 
