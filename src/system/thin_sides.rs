@@ -2,7 +2,7 @@
 //!
 //! The layer of boundary particles that stands for such a part is within the support of the water on both of its sides. Each particle
 //! has one pressure, between those of the two sides, and pairs of water act through the part. Where the pressures differ, the water
-//! moves against the part until the pressure of rest balances the difference, as if on springs. Once a step, water a beside a part
+//! moves with the part until the change of density balances the difference. Once a step, water a beside a part
 //! that is wet on both sides therefore receives the impulse of
 //!
 //!   dv_a/dt = −Σ_b V_b/ρ_a (P_a(b) − P_b) s ∇_a W,   s = min(1, 2 d/dp),
