@@ -533,12 +533,11 @@ impl<const D: usize> System<D> {
         let input = Self::pair_input(neighbours, fluid, boundary, properties, equation_of_state);
         pair_loop.moments(&input, &mut corrections);
         let weight = properties.gravity.norm() * properties.dp;
-        let everywhere = self.model.gradient == PressureGradient::Corrected;
-        let rho0 = properties.rho0;
+        let (gradient, rho0) = (self.model.gradient, properties.rho0);
         let (these, _) = own_water::own(neighbours, corrections.len());
         let rho = &fluid.particles.rho[these.clone()];
         corrections[these].par_iter_mut().zip(rho).with_min_len(PARTICLES_PER_TASK).for_each(|(correction, &rho)| {
-            let share = if everywhere {
+            let share = if gradient == PressureGradient::Corrected {
                 1.0
             } else {
                 gradient_correction::near_surface(equation_of_state.pressure(rho / rho0 - 1.0), weight)
