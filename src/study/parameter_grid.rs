@@ -88,12 +88,14 @@ impl ParameterGrid {
     /// # Errors
     /// `Usage`, with both keys.
     fn require_different_keys(&self) -> Result<()> {
-        let firsts = self.vary.iter().filter_map(|vary| Some((vary.key.clone(), vary.values.first()?.clone())));
-        let sets: Vec<(String, String)> = self.overrides.iter().cloned().chain(firsts).collect();
         // An invalid key or value is an error of its run.
-        let known = Scene::read(&self.scene, &sets).ok();
-        let known = known.and_then(|scene| Some(scene.override_keys().get(self.overrides.len()..)?.to_vec()));
-        let keys = known.unwrap_or_else(|| self.vary.iter().map(|vary| current_key(&vary.key)).collect());
+        let known = |key: &String, value: &String| {
+            let sets: Vec<_> = self.overrides.iter().cloned().chain([(key.clone(), value.clone())]).collect();
+            Scene::read(&self.scene, &sets).ok()?.override_keys().last().cloned()
+        };
+        let number_of = |vary: &VariedKey| vary.values.first().and_then(|value| known(&vary.key, value));
+        let keys: Vec<String> =
+            self.vary.iter().map(|vary| number_of(vary).unwrap_or_else(|| current_key(&vary.key))).collect();
         let is_part =
             |part: &str, of: &str| part.strip_prefix(of).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'));
         for (j, later) in keys.iter().enumerate() {
