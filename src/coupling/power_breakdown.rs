@@ -23,7 +23,7 @@ use crate::{
     model::{Diffusion, HasPairLoop, Model, PressureGradient, Shifting, Viscosity},
     neighbours::CHUNK,
     solid::{Dim, Load, Solid},
-    system::{FluidRates, System},
+    system::{FluidRates, System, solid_loads},
 };
 
 /// Powers on the water at a force pass, W (W/m in 2-D).
@@ -62,7 +62,7 @@ impl<const D: usize> PowerMeter<D> {
     pub(super) fn decompose(&mut self, system: &System<D>) -> (PowerBreakdown, Vec<Load<D>>) {
         let Self { pressure, plain } = self;
         let pass = |pair_loop: &mut dyn PairLoop<D>| {
-            let loads = system.loads_of_pair_loop(pair_loop);
+            let loads = solid_loads::of_pair_loop(system, pair_loop);
             (gains(system, system.fluid_rates_of(pair_loop)), loads)
         };
         let gained = pass(&mut **pressure);

@@ -16,7 +16,7 @@ use crate::{
     },
     preflight::GeneratedWave,
     scene::world_bounds,
-    solid::{ForceSpec, Lifetime, LineEnd, Role, Solid},
+    solid::{ForceSpec, Role, Solid},
     sph::viscosity::Viscosity,
 };
 
@@ -200,11 +200,6 @@ fn depth_under_water<const D: usize>(context: &PreflightContext<D>, i: usize) ->
 
 /// Whether a spring, a rope or a mooring line acts on solid number `i` at the start.
 fn is_on_line<const D: usize>(context: &PreflightContext<D>, i: usize) -> bool {
-    let links = context.system.constraints();
-    let acts = |lifetime: &Lifetime, ends: &[LineEnd<D>; 2]| {
-        lifetime.contains(0.0) && ends.iter().any(|end| end.solid == Some(i))
-    };
-    links.springs.iter().any(|spring| acts(&spring.lifetime, &spring.ends))
-        || links.ropes.iter().any(|rope| acts(&rope.lifetime, &rope.ends))
-        || links.moorings.iter().any(|line| acts(&line.lifetime, &line.ends))
+    let mut lines = context.system.constraints().lines();
+    lines.any(|(ends, lifetime)| lifetime.contains(0.0) && ends.iter().any(|end| end.solid == Some(i)))
 }

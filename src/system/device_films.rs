@@ -6,12 +6,9 @@ use std::collections::BTreeSet;
 use super::{
     System,
     device_state::{has_free_solids, place_solid},
-    film, squeezed_water,
+    film::{self, FilmLoads},
 };
-use crate::{
-    math::{Pose, Vector},
-    solid::Load,
-};
+use crate::math::{Pose, Vector};
 
 /// What the water does at a boundary particle near it, in a force pass.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,23 +49,11 @@ fn place<const D: usize>(system: &mut System<D>, solids: BTreeSet<usize>) {
     solids.into_iter().for_each(|solid| place_solid(system, solid));
 }
 
-/// The loads of the films by the `water` at boundary particles, in ascending order of their indices; an empty list without a film.
-pub(super) fn loads<const D: usize>(system: &mut System<D>, water: &[(u32, BoundaryWater<D>)]) -> Vec<Load<D>> {
-    let at = |i: u32| water_at(water, i);
+/// What the films do, by the `water` at boundary particles, in ascending order of their indices.
+pub(super) fn loads<const D: usize>(system: &mut System<D>, water: &[(u32, BoundaryWater<D>)]) -> FilmLoads<D> {
+    let at = |i: u32| water.binary_search_by_key(&i, |(particle, _)| *particle).ok().map(|place| &water[place].1);
     film::update_water(system, |system, _, i| {
         at(i).map(|water| (system.equation_of_state.pressure(water.compression), water.away))
     });
     film::loads_by(system, |i| at(i).map(|water| water.acceleration))
-}
-
-/// Finds the speeds at which caught water leaves the films.
-pub(super) fn update_outflow<const D: usize>(system: &mut System<D>, water: &[(u32, BoundaryWater<D>)]) {
-    if !system.boundary.films.is_empty() {
-        squeezed_water::update(system, |_, i| water_at(water, i).map(|water| water.acceleration));
-    }
-}
-
-/// What the `water` does at boundary particle `i`, if it is among those read.
-fn water_at<const D: usize>(water: &[(u32, BoundaryWater<D>)], i: u32) -> Option<&BoundaryWater<D>> {
-    water.binary_search_by_key(&i, |(particle, _)| *particle).ok().map(|place| &water[place].1)
 }

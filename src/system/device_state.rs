@@ -7,6 +7,7 @@ use super::{
     device_films::{self, BoundaryWater},
     driving,
     impulses::MomentumTransfer,
+    squeezed_water,
     symmetry::reflected_tensor,
     thin_layers::{self, WaterAround},
 };
@@ -229,13 +230,13 @@ pub(crate) fn set_loads<const D: usize>(system: &mut System<D>, of: WaterLoads<D
     };
     thin_layers::update_water(system, |_, i| place(i).map(around));
     let films = device_films::loads(system, &at_films);
-    complete_loads(system, &films, &mut loads);
+    complete_loads(system, &films.loads, &mut loads);
     system.solids.iter_mut().zip(loads).for_each(|(solid, load)| solid.load = load);
-    device_films::update_outflow(system, &at_films);
+    squeezed_water::update(system, &films.excess);
     if let Some(wetness) = &mut system.boundary.wetness {
         *wetness = weights;
     }
-    films
+    films.loads
 }
 
 /// Completes the `loads` on the solids: adds those of `films`, those of the water on thin parts, as [`set_loads`] knows it, and those

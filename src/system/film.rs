@@ -140,15 +140,24 @@ pub(super) struct Gap<const D: usize> {
 }
 
 /// What a film does at one of its particles.
-pub(super) struct FilmForce<const D: usize> {
+struct FilmForce<const D: usize> {
     /// The place on the solid and on the other one, m.
     at: [Vector<D>; 2],
     /// What water and film press more than still water at the rim would, P/ρ₀ in m²/s², times [`Gap::narrow`].
-    pub(super) excess: f64,
+    excess: f64,
     /// The force on the solid, N (N/m in 2-D).
     force: Vector<D>,
     /// How far the gap is closed to water, 0 to 1.
     share: f64,
+}
+
+/// What the films do in a force pass.
+#[derive(Default)]
+pub(crate) struct FilmLoads<const D: usize> {
+    /// The loads on the computed part of each solid, about its centre; empty without a film.
+    pub(crate) loads: Vec<Load<D>>,
+    /// The mean of [`FilmForce::excess`] of each film.
+    pub(super) excess: Vec<f64>,
 }
 
 /// The films between all solids.
@@ -388,27 +397,22 @@ fn has_room<const D: usize>(system: &System<D>, x: &Vector<D>, poses: &[Pose<D>]
     system.symmetry_planes().axes_beyond(x) == 0 && !system.solids.iter().enumerate().any(is_in)
 }
 
-/// The loads of the films on the computed part of each solid, about its centre; an empty list without a film. `sums` are those of the
-/// boundary particles near water.
-pub(crate) fn loads<const D: usize>(system: &System<D>, sums: &[PairSums<D>]) -> Vec<Load<D>> {
-    loads_by(system, |i| acceleration_of(system, sums, i))
-}
-
-/// The acceleration (m/s²) of boundary particle `i` by the `sums` of those near water.
-pub(super) fn acceleration_of<const D: usize>(system: &System<D>, sums: &[PairSums<D>], i: u32) -> Option<Vector<D>> {
+/// What the films do, by the `sums` of the boundary particles near water.
+pub(crate) fn loads<const D: usize>(system: &System<D>, sums: &[PairSums<D>]) -> FilmLoads<D> {
     let near = system.neighbours.boundary_near_fluid();
-    near.binary_search(&i).ok().map(|place| sums[place].acceleration)
+    loads_by(system, |i| near.binary_search(&i).ok().map(|place| sums[place].acceleration))
 }
 
 /// The same by the `acceleration` (m/s²) of each boundary particle with water near it.
 pub(super) fn loads_by<const D: usize>(
     system: &System<D>,
     acceleration: impl Fn(u32) -> Option<Vector<D>> + Sync,
-) -> Vec<Load<D>> {
+) -> FilmLoads<D> {
     if system.boundary.films.films.is_empty() {
-        return Vec::new();
+        return FilmLoads::default();
     }
     let mut loads = vec![Load::zero(); system.solids.len()];
+    let mut excess = Vec::new();
     for (film, pressures) in system.boundary.films.films.iter().zip(&system.boundary.films.pressures) {
         let (solid, other) = (&system.solids[film.solid], &system.solids[film.other]);
         let mut act = |at: [Vector<D>; 2], force: Vector<D>| {
@@ -416,9 +420,9 @@ pub(super) fn loads_by<const D: usize>(
             loads[film.other] += Load::from_force_at(&(at[1] - other.kinematics.centre), -force);
         };
         let (r, mass) = (&system.boundary.particles.r, system.particle_mass());
-        for (particle, FilmForce { at, force, share, .. }) in
-            film.particles.iter().zip(forces(system, film, pressures, &acceleration))
-        {
+        let forces = forces(system, film, pressures, &acceleration);
+        excess.push(forces.iter().map(|force| force.excess).sum::<f64>() / forces.len().max(1) as f64);
+        for (particle, FilmForce { at, force, share, .. }) in film.particles.iter().zip(forces) {
             act(at, force);
             // What lies below the rim sees as much water beside the film as through the solid.
             let share = if particle.at_rim() { 0.5 * share } else { share };
@@ -429,11 +433,11 @@ pub(super) fn loads_by<const D: usize>(
             }
         }
     }
-    loads
+    FilmLoads { loads, excess }
 }
 
 /// What `film` does at each of its particles; an empty list if its rim is dry.
-pub(super) fn forces<const D: usize>(
+fn forces<const D: usize>(
     system: &System<D>,
     film: &Film<D>,
     pressures: &[f64],

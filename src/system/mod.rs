@@ -22,6 +22,7 @@ pub(crate) mod own_water;
 pub(crate) mod periodic;
 mod setup;
 mod slip_rates;
+pub(crate) mod solid_loads;
 mod sponge_layer;
 pub(crate) mod squeezed_water;
 mod step_check;
@@ -74,10 +75,10 @@ use crate::{
     interaction::{PairLoop, PairLoopInput, PairSums, RequestedSums},
     math::{Bounds, Matrix, Pose, Vector},
     model::{Model, PressureGradient},
-    neighbours::{CHUNK, Columns, NeighbourLists},
+    neighbours::{Columns, NeighbourLists},
     particles::{PARTICLES_PER_TASK, Particles, zeros},
     ranks::{RankPart, WaterShare},
-    solid::{Constraints, Load, Solid, TimeFunction},
+    solid::{Constraints, Solid, TimeFunction},
     sph::{AuxiliarySums, FluidProperties, equation_of_state::EquationOfState, gradient_correction},
 };
 
@@ -463,9 +464,10 @@ impl<const D: usize> System<D> {
         if requested == RequestedSums::All {
             self.update_stress();
         }
-        let loads = self.loads(&self.rates.boundary);
+        let films = film::loads(self, &self.rates.boundary);
+        let loads = solid_loads::of_pass(self, &self.rates.boundary, &films.loads);
         self.solids.iter_mut().zip(loads).for_each(|(solid, load)| solid.load = load);
-        squeezed_water::update_by_pass(self);
+        squeezed_water::update(self, &films.excess);
         self.status.passes += 1;
     }
 
@@ -553,48 +555,6 @@ impl<const D: usize> System<D> {
         images.iter_mut().zip(originals).for_each(|(image, &i)| *image = real[i as usize]);
         images.iter_mut().zip(reflections).for_each(|(image, &axes)| *image = reflected_tensor(axes, image));
         fluid.gradient_correction = Some(corrections);
-    }
-
-    /// Computes the sums of another pair loop at the state of the last force pass; returns the loads that they give on the solids.
-    pub(crate) fn loads_of_pair_loop(&self, pair_loop: &mut dyn PairLoop<D>) -> Vec<Load<D>> {
-        let (medium, state) = (&self.properties, &self.equation_of_state);
-        let input = Self::pair_input(&self.neighbours, &self.fluid, &self.boundary, medium, state);
-        let mut boundary = vec![PairSums::zero(); self.rates.boundary.len()];
-        pair_loop.rates(&input, RequestedSums::Rates, &mut boundary);
-        Self::add_gap_pressure(&self.gap_pressure, &input, &mut boundary);
-        self.loads(&boundary)
-    }
-
-    /// The load on each solid by films, by thin parts and by the `sums` of the wet boundary particles, which are added up in
-    /// chunks of fixed size, in order.
-    fn loads(&self, sums: &[PairSums<D>]) -> Vec<Load<D>> {
-        let (mass, wet, r) = (self.particle_mass(), self.neighbours.boundary_near_fluid(), &self.boundary.particles.r);
-        let beside = [film::loads(self, sums), thin_layers::loads(self)];
-        let place = |end: usize| wet.partition_point(|&i| (i as usize) < end);
-        let of_copy = |solid: &Solid<D>, (range, way): (Range<usize>, Vector<D>)| {
-            let centre = solid.kinematics.centre + way;
-            let own = place(range.start)..place(range.end);
-            let chunks = wet[own.clone()].par_chunks(CHUNK).zip(sums[own].par_chunks(CHUNK));
-            let part = |(wet, sums): (&[u32], &[PairSums<D>])| {
-                // Beyond a periodic side the water is an image, and its load has been counted; beyond a face it is a buffer.
-                let own = wet.iter().map(|&i| &r[i as usize]).zip(sums);
-                let own = own.filter(|(r, _)| self.is_in_counted_water(r));
-                if solid.division.cut == 0 {
-                    return own.map(|(r, s)| Load::from_force_at(&(r - centre), s.acceleration * mass)).sum();
-                }
-                let force = |r: &Vector<D>, s: &PairSums<D>| s.acceleration * (mass * self.computed_share(solid, r));
-                own.map(|(r, s)| Load::from_force_at(&(r - centre), force(r, s))).sum()
-            };
-            let parts: Vec<Load<D>> = chunks.map(part).collect();
-            parts.into_iter().sum()
-        };
-        let of = |numbered: (usize, &Solid<D>)| {
-            let copies = self.boundary.copies(&self.fluid.images, numbered, &numbered.1.kinematics.pose);
-            let load = copies.map(|copy| of_copy(numbered.1, copy)).sum::<Load<D>>();
-            let load = beside.iter().filter_map(|loads| loads.get(numbered.0)).fold(load, |sum, load| sum + *load);
-            if numbered.1.division.cut == 0 { load } else { self.load_on_whole(numbered.1, load) }
-        };
-        self.solids.iter().enumerate().map(of).collect()
     }
 
     /// The largest values that limit the next step.

@@ -37,28 +37,11 @@ struct Place<const D: usize> {
     way: Option<Vector<D>>,
 }
 
-/// Finds the speeds at which caught water leaves the films, from the sums of the last force pass.
-pub(super) fn update_by_pass<const D: usize>(system: &mut System<D>) {
-    if !system.boundary.films.is_empty() {
-        let sums = std::mem::take(&mut system.rates.boundary);
-        update(system, |system, i| film::acceleration_of(system, &sums, i));
-        system.rates.boundary = sums;
-    }
-}
-
-/// The same, from the `acceleration` (m/s²) of boundary particles.
-pub(super) fn update<const D: usize>(
-    system: &mut System<D>,
-    acceleration: impl Fn(&System<D>, u32) -> Option<Vector<D>> + Sync,
-) {
+/// Sets the speeds at which caught water leaves the films, from what water and film press more than still water would in the last
+/// force pass, the mean of each film (m²/s²).
+pub(super) fn update<const D: usize>(system: &mut System<D>, excess: &[f64]) {
     let row = system.properties.gravity.norm() * system.model.dp;
-    let films = &system.boundary.films;
-    let speed = |(film, pressures): (&Film<D>, &Vec<f64>)| {
-        let forces = film::forces(system, film, pressures, &|i| acceleration(system, i));
-        let excess = forces.iter().map(|force| force.excess).sum::<f64>() / forces.len().max(1) as f64;
-        (2.0 * (excess - row).max(0.0)).min(row).sqrt()
-    };
-    let speeds: Vec<f64> = films.films.iter().zip(&films.pressures).map(speed).collect();
+    let speeds: Vec<f64> = excess.iter().map(|excess| (2.0 * (excess - row).max(0.0)).min(row).sqrt()).collect();
     let flows = speeds.iter().any(|speed| *speed > 0.0);
     system.boundary.films.outflow = if flows { speeds } else { Vec::new() };
 }

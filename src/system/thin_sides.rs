@@ -29,8 +29,8 @@ const SIDE: [f64; 2] = [0.6, 0.9];
 /// Distances along the part from its nearest boundary particle, dp: up to the first a line passes the part, from the second on beside it.
 const PASSES: [f64; 2] = [0.5, 1.0];
 
-/// Particles that a thread takes at a time.
-const PARTICLES_PER_TASK: usize = 64;
+/// Water particles of a layer, each with many pairs, that a thread takes at a time.
+const WATER_PER_TASK: usize = 64;
 
 /// A boundary particle of a thin part, or its image across symmetry planes.
 struct LayerParticle<const D: usize> {
@@ -152,7 +152,7 @@ pub(super) fn pushes<const D: usize>(system: &System<D>, dt: f64) -> Vec<Push<D>
             };
             Some(Push { particle, solid, change, arm: layer.around.places[k] + way - centre })
         };
-        let water = (0..layer.water.len()).into_par_iter().with_min_len(PARTICLES_PER_TASK);
+        let water = (0..layer.water.len()).into_par_iter().with_min_len(WATER_PER_TASK);
         pushes.par_extend(water.filter_map(push));
     }
     pushes

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::{
     joint::{JointKind, JointSpec, mode_count},
+    lifetime::Lifetime,
     lines::{LineEnd, RopeSpec, SpringSpec, start_length},
 };
 use crate::{
@@ -180,6 +181,13 @@ impl<const D: usize> Constraints<D> {
     pub fn can_touch(&self, a: usize, b: usize) -> bool {
         let jointed = |joint: &JointSpec<D>| same(joint.between, [Some(a), Some(b)]) && !joint.contacts_enabled;
         self.contacts.find(a, b).is_none_or(|pair| pair.can_touch) && !self.joints.iter().any(jointed)
+    }
+
+    /// The ends and the lifetime of each spring, rope and mooring line.
+    pub(crate) fn lines(&self) -> impl Iterator<Item = (&[LineEnd<D>; 2], &Lifetime)> {
+        let springs = self.springs.iter().map(|spring| (&spring.ends, &spring.lifetime));
+        let ropes = self.ropes.iter().map(|rope| (&rope.ends, &rope.lifetime));
+        springs.chain(ropes).chain(self.moorings.iter().map(|line| (&line.ends, &line.lifetime)))
     }
 
     /// The kind and the name of a constraint of solid number `solid` that has not ended at time `t` (s), if there is one.

@@ -166,7 +166,7 @@ fn constraint_work<const D: usize>(sim: &Simulation<D>, before: &[Kinematics<D>]
 /// Returns the work (J) in a step of the films of water between solids: the motion that opens a gap raises the water around it by
 /// the same energy, which is lost when the gap fills.
 fn film_work<const D: usize>(sim: &Simulation<D>, before: &[Kinematics<D>], dt: f64) -> f64 {
-    let loads = film::loads(sim.system(), &sim.system().rates.boundary);
+    let loads = film::loads(sim.system(), &sim.system().rates.boundary).loads;
     let moved = before.iter().zip(sim.system().solids());
     loads.iter().zip(moved).map(|(load, (then, now))| work(load, then, &now.kinematics, dt)).sum()
 }
