@@ -205,7 +205,7 @@ fn wave_facts(wave: &GeneratedWave) -> Vec<(&'static str, String)> {
     if !wave.gauges.is_empty() {
         let heights = wave.gauges.iter().map(|at| format!("{} at \"{}\"", three_digits(at.height_share), at.probe));
         let heights: Vec<String> = heights.collect();
-        facts.push(("", format!("share of the height expected at this dp: {}", heights.join(", "))));
+        facts.push(("", format!("share of the specified height expected: {}", heights.join(", "))));
     }
     facts
 }
