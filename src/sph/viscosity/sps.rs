@@ -35,6 +35,7 @@ impl Sps {
 
     /// ρ₀ τ/ρ² (m²/s²) from the strain rate (1/s; `[i][j]` with j ≤ i is read) and the specific volume `s` = ρ₀/ρ of
     /// a particle.
+    #[inline]
     pub fn stress<N: Num, const D: usize>(
         &self,
         strain: &[[N; D]; D],
@@ -42,7 +43,12 @@ impl Sps {
         medium: &FluidProperties<D>,
     ) -> [[N; D]; D] {
         let of = |x: f64| s.constant(x);
-        let strain: [[N; D]; D] = std::array::from_fn(|i| std::array::from_fn(|j| strain[i.max(j)][i.min(j)]));
+        let mut strain = *strain;
+        for i in 0..D {
+            for j in i + 1..D {
+                strain[i][j] = strain[j][i];
+            }
+        }
         let length2 = medium.dp * medium.dp / D as f64;
         let norm2 = of(2.0) * strain.iter().flatten().fold(of(0.0), |sum, &x| sum + x * x);
         let nu_t = of(self.smagorinsky * self.smagorinsky * length2) * norm2.sqrt();
