@@ -75,8 +75,12 @@ impl<K: Kernel, const D: usize> BoundarySums<D> for KernelSums<K> {
     fn sum_slab(&self, level: Level, packed: &PackedParticles<D>, slab: &Slab, flow: bool, sums: &mut [LaneRow]) {
         let reach2 = self.1;
         match flow {
-            true => simd::dispatch(level, BoundarySlabTask::<_, true, D> { kernel: self.0, reach2, packed, slab, sums }),
-            false => simd::dispatch(level, BoundarySlabTask::<_, false, D> { kernel: self.0, reach2, packed, slab, sums }),
+            true => {
+                simd::dispatch(level, BoundarySlabTask::<_, true, D> { kernel: self.0, reach2, packed, slab, sums })
+            }
+            false => {
+                simd::dispatch(level, BoundarySlabTask::<_, false, D> { kernel: self.0, reach2, packed, slab, sums })
+            }
         }
     }
 }

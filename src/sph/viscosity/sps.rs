@@ -43,12 +43,7 @@ impl Sps {
         medium: &FluidProperties<D>,
     ) -> [[N; D]; D] {
         let of = |x: f64| s.constant(x);
-        let mut strain = *strain;
-        for i in 0..D {
-            for j in i + 1..D {
-                strain[i][j] = strain[j][i];
-            }
-        }
+        let strain: [[N; D]; D] = std::array::from_fn(|i| std::array::from_fn(|j| strain[i.max(j)][i.min(j)]));
         let length2 = medium.dp * medium.dp / D as f64;
         let norm2 = of(2.0) * strain.iter().flatten().fold(of(0.0), |sum, &x| sum + x * x);
         let nu_t = of(self.smagorinsky * self.smagorinsky * length2) * norm2.sqrt();
