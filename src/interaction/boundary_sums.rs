@@ -5,11 +5,12 @@ use fearless_simd::{SimdBase, SimdCvtFloat, SimdFloat};
 use super::{
     reference::ReferenceParticle,
     simd_layout::{PackedCluster, PackedParticles},
+    simd_slab::end_of_support,
 };
 use crate::{
     math::simd::{self, LANES, LaneRow, Level, Simd, SimdTask, f32x8, i32x8},
     neighbours::{ListPart, ParticleListChunk, Slab},
-    sph::{Num, Units, boundary::WallExtrapolation, kernel::Kernel},
+    sph::{Num, boundary::WallExtrapolation, kernel::Kernel},
 };
 
 /// The sums under one kernel.
@@ -32,8 +33,8 @@ pub(super) trait BoundarySums<const D: usize>: Send + Sync {
     fn sum_slab(&self, level: Level, packed: &PackedParticles<D>, slab: &Slab, flow: bool, sums: &mut [LaneRow]);
 }
 
-/// A kernel, multiplied by the volume of a particle at ρ₀.
-pub(super) struct KernelSums<K>(pub(super) K);
+/// A kernel, multiplied by the volume of a particle at ρ₀, and the square of its support.
+pub(super) struct KernelSums<K>(pub(super) K, pub(super) f64);
 
 /// Number of rows of sums, with the velocity or without.
 #[inline(always)]
@@ -72,24 +73,32 @@ impl<K: Kernel, const D: usize> BoundarySums<D> for KernelSums<K> {
     }
 
     fn sum_slab(&self, level: Level, packed: &PackedParticles<D>, slab: &Slab, flow: bool, sums: &mut [LaneRow]) {
+        let reach2 = self.1;
         match flow {
-            true => simd::dispatch(level, BoundarySlabTask::<_, true, D> { kernel: self.0, packed, slab, sums }),
-            false => simd::dispatch(level, BoundarySlabTask::<_, false, D> { kernel: self.0, packed, slab, sums }),
+            true => {
+                simd::dispatch(level, BoundarySlabTask::<_, true, D> { kernel: self.0, reach2, packed, slab, sums })
+            }
+            false => {
+                simd::dispatch(level, BoundarySlabTask::<_, false, D> { kernel: self.0, reach2, packed, slab, sums })
+            }
         }
     }
 }
 
-/// Sets `fit` to the sums by row in `units`, with the velocity if `flow`.
+/// Sets `fit` to the sums by row, with the velocity if `flow`; their units are one of pressure over density, of length and of speed.
+#[inline(always)]
 pub(super) fn set<const D: usize>(
     fit: &mut WallExtrapolation<f64, D>,
     flow: bool,
     sums: impl Fn(usize) -> f64,
-    Units { length, time }: &Units,
+    [pressure, length, speed]: [f64; 3],
 ) {
     for_each_row(fit, flow, |row, x| *x = sums(row));
-    fit.pressure_sum *= (length / time).powi(2);
+    fit.pressure_sum *= pressure;
     fit.offset_sum = fit.offset_sum.map(|x| x * length);
-    fit.velocity_sum = fit.velocity_sum.map(|x| x * (length / time));
+    if flow {
+        fit.velocity_sum = fit.velocity_sum.map(|x| x * speed);
+    }
 }
 
 /// Calls `visit` with the row and the value of each sum.
@@ -113,6 +122,7 @@ pub(super) fn for_each_row<N: Num, const D: usize>(
 
 struct BoundarySlabTask<'a, K, const FLOW: bool, const D: usize> {
     kernel: K,
+    reach2: f64,
     packed: &'a PackedParticles<D>,
     slab: &'a Slab,
     sums: &'a mut [LaneRow],
@@ -123,7 +133,8 @@ impl<'a, K: Kernel, const FLOW: bool, const D: usize> SimdTask for BoundarySlabT
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
-        let Self { kernel, packed, slab, sums } = self;
+        let Self { kernel, reach2, packed, slab, sums } = self;
+        let end2 = f32x8::splat(simd, end_of_support(reach2));
         let [first, middle, end] = packed.clusters_of(slab);
         let (rows, zero) = (row_count(D, FLOW), f32x8::splat(simd, 0.0));
         sums.fill(LaneRow::default());
@@ -152,6 +163,9 @@ impl<'a, K: Kernel, const FLOW: bool, const D: usize> SimdTask for BoundarySlabT
                         let mut r2 = r[0] * r[0];
                         for d in &r[1..] {
                             r2 = d.mul_add(*d, r2);
+                        }
+                        if !simd::any_below(r2, end2) {
+                            continue;
                         }
                         let w = kernel.w(r2);
                         if is_water {

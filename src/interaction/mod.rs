@@ -133,6 +133,9 @@ pub trait PairLoop<const D: usize>: Send + Sync {
     /// Memory of the buffers of a pass, B.
     fn memory_bytes(&self) -> usize;
 
+    /// Says that the stress of the water or the marks of boundary particles have changed since the last pass.
+    fn inputs_changed(&mut self) {}
+
     /// Frees the buffers of a pass, before the neighbour lists are rebuilt; the sums of the last pass go with them.
     fn free_buffers(&mut self);
 
@@ -144,9 +147,9 @@ pub trait PairLoop<const D: usize>: Send + Sync {
     /// The sums of water particle `i`, gravity included, by the last [`PairLoop::rates`], which had these lists.
     fn fluid_sums(&self, neighbours: &NeighbourLists<D>, i: usize) -> PairSums<D>;
 
-    /// The sums of water particle `i` that only some terms need, by the last [`PairLoop::rates`], which computed
+    /// Sets those of `sums` that some terms need to the sums of water particle `i` by the last [`PairLoop::rates`], which computed
     /// [`RequestedSums::All`] and had these lists.
-    fn auxiliary_sums(&self, neighbours: &NeighbourLists<D>, i: usize) -> AuxiliarySums<f64, D>;
+    fn read_auxiliary_sums(&self, neighbours: &NeighbourLists<D>, i: usize, sums: &mut AuxiliarySums<f64, D>);
 }
 
 /// The pair loop of the terms `inner` between water particles and `wall` between water and solids, with the properties `medium`
@@ -168,7 +171,7 @@ where
     let moments = T::GRADIENT_CORRECTION.then(|| -> Box<dyn compiled::PairTerms<D>> {
         Box::new(compiled::CompiledTerms::new(kernel, RenormalizationTerm, RenormalizationTerm, medium))
     });
-    let fits = Box::new(boundary_sums::KernelSums(kernel.normalised_on_lattice(medium)));
+    let fits = Box::new(boundary_sums::KernelSums(kernel.normalised_on_lattice(medium), laws.reach2));
     match level {
         Some(level) => Box::new(simd::SimdPairLoop::new(laws, moments, fits, units, level)),
         None => Box::new(reference::ReferencePairLoop::new(laws, moments, fits)),

@@ -316,7 +316,7 @@ impl<const D: usize> PairLoop<D> for ReferencePairLoop<D> {
         self.fluid[i]
     }
 
-    fn auxiliary_sums(&self, _: &NeighbourLists<D>, i: usize) -> AuxiliarySums<f64, D> {
-        self.auxiliary[i]
+    fn read_auxiliary_sums(&self, _: &NeighbourLists<D>, i: usize, sums: &mut AuxiliarySums<f64, D>) {
+        *sums = self.auxiliary[i];
     }
 }

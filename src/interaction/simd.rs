@@ -39,6 +39,8 @@ pub(super) struct SimdPairLoop<const D: usize> {
     packed: PackedParticles<D>,
     /// Whether the water is packed for this pass already.
     has_water: bool,
+    /// Whether the stress and the marks of the last pass are packed and hold.
+    has_inputs: bool,
     /// The sums that each slab computes for itself and the next slab, slab by slab; rows of zeros at the end.
     sums: Vec<LaneRow>,
     /// The first cluster with rows in `sums`.
@@ -64,7 +66,7 @@ impl<const D: usize> SimdPairLoop<D> {
     ) -> Self {
         let (packed, sums, at) = (PackedParticles::default(), Vec::new(), Vec::new());
         let (gravity, gathered, spent) = (Vector::zeros(), Vec::new(), Duration::ZERO);
-        let (has_water, has_rates, first) = (false, false, 0);
+        let (has_water, has_inputs, has_rates, first) = (false, false, false, 0);
         Self {
             laws,
             moments,
@@ -74,6 +76,7 @@ impl<const D: usize> SimdPairLoop<D> {
             gravity,
             packed,
             has_water,
+            has_inputs,
             sums,
             first,
             at,
@@ -83,10 +86,11 @@ impl<const D: usize> SimdPairLoop<D> {
         }
     }
 
-    /// Packs the particles: the boundary particles alone if the water is packed for this pass already.
-    fn pack(&mut self, input: &PairLoopInput<'_, D>, clusters: &Clusters) {
+    /// Packs what the next sums read: of boundary particles the positions alone if `outline`; no water that is packed for this pass
+    /// already, nor the positions that were packed with it.
+    fn pack(&mut self, input: &PairLoopInput<'_, D>, clusters: &Clusters, outline: bool) {
         let has_water = std::mem::replace(&mut self.has_water, true);
-        self.packed.pack(input, clusters, &self.units, has_water);
+        self.packed.pack(input, clusters, &self.units, [has_water, outline]);
         if !has_water {
             exchange::receive_next_water(&mut self.packed, clusters);
         }
@@ -158,11 +162,11 @@ impl<const D: usize> SimdPairLoop<D> {
         PairSums { acceleration: dv, compression_rate: sum(D) * rate }
     }
 
-    /// The auxiliary sums of the particle in `slot`, in SI.
+    /// Sets `sums` to those auxiliary sums of the particle in `slot` that `needs` names, in SI.
     #[inline(always)]
-    fn auxiliary_sums_of(&self, slot: u32, needs: RequiredSums) -> AuxiliarySums<f64, D> {
-        let (sum, mut sums) = (self.of_slot(slot, needs.sum_rows(D)), AuxiliarySums::filled_with(0.0));
-        for_each_auxiliary(&mut sums, needs, needs, |row, x| *x = sum(row));
+    fn read_auxiliary_sums_of(&self, slot: u32, needs: RequiredSums, sums: &mut AuxiliarySums<f64, D>) {
+        let sum = self.of_slot(slot, needs.sum_rows(D));
+        for_each_auxiliary(sums, needs, needs, |row, x| *x = sum(row));
         let [per_length, per_time] = [1.0 / self.units.length, 1.0 / self.units.time];
         if needs.shift {
             sums.concentration_gradient.iter_mut().for_each(|x| *x *= per_length);
@@ -170,7 +174,6 @@ impl<const D: usize> SimdPairLoop<D> {
         if needs.stress {
             for_each_symmetric_entry(&mut sums.strain, 0, &mut |_, x| *x *= per_time);
         }
-        sums
     }
 }
 
@@ -223,7 +226,7 @@ impl<const D: usize> PairLoop<D> for SimdPairLoop<D> {
         fits: &mut [WallExtrapolation<f64, D>],
     ) {
         let clusters = clusters(input.neighbours);
-        self.pack(input, clusters);
+        self.pack(input, clusters, true);
         let lengths = self.lay_out(clusters, boundary_sums::row_count(D, flow));
         let start = Instant::now();
         let works = works(clusters, &lengths, &mut self.sums);
@@ -231,9 +234,10 @@ impl<const D: usize> PairLoop<D> for SimdPairLoop<D> {
         works.into_par_iter().with_max_len(1).for_each(|(slab, rows)| sums.sum_slab(level, packed, slab, flow, rows));
         self.spent += start.elapsed();
         exchange::complete_sums(&mut self.sums, clusters, &lengths);
-        let rows = boundary_sums::row_count(D, flow);
+        let (rows, speed) = (boundary_sums::row_count(D, flow), self.units.length / self.units.time);
+        let units = [speed.powi(2), self.units.length, speed];
         let read = |fit: &mut WallExtrapolation<f64, D>, slot: u32| {
-            boundary_sums::set(fit, flow, self.of_slot(slot, rows), &self.units);
+            boundary_sums::set(fit, flow, self.of_slot(slot, rows), units);
         };
         let Some(own) = own else {
             for_each_own(clusters, fits, read);
@@ -246,7 +250,7 @@ impl<const D: usize> PairLoop<D> for SimdPairLoop<D> {
     fn moments(&mut self, input: &PairLoopInput<'_, D>, moments: &mut [Matrix<D>]) {
         let Some(needs) = self.moments.as_ref().map(|terms| terms.required_sums()) else { return };
         let clusters = clusters(input.neighbours);
-        self.pack(input, clusters);
+        self.pack(input, clusters, false);
         let lengths = self.lay_out(clusters, needs.sum_rows(D));
         let start = Instant::now();
         if let Some(terms) = &self.moments {
@@ -260,8 +264,9 @@ impl<const D: usize> PairLoop<D> for SimdPairLoop<D> {
         let is_own = clusters.division.own_water().and_then(|(_, is_own)| is_own).map(|is_own| &is_own[these.clone()]);
         let own = moments[these].par_iter_mut().zip(slots).filter(|(_, (k, _))| is_own.is_none_or(|is_own| is_own[*k]));
         own.for_each(|(moment, (_, &slot))| {
-            let sums = self.auxiliary_sums_of(slot, needs).renormalization;
-            *moment = Matrix::from_fn(|i, j| sums[i.max(j)][i.min(j)]);
+            let mut sums = AuxiliarySums::filled_with(0.0);
+            self.read_auxiliary_sums_of(slot, needs, &mut sums);
+            *moment = Matrix::from_fn(|i, j| sums.renormalization[i.max(j)][i.min(j)]);
         });
     }
 
@@ -277,10 +282,13 @@ impl<const D: usize> PairLoop<D> for SimdPairLoop<D> {
     ) -> StepLimits {
         let clusters = clusters(input.neighbours);
         let needs = self.laws.required_sums();
-        self.pack(input, clusters);
+        self.pack(input, clusters, false);
         self.has_water = false;
-        if needs.input_rows(D) > 0 {
+        // The two passes of a symplectic step have the same stress.
+        let hold = self.has_inputs && !needs.repulsion && !needs.gradient_correction;
+        if needs.input_rows(D) > 0 && !hold {
             self.packed.pack_rows(input, clusters, &self.units, needs);
+            self.has_inputs = true;
         }
         let lengths = self.lay_out(clusters, needs.requested_rows(D, requested));
         let start = Instant::now();
@@ -325,7 +333,12 @@ impl<const D: usize> PairLoop<D> for SimdPairLoop<D> {
         packed + sums + places
     }
 
+    fn inputs_changed(&mut self) {
+        self.has_inputs = false;
+    }
+
     fn free_buffers(&mut self) {
+        self.has_inputs = false;
         (self.packed, self.sums, self.at) = (PackedParticles::default(), Vec::new(), Vec::new());
         (self.has_rates, self.gathered) = (false, Vec::new());
     }
@@ -346,7 +359,7 @@ impl<const D: usize> PairLoop<D> for SimdPairLoop<D> {
         sums
     }
 
-    fn auxiliary_sums(&self, neighbours: &NeighbourLists<D>, i: usize) -> AuxiliarySums<f64, D> {
-        self.auxiliary_sums_of(clusters(neighbours).fluid_slots[i], self.laws.required_sums())
+    fn read_auxiliary_sums(&self, neighbours: &NeighbourLists<D>, i: usize, sums: &mut AuxiliarySums<f64, D>) {
+        self.read_auxiliary_sums_of(clusters(neighbours).fluid_slots[i], self.laws.required_sums(), sums);
     }
 }

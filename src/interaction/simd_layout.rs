@@ -50,8 +50,15 @@ pub(super) struct PackedParticles<const D: usize> {
 }
 
 impl<const D: usize> PackedParticles<D> {
-    /// Packs all particles that may have pairs; only the boundary particles if the water has not changed.
-    pub(super) fn pack(&mut self, input: &PairLoopInput<'_, D>, clusters: &Clusters, units: &Units, water_stays: bool) {
+    /// Packs all particles that may have pairs, of boundary particles the positions alone if `outline`. If the `water_stays`, it is
+    /// packed already, and so are the positions of boundary particles.
+    pub(super) fn pack(
+        &mut self,
+        input: &PairLoopInput<'_, D>,
+        clusters: &Clusters,
+        units: &Units,
+        [water_stays, outline]: [bool; 2],
+    ) {
         let these = clusters.clusters_of(clusters.read_slabs());
         self.first = these.start;
         self.clusters.reserve_exact(these.len().saturating_sub(self.clusters.len()));
@@ -67,8 +74,12 @@ impl<const D: usize> PackedParticles<D> {
                 } else {
                     (input.boundary, input.boundary_velocity)
                 };
-                neighbours::fill_positions(&mut cluster.x, source, &particles.r, inv_unit);
-                state(cluster, source, (&particles.rho, v), input, units);
+                if !water_stays || outline {
+                    neighbours::fill_positions(&mut cluster.x, source, &particles.r, inv_unit);
+                }
+                if c < slab.middle || !outline {
+                    state(cluster, source, (&particles.rho, v), input, units);
+                }
             }
         });
     }

@@ -31,6 +31,11 @@ pub(super) fn sum_slab<K: Kernel, T: Term<D>, W: Term<D>, const D: usize>(
     simd::dispatch(level, SlabTask { laws: *laws, packed, requested, slab, sums })
 }
 
+/// The square of the distance from which on a kernel with this squared support is 0 in single precision, too.
+pub(super) fn end_of_support(reach2: f64) -> f32 {
+    (reach2 * (1.0 + 1e-5)) as f32
+}
+
 struct SlabTask<'a, K, T, W, const D: usize> {
     /// By value: the compiler then knows that writing a sum does not change it.
     laws: CompiledTerms<K, T, W>,
@@ -58,6 +63,8 @@ struct SlabInput<'a, S: Simd, K, const AUXILIARY: bool, const D: usize> {
     kernel: K,
     eta2: f32x8<S>,
     reach2: f32x8<S>,
+    /// From this square of the distance on, every contribution is an exact 0.
+    end2: f32x8<S>,
     zero: f32x8<S>,
     clusters: &'a [PackedCluster<D>],
     /// Rows of input.
@@ -95,6 +102,7 @@ impl<K: Kernel, T: Term<D>, W: Term<D>, const D: usize> SlabTask<'_, K, T, W, D>
             kernel: laws.kernel,
             eta2: f32x8::splat(simd, laws.eta2 as f32),
             reach2: f32x8::splat(simd, laws.reach2 as f32),
+            end2: f32x8::splat(simd, end_of_support(laws.reach2)),
             zero: f32x8::splat(simd, 0.0),
             clusters: &packed.clusters,
             rows: &packed.rows,
@@ -136,7 +144,8 @@ impl<K: Kernel, T: Term<D>, W: Term<D>, const D: usize> SlabTask<'_, K, T, W, D>
                 }
                 let mine = &mut sums[(c - first) * rows..][..rows];
                 sum.for_each_rate(|row, sum| mine[row].0[l] += simd::sum_lanes(*sum));
-                if AUXILIARY {
+                // Nobody reads those of boundary particles.
+                if AUXILIARY && is_water {
                     for_each_auxiliary(&mut sum.auxiliary, needs, needs, |row, sum| {
                         mine[row].0[l] += simd::sum_lanes(*sum)
                     });
@@ -241,13 +250,19 @@ impl<S: Simd, K: Kernel, const AUXILIARY: bool, const D: usize> SlabInput<'_, S,
             let (mut r_ab, mut v_ab) = ([zero; D], [zero; D]);
             for k in 0..D {
                 r_ab[k] = f32x8::float_from(one.x[k] - simd::load_integers(simd, &x[k]));
-                v_ab[k] = one.v[k] - simd::load(simd, &v[k]);
             }
             let mut r2 = r_ab[0] * r_ab[0];
             for d in &r_ab[1..] {
                 r2 = d.mul_add(*d, r2);
             }
+            // The lists reach beyond the support, as far as particles may move while they hold.
+            if !simd::any_below(r2, self.end2) {
+                continue;
+            }
             let load = |row: &[f32; LANES]| simd::load(simd, row);
+            for k in 0..D {
+                v_ab[k] = one.v[k] - load(&v[k]);
+            }
             let side = self.pair_side::<CORRECTED>(j, [load(&s[0]), load(&s[2]), load(&s[3])], load);
             let difference = (side.compression - one.side.compression) + (load(&s[1]) - one.compression_lo);
             let geometry = (r_ab, v_ab, r2, difference);

@@ -6,7 +6,7 @@
 pub use fearless_simd::Level;
 pub(crate) use fearless_simd::{Simd, f32x8, i32x8};
 
-use fearless_simd::{SimdBase, SimdFrom};
+use fearless_simd::{SimdBase, SimdFrom, SimdMask};
 
 /// Lanes in a number.
 pub(crate) const LANES: usize = 8;
@@ -81,6 +81,12 @@ pub(crate) fn load<S: Simd>(simd: S, from: &[f32; LANES]) -> f32x8<S> {
 #[inline(always)]
 pub(crate) fn load_integers<S: Simd>(simd: S, from: &[i32; LANES]) -> i32x8<S> {
     i32x8::simd_from(simd, *from)
+}
+
+/// Whether a lane of `x` is below that of `limit`.
+#[inline(always)]
+pub(crate) fn any_below<S: Simd>(x: f32x8<S>, limit: f32x8<S>) -> bool {
+    x.simd_lt(limit).any_true()
 }
 
 /// The sum of all lanes, always in the same order.

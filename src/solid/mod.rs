@@ -262,6 +262,12 @@ impl<const D: usize> Solid<D> {
         self.kinetic_energy() + self.potential_energy(gravity)
     }
 
+    /// Whether a point of it may have an acceleration: it has an exact 0 otherwise.
+    pub(crate) fn may_accelerate(&self) -> bool {
+        let turns = [&self.kinematics.spin, &self.angular_acceleration].into_iter().flat_map(|turn| turn.0.iter());
+        self.acceleration.iter().chain(turns).any(|x| *x != 0.0)
+    }
+
     /// Acceleration (m/s²) of its point at the world position `x` (m).
     pub(crate) fn acceleration_at(&self, x: &Vector<D>) -> Vector<D> {
         let (arm, spin) = (x - self.kinematics.centre, &self.kinematics.spin);

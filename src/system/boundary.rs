@@ -299,6 +299,7 @@ impl<const D: usize> System<D> {
             suppressed[solid.boundary.clone()].fill(self.model.shifting.suppressed_beside(fixed));
         }
         self.boundary.shifting_suppressed = Some(suppressed);
+        self.pair_loop.inputs_changed();
     }
 
     /// Gives each boundary particle of `range` near water the density of still water at its depth, but not below ρ₀. It reads nothing
@@ -431,16 +432,17 @@ impl<const D: usize> System<D> {
     /// Makes `targets` of the extrapolated pressures of `fits`, one for each of the boundary particles `wet`.
     fn wall_targets(&self, wet: &[u32], fits: &[WallExtrapolation<f64, D>], targets: &mut Vec<TargetDensity>) {
         let (medium, Boundary { particles, depths, coverage, .. }) = (&self.properties, &self.boundary);
-        let depths = depths.as_deref().unwrap_or_default();
+        let (depths, gravity) = (depths.as_deref().unwrap_or_default(), medium.gravity);
+        let solids: Vec<_> = self.solids.iter().map(|s| (s.may_accelerate(), self.wall_promptness(s))).collect();
         let target = |(&particle, fit): (&u32, &WallExtrapolation<f64, D>)| {
             let i = particle as usize;
             let number = self.owner(i);
-            let owner = &self.solids[number];
-            let pressure = self.extrapolated_pressure(fit, number, i);
+            let (may_accelerate, promptness) = solids[number];
+            let pull = if may_accelerate { self.pull_at(number, i) } else { gravity };
+            let pressure = fit.pressure(&pull.into(), &gravity.into(), depths[i]);
             let density = medium.rho0 * (1.0 + self.equation_of_state.compression(pressure));
             let (approach, cover) = (fit.approach(&particles.v[i].into()), coverage.cover(fit.weight_sum, depths[i]));
             let (own, constants) = (particles.rho[i], [medium.rho0, medium.c0]);
-            let promptness = self.wall_promptness(owner);
             TargetDensity { particle, target: WallTarget::new(density, own, approach, cover, promptness, constants) }
         };
         wet.par_iter().zip(fits).with_min_len(PARTICLES_PER_TASK).map(target).collect_into_vec(targets);
@@ -449,8 +451,12 @@ impl<const D: usize> System<D> {
     /// The pressure (P/ρ₀, m²/s²) of the water of `fit` at boundary particle `i` of solid number `owner`.
     pub(super) fn extrapolated_pressure(&self, fit: &WallExtrapolation<f64, D>, owner: usize, i: usize) -> f64 {
         let (gravity, depths) = (self.properties.gravity, self.boundary.depths.as_deref().unwrap_or_default());
-        let pull = gravity - self.solids[owner].acceleration_at(&self.place_on_solid(owner, i));
-        fit.pressure(&pull.into(), &gravity.into(), depths[i])
+        fit.pressure(&self.pull_at(owner, i).into(), &gravity.into(), depths[i])
+    }
+
+    /// Gravity less the acceleration of boundary particle `i` of solid number `owner`, m/s².
+    fn pull_at(&self, owner: usize, i: usize) -> Vector<D> {
+        self.properties.gravity - self.solids[owner].acceleration_at(&self.place_on_solid(owner, i))
     }
 
     /// Share (–) of a prompt change of density at the walls of `solid`.

@@ -128,6 +128,7 @@ pub(crate) fn set_fluid_stress<const D: usize>(system: &mut System<D>, stress: i
     let Fluid { stress: all, images, .. } = &mut system.fluid;
     let which = (0..water).map(|i| (i, 0)).chain(images.each_original());
     all.iter_mut().flatten().zip(which).for_each(|(own, (i, axes))| *own = reflected_tensor(axes, &stress(i)));
+    system.pair_loop.inputs_changed();
 }
 
 /// The valid range of a particle.

@@ -59,7 +59,7 @@ pub(crate) use thin_faces::repel as repel_from_thin_faces;
 
 use own_water::StateAtStart;
 use slip_rates::SlipRates;
-use symmetry::{reflected_auxiliary, reflected_sums};
+use symmetry::{reflect_auxiliary, reflected_sums};
 
 pub use crate::interaction::StepLimits;
 
@@ -156,14 +156,17 @@ impl<'a, const D: usize> FluidRates<'a, D> {
         if self.reflections.is_empty() { sums } else { reflected_sums(self.reflection(i), sums) }
     }
 
-    /// The sums of water particle `i` that only some laws need.
-    pub(crate) fn auxiliary_of(&self, i: usize) -> AuxiliarySums<f64, D> {
+    /// Sets `sums`, which are 0, to those of water particle `i` that only some laws need.
+    #[inline(always)]
+    pub(crate) fn read_auxiliary_of(&self, i: usize, sums: &mut AuxiliarySums<f64, D>) {
         let original = self.original(i);
         if original >= self.water {
-            return AuxiliarySums::filled_with(0.0);
+            return;
         }
-        let sums = self.pair_loop.auxiliary_sums(self.neighbours, original);
-        if self.reflections.is_empty() { sums } else { reflected_auxiliary(self.reflection(i), sums) }
+        self.pair_loop.read_auxiliary_sums(self.neighbours, original, sums);
+        if !self.reflections.is_empty() {
+            reflect_auxiliary(self.reflection(i), sums);
+        }
     }
 
     /// Along which axes particle `i` is reflected.
@@ -517,10 +520,13 @@ impl<const D: usize> System<D> {
         let Some((mut stress, law)) = self.fluid.stress.take().zip(self.model.viscosity.stress()) else { return };
         let (medium, rates, rho) = (&self.properties, self.fluid_rates(), &self.fluid.particles.rho);
         stress.par_iter_mut().enumerate().with_min_len(PARTICLES_PER_TASK).for_each(|(i, stress)| {
-            let rows = law.stress(&rates.auxiliary_of(i).strain, medium.rho0 / rho[i], medium);
+            let mut sums = AuxiliarySums::filled_with(0.0);
+            rates.read_auxiliary_of(i, &mut sums);
+            let rows = law.stress(&sums.strain, medium.rho0 / rho[i], medium);
             *stress = Matrix::from_fn(|i, j| rows[i][j]);
         });
         self.fluid.stress = Some(stress);
+        self.pair_loop.inputs_changed();
     }
 
     /// The corrected gradients, made for new neighbour lists and for every [`gradient_correction::PASSES`]th pass. Still water keeps

@@ -201,18 +201,14 @@ pub(super) fn reflected_sums<const D: usize>(axes: AxisSet, sums: PairSums<D>) -
     PairSums { acceleration: reflected(axes, sums.acceleration), ..sums }
 }
 
-/// The auxiliary sums of a particle, reflected along `axes`.
-pub(super) fn reflected_auxiliary<const D: usize>(
-    axes: AxisSet,
-    mut sums: AuxiliarySums<f64, D>,
-) -> AuxiliarySums<f64, D> {
+/// Reflects the auxiliary sums of a particle along `axes`.
+pub(super) fn reflect_auxiliary<const D: usize>(axes: AxisSet, sums: &mut AuxiliarySums<f64, D>) {
     sums.concentration_gradient = reflected(axes, Vector::from(sums.concentration_gradient)).into();
     for rows in [&mut sums.strain, &mut sums.renormalization] {
         for (i, row) in rows.iter_mut().enumerate() {
             row.iter_mut().enumerate().filter(|(j, _)| changes_sign(axes, i, *j)).for_each(|(_, x)| *x = -*x);
         }
     }
-    sums
 }
 
 /// The torque or spin `turn`, reflected along `axes`.

@@ -19,8 +19,8 @@ use crate::{
     math::Vector,
     model::{Model, TimeScheme},
     particles::PARTICLES_PER_TASK,
-    sph::boundary::relaxation,
-    system::{MomentumTransfer, Reordering, System, repel_from_thin_faces},
+    sph::{AuxiliarySums, FluidProperties, boundary::relaxation, particle_shifting::Shift},
+    system::{FluidRates, MomentumTransfer, Reordering, System, repel_from_thin_faces},
 };
 
 /// The chosen scheme with its state.
@@ -98,32 +98,36 @@ impl<const D: usize> Stepper<D> {
     }
 }
 
-/// Displacement (m) of each water particle by shifting in a step `dt` (s); `None` if the model does not shift.
-fn shifts<const D: usize>(system: &System<D>, dt: f64) -> Option<Vec<Vector<D>>> {
-    let shift = system.model().shift()?;
-    let rates = system.fluid_rates();
-    let water = system.fluid.particles.v.par_iter().enumerate().with_min_len(PARTICLES_PER_TASK);
-    let shifts = water.map(|(i, v)| {
-        let sums = rates.auxiliary_of(i);
-        if sums.shifting_suppressed > 0.0 {
-            Vector::zeros()
-        } else {
-            shift.displacement(&sums, v.norm(), dt, system.properties()).into()
-        }
-    });
-    Some(shifts.collect())
+/// The shifting of the water in a step.
+#[derive(Clone, Copy)]
+struct Shifts<const D: usize> {
+    law: Shift,
+    dt: f64,
+    properties: FluidProperties<D>,
 }
 
-/// Moves the water by `shifts` (m).
-fn apply_shifts<const D: usize>(
-    system: &mut System<D>,
-    shifts: &[Vector<D>],
-    accounting: &mut Option<&mut Accounting<D>>,
-) {
-    accounting.iter_mut().for_each(|accounting| accounting.add_shifting(system, shifts));
-    let r = &mut system.fluid.particles.r;
-    r.par_iter_mut().zip(shifts).with_min_len(PARTICLES_PER_TASK).for_each(|(r, shift)| *r += shift);
-    system.check_water();
+impl<const D: usize> Shifts<D> {
+    /// That of a step `dt` (s), which is added to the budget; `None` if the model does not shift.
+    fn of(system: &System<D>, dt: f64, accounting: &mut Option<&mut Accounting<D>>) -> Option<Self> {
+        let shifts = Self { law: system.model().shift()?, dt, properties: *system.properties() };
+        if let Some(accounting) = accounting {
+            let rates = system.fluid_rates();
+            let water = system.fluid.particles.v.par_iter().enumerate().with_min_len(PARTICLES_PER_TASK);
+            let all: Vec<_> = water.map(|(i, v)| shifts.displacement(&rates, i, v)).collect();
+            accounting.add_shifting(system, &all);
+        }
+        Some(shifts)
+    }
+
+    /// Displacement (m) of water particle `i` of velocity `v` (m/s).
+    fn displacement(&self, rates: &FluidRates<'_, D>, i: usize, v: &Vector<D>) -> Vector<D> {
+        let mut sums = AuxiliarySums::filled_with(0.0);
+        rates.read_auxiliary_of(i, &mut sums);
+        if sums.shifting_suppressed > 0.0 {
+            return Vector::zeros();
+        }
+        self.law.displacement(&sums, v.norm(), self.dt, &self.properties).into()
+    }
 }
 
 /// Sets the densities of boundary particles near water to what `rho` makes of their rate dx/dt (1/s), index and density, and

@@ -9,7 +9,7 @@
 
 use rayon::prelude::*;
 
-use super::{apply_shifts, shifts, step_boundary_density};
+use super::{Shifts, step_boundary_density};
 use crate::{
     coupling::{Accounting, Interval, drift_half_step},
     interaction::RequestedSums,
@@ -59,7 +59,7 @@ impl Symplectic {
         system.update_rates(RequestedSums::All);
 
         accounting.iter_mut().for_each(|accounting| accounting.add_force_pass(system, dt));
-        let shifts = shifts(system, dt);
+        let shifts = Shifts::of(system, dt, &mut accounting);
         let whole = |rho_start: f64, rho_half: f64, dx: f64| {
             let epsilon = -dt * rho0 * dx / rho_half;
             rho_start * (2.0 - epsilon) / (2.0 + epsilon)
@@ -79,16 +79,17 @@ impl Symplectic {
                     return StepCheck::INITIAL;
                 }
                 let (s, (r_start, v_start, rho_start)) = (rates.of(i), start.particle(i));
+                let shift = shifts.map(|shifts| shifts.displacement(&rates, i, v));
                 *v = v_start + s.acceleration * dt;
                 *r = r_start + (v_start + *v) * half;
+                if let Some(shift) = shift {
+                    *r += shift;
+                }
                 *rho = whole(rho_start, *rho, s.compression_rate);
                 guard.check(then, r, v, *rho)
             })
             .reduce(|| StepCheck::INITIAL, StepCheck::combine);
         own_water::combine_checks(system);
-        if let Some(shifts) = shifts {
-            apply_shifts(system, &shifts, &mut accounting);
-        }
         step_boundary_density(system, dt, |dx, [place, _], rho| whole(start.boundary_density(place), rho, dx));
         1.0
     }

@@ -15,7 +15,7 @@
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::{apply_shifts, shifts, step_boundary_density};
+use super::{Shifts, step_boundary_density};
 use crate::{
     coupling::{Accounting, Interval},
     math::Vector,
@@ -137,7 +137,7 @@ impl<const D: usize> Verlet<D> {
         }
         let span = if euler { dt } else { self.dt_before + dt };
         accounting.iter_mut().for_each(|accounting| accounting.add_force_pass(system, dt));
-        let shifts = shifts(system, dt);
+        let shifts = Shifts::of(system, dt, &mut accounting);
 
         let guard = system.valid_range();
         let (fluid, rates) = system.fluid_and_rates();
@@ -150,15 +150,16 @@ impl<const D: usize> Verlet<D> {
             .with_min_len(PARTICLES_PER_TASK)
             .map(|(i, ((((r, v), rho), (v_before, rho_before)), then))| {
                 let s = rates.of(i);
+                let shift = shifts.map(|shifts| shifts.displacement(&rates, i, v));
                 *r += *v * dt + s.acceleration * (0.5 * dt * dt);
+                if let Some(shift) = shift {
+                    *r += shift;
+                }
                 (*v_before, *v) = (*v, *v_before + s.acceleration * span);
                 (*rho_before, *rho) = (*rho, *rho_before + rho0 * s.compression_rate * span);
                 guard.check(then, r, v, *rho)
             })
             .reduce(|| StepCheck::INITIAL, StepCheck::combine);
-        if let Some(shifts) = shifts {
-            apply_shifts(system, &shifts, &mut accounting);
-        }
         let before = &mut self.skin_rho_before;
         step_boundary_density(system, span, |dx, [_, i], rho| {
             std::mem::replace(&mut before[i], rho) + rho0 * dx * span

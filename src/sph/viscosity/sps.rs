@@ -35,6 +35,7 @@ impl Sps {
 
     /// ρ₀ τ/ρ² (m²/s²) from the strain rate (1/s; `[i][j]` with j ≤ i is read) and the specific volume `s` = ρ₀/ρ of
     /// a particle.
+    #[inline]
     pub fn stress<N: Num, const D: usize>(
         &self,
         strain: &[[N; D]; D],
