@@ -14,6 +14,7 @@ use crate::{
         Vector,
         format::{three_digits, two_digits_down},
     },
+    model::PressureGradient,
     preflight::GeneratedWave,
     scene::world_bounds,
     solid::{ForceSpec, Role, Solid},
@@ -25,13 +26,17 @@ use crate::{
 /// speed in that time.
 const LEAST: f64 = 30.0;
 
-/// Force with which the particles resist a slow body under water in 2-D, over the pressure there and its size, with h below 2 dp. A disc
-/// of ten or twenty rows that swings at 0.026 to 0.08 m/s under 0.2 to 0.5 m of water finds 0.5 to 1 % of pressure times diameter, and
-/// hardly less without viscosity.
-const RESISTANCE: f64 = 0.006;
+/// Force with which the particles resist slow motion under water, over the pressure there and the size of the body (in 3-D its square),
+/// in 2-D and 3-D, and whether it has been measured with h below 2 dp and plain gradients. A disc of ten or twenty rows that swings at
+/// 0.026 to 0.08 m/s under 0.2 to 0.5 m of water finds 0.5 to 1 % of pressure times diameter, and hardly less without viscosity.
+const RESISTANCE: [f64; 2] = [0.006, 0.008];
 
 /// The same with h of 2 dp or more.
-const RESISTANCE_WIDE: f64 = 0.003;
+const RESISTANCE_WIDE: [f64; 2] = [0.003, 0.003];
+
+/// The same with gradients corrected at every depth as well: by
+/// `pontoon run docs/measurements/slow-disc.toml --set 'model={gradient="corrected",h_over_dp=2.0}'`.
+const RESISTANCE_CORRECTED: [f64; 2] = [0.0007, 0.0007];
 
 /// The flow about a moving body.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -134,33 +139,38 @@ fn body_flow<const D: usize>(
 }
 
 /// Returns a warning if solid number `i`, of this `size` (m), moves at most at `speed` (m/s) under water, so that the particles resist
-/// it more than its drag, ½ ρ U² L. In 3-D the resistance has not been measured.
+/// it more than its drag, ½ ρ U² Lᴰ⁻¹.
 fn slow_body<const D: usize>(context: &PreflightContext<D>, i: usize, speed: f64, size: f64) -> Option<Finding> {
-    let depth = depth_under_water(context, i).filter(|_| D == 2)?;
+    let depth = depth_under_water(context, i)?;
     let (solid, model) = (&context.solids()[i], context.system.model());
     let is_wide = model.h >= 2.0 * model.dp * (1.0 - 1e-9);
-    let share = if is_wide { RESISTANCE_WIDE } else { RESISTANCE };
+    let is_corrected = model.gradient == PressureGradient::Corrected;
+    let share = match (is_wide, is_corrected) {
+        (true, true) => RESISTANCE_CORRECTED,
+        (true, false) => RESISTANCE_WIDE,
+        (false, _) => RESISTANCE,
+    }[D - 2];
     let least = (2.0 * share * context.g * depth).sqrt();
     let rests = speed == 0.0 && !(matches!(solid.spec.role, Role::Free(_)) && is_on_line(context, i));
     if rests || speed >= least {
         return None;
     }
     let motion = if speed > 0.0 { format!("moves at {} m/s", three_digits(speed)) } else { "hangs on lines".into() };
+    let (unit, face) = if D == 2 { ("N/m", "size") } else { ("N", "size squared") };
     let what = format!(
-        "\"{}\" {motion} under {} m of water: there the particles resist slow motion with about {} N/m, {} % of the pressure times its \
-         size, more than drag does",
+        "\"{}\" {motion} under {} m of water: there the particles resist slow motion with about {} {unit}, {} % of the pressure times its \
+         {face}, more than drag does; its added mass is too small",
         solid.spec.name,
         three_digits(depth),
-        three_digits(share * model.rho0 * context.g * depth * size),
+        three_digits(share * model.rho0 * context.g * depth * size.powi(D as i32 - 1)),
         three_digits(100.0 * share),
     );
-    let slower = format!("hardly matters above {} m/s", three_digits(least));
-    let mend = if is_wide {
-        format!("it {slower}; a laminar viscosity halves it, and a finer dp does not reduce it")
+    let slower = format!("hardly matters above {} m/s, and a finer dp does not reduce it", three_digits(least));
+    let mend = if is_wide && is_corrected {
+        format!("it {slower}")
     } else {
         format!(
-            "it {slower};  h_over_dp = 2.1  and  viscosity = {{ laminar = {{ nu0 = 1e-6 }} }}  in [model] reduce it to a quarter, and a finer \
-             dp does not"
+            "it {slower};  h_over_dp = 2.0  and  gradient = \"corrected\"  in [model] reduce it to a tenth, for bodies that stay under water"
         )
     };
     Some(Finding::warning("slow_body", what, mend))

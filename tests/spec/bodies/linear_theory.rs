@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 
 use pontoon::{Result, simulation::Simulation};
 
-use crate::common::{run_to, scene_simulation};
+use crate::common::{measurement, run_to, scene_simulation};
 
 /// A disc of 0.3 m in a tank `length` m long with 0.6 m of water; `more` holds its other keys.
 fn disc(dp: f64, length: f64, more: &str) -> String {
@@ -93,6 +93,26 @@ fn a_disc_driven_in_sway_meets_the_added_mass_and_damping_of_linear_theory() -> 
     // Ten rows; the bounds are those of the project for heave. Twenty rows have 18.8 and 216.8.
     assert!((added_mass / 19.576 - 1.0).abs() < 0.1, "added mass {added_mass} kg/m, exact 19.58");
     assert!((damping / 214.88 - 1.0).abs() < 0.08, "damping {damping} kg/(m s), exact 214.9");
+    Ok(())
+}
+
+/// Particles under pressure resist slow motion. `inspect` advises corrected gradients with h = 2 dp.
+#[test]
+fn a_slow_disc_under_water_has_the_added_mass_of_potential_flow_with_corrected_gradients() -> Result<()> {
+    let sets = [("dp", "0.02"), ("probe", "[]"), ("model", "{ gradient = \"corrected\", h_over_dp = 2.0 }")];
+    let (mut sim, amplitude, omega) = (measurement::<2>("slow-disc", &sets)?, 0.02, 2.56);
+    let mut samples = Vec::new();
+    while sim.time() < 5.0 {
+        sim.step_to(5.0)?;
+        samples.push((sim.time(), sim.system().solids()[1].load.force[1]));
+    }
+    // Compression waves of the start fade in a second.
+    samples.retain(|&(t, _)| t > 1.2);
+    let [_, sine, cosine, ..] = harmonics(&samples, omega);
+    let (added_mass, damping) = (sine / amplitude / (omega * omega), -cosine / (omega * amplitude));
+    // By images in bed, lid and walls 1.0955 ρ π R². With ten rows 36.3 and 15; with the default laws 18.5 and 79.
+    assert!((added_mass / 34.42 - 1.0).abs() < 0.1, "added mass {added_mass} kg/m, exact 34.42");
+    assert!(damping < 25.0, "damping {damping} kg/(m s)");
     Ok(())
 }
 

@@ -414,15 +414,20 @@ fn disc_findings(motion: &str, model: &str) -> Vec<(&'static str, String)> {
 /// The particles resist a disc of ten rows under 0.4 m of water with 4 N/m, 0.5 % of pressure times diameter (measured), at 0.026 m/s as at
 /// 0.08 m/s, without viscosity too: more than its drag below 0.2 m/s. Viscosity is not what to change first.
 #[test]
-fn a_slow_body_under_water_is_found_with_the_h_that_helps() {
+fn a_slow_body_under_water_is_found_with_the_laws_that_help() {
     let driven = |law: &str| format!("driven = {{ along = [1.0, 0.0], distance = {{ formula = \"{law}\" }} }}");
     let topics = |found: &[(&'static str, String)]| found.iter().map(|(topic, _)| *topic).collect::<Vec<_>>();
     for model in ["", "viscosity = \"none\"", "viscosity = { artificial = { alpha = 0.02 } }"] {
         let found = disc_findings(&driven("0.01*(1-cos(2.56*t))"), model);
         let slow = found.iter().find(|(topic, _)| *topic == "slow_body").expect("a finding");
-        assert!(slow.1.contains("h_over_dp = 2.1"), "{}", slow.1);
+        assert!(slow.1.contains("h_over_dp = 2.0  and  gradient = \"corrected\""), "{}", slow.1);
         assert!(!topics(&found).contains(&"viscous_body"), "{found:?}");
     }
+    // With the laws that help, a speed of 0.1 m/s is not slow any more.
+    let law = driven("0.04*(1-cos(2.56*t))");
+    assert!(topics(&disc_findings(&law, "")).contains(&"slow_body"));
+    let with_help = disc_findings(&law, "gradient = \"corrected\"\nh_over_dp = 2.0");
+    assert!(!topics(&with_help).contains(&"slow_body"), "{with_help:?}");
     let fast = disc_findings(&driven("0.1*(1-cos(5*t))"), "");
     assert!(!topics(&fast).contains(&"slow_body"), "{fast:?}");
     // A tether keeps a light disc from rising; without it, buoyancy makes it fast.
