@@ -470,7 +470,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         if let Some(free) = &equilibrium.free_joints {
             let tied = statics.tied_to(number);
             let its = if tied.len() == 1 { "its" } else { "their" };
-            findings.extend(free_assembly_finding(free, (&self.names_of(statics, &tied), its)));
+            findings.extend(free_assembly_finding(free, (&self.names_of(statics, &tied), its), &equilibrium.tilts));
         } else if free.is_none() && is_first && !is_carried {
             findings.extend(turn_finding(equilibrium, (statics, number), (&name, verb, its)));
         }

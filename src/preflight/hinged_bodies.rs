@@ -4,7 +4,7 @@
 
 use serde::Serialize;
 
-use super::{Finding, PreflightContext, hollows::hull, turns::LEVEL};
+use super::{Finding, PreflightContext, floating_bodies::Tilt, hollows::hull, turns::LEVEL};
 use crate::{
     math::{Bivector, Pose, Vector, format::three_digits},
     solid::{
@@ -43,7 +43,9 @@ pub(super) fn free_assembly<const D: usize>(
     number: usize,
 ) -> Option<FreeAssembly> {
     let first = statics.tied_to(number).into_iter().find(|j| context.support(statics, *j) == Support::Water);
-    if !statics.has_loose_ties(number) || first != Some(number) {
+    // A single body on joints to the ground is judged by its metacentric height.
+    let is_alone = statics.tied_to(number).len() == 1 && !statics.is_roped(number);
+    if is_alone || !statics.has_loose_ties(number) || first != Some(number) {
         return None;
     }
     Some(named(context, statics, free_rest(statics, number)?))
@@ -62,11 +64,17 @@ fn named<const D: usize>(context: &PreflightContext<D>, statics: &StaticSystem<D
     }
 }
 
-/// Returns a finding about tied bodies that turn to their rest or have none; `called`: their names, and the word for "their".
-pub(super) fn free_assembly_finding(free: &FreeAssembly, (name, its): (&str, &str)) -> Option<Finding> {
+/// Returns a finding about tied bodies that turn to their rest or have none; `called`: their names, and the word for "their". `tilts`: as
+/// one rigid body.
+pub(super) fn free_assembly_finding(free: &FreeAssembly, (name, its): (&str, &str), tilts: &[Tilt]) -> Option<Finding> {
     let (verb, has) = if its == "its" { ("turns", "it has") } else { ("turn", "they have") };
     if !free.is_stable {
-        let what = format!("{name} will fall over: with {its} ties free, {has} no stable rest near the start");
+        let least = tilts.iter().map(|tilt| tilt.gm_m).fold(0.0, f64::min);
+        let height = match least < 0.0 {
+            true => format!("; as one body {its} metacentric height is {} m", three_digits(least)),
+            false => String::new(),
+        };
+        let what = format!("{name} will fall over: with {its} ties free, {has} no stable rest near the start{height}");
         let mend = "make a joint fixed, give it a motor with stiffness or end stops, or lower the centres of mass";
         return Some(Finding::warning("capsizes", what, mend.into()));
     }
@@ -103,7 +111,7 @@ pub(super) fn held_findings<const D: usize>(
     }
     let Some(found) = free_rest(statics, number) else { return };
     let (found, name) = (named(context, statics, found), context.names_of(statics, &tied));
-    findings.extend(free_assembly_finding(&found, (&name, if tied.len() == 1 { "its" } else { "their" })));
+    findings.extend(free_assembly_finding(&found, (&name, if tied.len() == 1 { "its" } else { "their" }), &[]));
 }
 
 /// Adds a note about each body on a single hinge to the ground, without lines and end stops, that starts out of balance.

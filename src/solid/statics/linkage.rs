@@ -64,6 +64,8 @@ pub(crate) struct FreeRest {
     pub(crate) periods: Vec<f64>,
     /// Whether the bodies have no stable rest near their start.
     pub(crate) is_unstable: bool,
+    /// Whether they start beside an unstable rest.
+    starts_unstable: bool,
 }
 
 /// A condition C = 0, or C ≤ 0 of a rope or an end stop, with its reaction λ.
@@ -126,7 +128,13 @@ pub(crate) fn free_rest<const D: usize>(system: &StaticSystem<D>, i: usize) -> O
     let holds = |line: &&Line<D>| line.bodies.into_iter().flatten().any(|j| members.contains(&j));
     let (ropes, springs) = system.lines.iter().filter(holds).partition(|line| line.is_rope);
     let tied = TiedBodies { system, joints, ropes, springs, coordinates, size, scale: weight * size, members };
-    if tied.coordinates.is_empty() { None } else { tied.rest() }
+    if tied.coordinates.is_empty() {
+        return None;
+    }
+    let found = tied.rest(NUDGE)?;
+    // A mast that a stay keeps from falling to one side falls to the other.
+    let other = if found.starts_unstable && !found.is_unstable { tied.rest(-NUDGE) } else { None };
+    Some(other.filter(|other| other.is_unstable).unwrap_or(found))
 }
 
 impl<const D: usize> StaticSystem<'_, D> {
@@ -149,8 +157,12 @@ impl<const D: usize> StaticSystem<'_, D> {
             let ends = joint.between.map(|end| end.and_then(|solid| self.number(solid)));
             joint.kind != super::JointKind::Fixed && ends.into_iter().any(is_own)
         };
-        self.joints.iter().any(is_loose)
-            || self.lines.iter().any(|line| line.is_rope && line.bodies.into_iter().any(is_own))
+        self.joints.iter().any(is_loose) || own.iter().any(|j| self.is_roped(*j))
+    }
+
+    /// Returns whether a rope ties body `i`.
+    pub(crate) fn is_roped(&self, i: usize) -> bool {
+        self.lines.iter().any(|line| line.is_rope && line.bodies.contains(&Some(i)))
     }
 }
 
@@ -338,14 +350,15 @@ impl<const D: usize> TiedBodies<'_, D> {
         Linearised { reaction, closing, free, force, stiffness }
     }
 
-    /// The next step of the coordinates.
-    fn step(&self, here: &Linearised) -> DVector<f64> {
+    /// The next step of the coordinates; `nudge` (rad) leads away from an unstable rest.
+    fn step(&self, here: &Linearised, nudge: f64) -> DVector<f64> {
         let Some(SymmetricEigen { eigenvectors, eigenvalues }) = here.eigen() else { return here.closing.clone() };
         let floor = NEUTRAL * eigenvalues.amax().max(self.scale);
         let mut step = here.closing.clone();
         for (stiff, axis) in eigenvalues.iter().zip(eigenvectors.column_iter()) {
             let own = here.force.dot(&axis);
             let part = match *stiff {
+                x if x < -UNSTABLE * self.scale && own.abs() < CLOSE * self.scale => nudge,
                 x if x < -UNSTABLE * self.scale && own.abs() < -x * NUDGE => NUDGE.copysign(own),
                 x if x < floor && own.abs() < NEUTRAL * self.scale => 0.0,
                 x => own / x.abs().max(floor),
@@ -355,8 +368,8 @@ impl<const D: usize> TiedBodies<'_, D> {
         step
     }
 
-    /// Finds the rest.
-    fn rest(&self) -> Option<FreeRest> {
+    /// Finds the rest; `nudge` (rad) leads away from an unstable one.
+    fn rest(&self, nudge: f64) -> Option<FreeRest> {
         let mut at = self.start();
         let mut active: Vec<bool> = self.conditions(&at).iter().map(|own| !own.is_one_sided).collect();
         let (mut longest, mut last) = (LARGEST, DVector::zeros(self.coordinates.len()));
@@ -366,7 +379,7 @@ impl<const D: usize> TiedBodies<'_, D> {
             active.iter_mut().zip(&all).for_each(|(held, own)| *held |= own.off > CLOSE);
             let here = self.linearised(&at, &all, &active);
             let starts_unstable = *is_unstable.get_or_insert_with(|| here.is_unstable(self.scale));
-            let mut step = self.step(&here);
+            let mut step = self.step(&here, nudge);
             let most = step.amax();
             if !most.is_finite() {
                 break;
@@ -388,7 +401,8 @@ impl<const D: usize> TiedBodies<'_, D> {
             at = self.moved(&at, &step);
             last = step;
         }
-        is_unstable.filter(|is| *is).map(|is_unstable| FreeRest { is_unstable, ..FreeRest::default() })
+        let none = |is_unstable| FreeRest { is_unstable, starts_unstable: true, ..FreeRest::default() };
+        is_unstable.filter(|is| *is).map(none)
     }
 
     /// The rest with the solids there; `None` if a body lies on the bottom.
@@ -424,6 +438,7 @@ impl<const D: usize> TiedBodies<'_, D> {
             tensions: self.ropes.iter().zip(of_ropes).map(tension).collect(),
             periods: self.periods(at, here)?,
             is_unstable: falls || here.is_unstable(self.scale),
+            starts_unstable,
             turns,
         })
     }
