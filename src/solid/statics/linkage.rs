@@ -13,7 +13,7 @@
 
 use nalgebra::{DMatrix, DVector, Dyn, SymmetricEigen};
 
-use super::{Line, StaticSystem, merge, up};
+use super::{Line, StaticSystem, up};
 use crate::{
     math::{Bivector, Pose, Vector, rotated_tensor},
     solid::{
@@ -135,35 +135,6 @@ pub(crate) fn free_rest<const D: usize>(system: &StaticSystem<D>, i: usize) -> O
     // A mast that a stay keeps from falling to one side falls to the other.
     let other = if found.starts_unstable && !found.is_unstable { tied.rest(-NUDGE) } else { None };
     Some(other.filter(|other| other.is_unstable).unwrap_or(found))
-}
-
-impl<const D: usize> StaticSystem<'_, D> {
-    /// Returns the bodies between which and body `i` there are joints, ropes or springs, with it.
-    pub(crate) fn tied_to(&self, i: usize) -> Vec<usize> {
-        let mut part = self.assembly.clone();
-        for line in &self.lines {
-            if let [Some(a), Some(b)] = line.bodies {
-                merge(&mut part, a, b);
-            }
-        }
-        (0..part.len()).filter(|j| part[*j] == part[i]).collect()
-    }
-
-    /// Returns whether a rope, or a joint that leaves a motion free, ties body `i` or what is tied to it.
-    pub(crate) fn has_loose_ties(&self, i: usize) -> bool {
-        let own = self.tied_to(i);
-        let is_own = |end: Option<usize>| end.is_some_and(|j| own.contains(&j));
-        let is_loose = |joint: &JointSpec<D>| {
-            let ends = joint.between.map(|end| end.and_then(|solid| self.number(solid)));
-            joint.kind != super::JointKind::Fixed && ends.into_iter().any(is_own)
-        };
-        self.joints.iter().any(is_loose) || own.iter().any(|j| self.is_roped(*j))
-    }
-
-    /// Returns whether a rope ties body `i`.
-    pub(crate) fn is_roped(&self, i: usize) -> bool {
-        self.lines.iter().any(|line| line.is_rope && line.bodies.contains(&Some(i)))
-    }
 }
 
 impl<const D: usize> TiedBodies<'_, D> {
