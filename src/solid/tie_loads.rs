@@ -78,9 +78,9 @@ impl TieLoads {
         }
         for joint in &constraints.joints {
             let Some((along, force, _, largest)) = joint.steady_drive() else { continue };
-            let lift = along * (force.clamp(-largest, largest) / state.g);
+            let lift = |i: usize| force.clamp(-largest, largest) * along.dot(&ways[i]) / state.g;
             for (end, sign) in joint.between.iter().zip([1.0, -1.0]) {
-                end.iter().for_each(|i| made.add(state, *i, sign * lift.dot(&ways[*i])));
+                end.iter().for_each(|i| made.add(state, *i, sign * lift(*i)));
             }
         }
         (0..n).for_each(|i| made.add(state, i, (state.moored)(i).dot(&ways[i])));
@@ -97,9 +97,10 @@ impl TieLoads {
             if hangs || length == 0.0 || (spring.tension_only && stretch < 0.0) {
                 continue;
             }
-            let load = (spring.ends[1].at - spring.ends[0].at) * (spring.stiffness * stretch / (length * state.g));
+            let along = (spring.ends[1].at - spring.ends[0].at) / length;
+            let load = |i: usize| spring.stiffness * stretch * along.dot(&ways[i]) / state.g;
             for (end, sign) in spring.ends.iter().zip([-1.0, 1.0]) {
-                end.solid.into_iter().for_each(|i| made.add(state, i, sign * load.dot(&ways[i])));
+                end.solid.into_iter().for_each(|i| made.add(state, i, sign * load(i)));
             }
         }
         // The loads (kg) that hanging bodies carry in their turn, with their places (m).
