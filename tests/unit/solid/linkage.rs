@@ -169,7 +169,7 @@ fn moored_buoy<const D: usize>(size: [f64; D]) {
     // Slack by 0.2 m, and taut.
     for length in [1.2, 1.0] {
         let found = tied(
-            &[buoy.clone()],
+            std::slice::from_ref(&buoy),
             Constraints { ropes: vec![line.clone().max_length(length)], ..Constraints::default() },
         )
         .unwrap();
