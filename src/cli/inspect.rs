@@ -375,15 +375,18 @@ fn bodies(bodies: &[BodySummary], dimension: usize) -> String {
                 body.name,
                 body.tied_to.join(", ")
             );
-            let all = || bodies.iter().filter(|other| other.name == body.name || body.tied_to.contains(&other.name));
-            let free = all().find_map(|other| other.afloat.as_ref()?.free_joints.as_ref());
-            if let Some(free) = free.filter(|free| free.is_stable) {
-                let periods: Vec<String> = free.periods_s.iter().map(|period| three_digits(*period)).collect();
-                let _ = writeln!(
-                    ties,
-                    "  with their joints free they have natural periods of {} s, without added mass",
-                    periods.join(", ")
-                );
+        }
+        let free = body.afloat.as_ref().and_then(|afloat| afloat.free_joints.as_ref());
+        if let Some(free) = free.filter(|free| free.is_stable) {
+            let list = |values: Vec<String>| values.join(", ");
+            let names = list(free.turns_deg.iter().map(|(name, _)| name.clone()).collect());
+            if !free.periods_s.is_empty() {
+                let periods = list(free.periods_s.iter().map(|period| three_digits(*period)).collect());
+                let _ = writeln!(ties, "  {names}: with free ties, natural periods of {periods} s, without added mass");
+            }
+            if !free.tensions_n.is_empty() {
+                let pulls = free.tensions_n.iter().map(|(name, n)| format!("{name} {} N", three_digits(*n)));
+                let _ = writeln!(ties, "  {names}: tensions at rest {}", list(pulls.collect()));
             }
         }
         if body.load_kg.abs() > 1e-6 * body.mass_kg {

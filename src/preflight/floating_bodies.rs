@@ -20,12 +20,12 @@ use super::{
     Finding, PreflightContext,
     expected_errors::heave_error,
     gaps::Gaps,
-    hinged_bodies::{FreeAssembly, free_assembly, free_assembly_finding},
+    hinged_bodies::{FreeAssembly, free_assembly, free_assembly_finding, held_findings},
     hollows::{hull, is_in_dry_hollow},
     lifetimes::overload,
     surface_samples::SurfaceSample,
     surroundings::Surroundings,
-    thickness::{load_error, thinnest_part},
+    thickness::{effect_on_sides, load_error, thinnest_part},
     turns::{LARGEST_ESTIMATE, linear_heel, turn_finding},
 };
 use crate::{
@@ -123,8 +123,8 @@ pub struct Equilibrium {
     /// The turn that `heel_deg` tells, if it is no estimate.
     #[serde(skip)]
     pub(crate) turn: Option<Turn>,
-    /// The assembly with the joints between its bodies free, at its first body that floats; absent without such joints, and if it is
-    /// not judged.
+    /// The body with all that joints, ropes and springs tie to it, and with their motions free, at the first of these bodies that floats;
+    /// absent without ties that leave a motion free, and if their rest is not found.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub free_joints: Option<FreeAssembly>,
 }
@@ -166,7 +166,10 @@ impl<const D: usize> PreflightContext<'_, D> {
             bodies.push(found);
             let first = bodies.len() - 1;
             let touches = (0..specs.len()).any(|j| lies[j] && groups.jointed[j] == groups.jointed[i]);
-            self.flotation_findings(&bodies[first], (&statics, first), touches, findings);
+            let tied = statics.as_ref().map_or_else(Vec::new, |statics| statics.tied_to(first));
+            let free = tied.iter().find_map(|j| bodies.get(*j)?.afloat.as_ref()?.free_joints.as_ref());
+            self.flotation_findings((&bodies[first], free), (&statics, first), touches, findings);
+            statics.iter().for_each(|statics| held_findings(self, statics, first, findings));
             self.ballast_findings(i, (&statics, first), &bodies[first], findings);
             findings.extend(self.unstable_ballast((&statics, first), i, &bodies[first]));
             self.resolution_findings(&bodies[first], findings);
@@ -421,7 +424,7 @@ impl<const D: usize> PreflightContext<'_, D> {
     }
 
     /// Returns the effect that carries body `number`: the deck on which it stands, if the water carries that.
-    fn support(&self, statics: &StaticSystem<D>, number: usize) -> Support {
+    pub(super) fn support(&self, statics: &StaticSystem<D>, number: usize) -> Support {
         match statics.support(number) {
             Support::Water if self.decks[statics.bodies[number].solid].is_some() => Support::Solid,
             support => support,
@@ -429,14 +432,14 @@ impl<const D: usize> PreflightContext<'_, D> {
     }
 
     /// Returns whether body `number` is the first of its assembly that floats.
-    pub(super) fn is_first_afloat(&self, statics: &StaticSystem<D>, number: usize) -> bool {
+    fn is_first_afloat(&self, statics: &StaticSystem<D>, number: usize) -> bool {
         statics.assembly_of(number).find(|j| self.support(statics, *j) == Support::Water) == Some(number)
     }
 
-    /// Adds findings about the equilibrium of a body, of an assembly with its first body.
+    /// Adds findings about the equilibrium of a body, of an assembly with its first body. `free`: the rest of what is tied to it.
     fn flotation_findings(
         &self,
-        body: &BodySummary,
+        (body, free): (&BodySummary, Option<&FreeAssembly>),
         (statics, number): (&Option<StaticSystem<D>>, usize),
         touches: bool,
         findings: &mut Vec<Finding>,
@@ -448,16 +451,12 @@ impl<const D: usize> PreflightContext<'_, D> {
             findings.push(Finding::warning("hull_floods", what, mend));
         }
         let Some(equilibrium) = &body.afloat else { return };
-        let all: Vec<String> =
-            statics.assembly_of(number).map(|j| format!("\"{}\"", self.body_name(statics, j))).collect();
-        let (name, verb, its) = match &all[..] {
-            [own] => (own.clone(), "s", "its"),
-            all => (all.join(" with "), "", "their"),
-        };
+        let all: Vec<usize> = statics.assembly_of(number).collect();
+        let name = self.names_of(statics, &all);
+        let (verb, its) = if all.len() == 1 { ("s", "its") } else { ("", "their") };
         let afloat = |j: &usize| self.support(statics, *j) == Support::Water;
         let is_first = self.is_first_afloat(statics, number);
         let loose = statics.loose_joints(number);
-        let free = equilibrium.free_joints.as_ref();
         if let (Some(joint), None, true) = (loose.first(), free, is_first) {
             let what = format!(
                 "GM, trim and roll of {name} take joint \"{joint}\"{} as rigid: the motion that it leaves free is not judged",
@@ -468,9 +467,11 @@ impl<const D: usize> PreflightContext<'_, D> {
         }
         // A body in the air that lies on another does not float.
         let is_carried = touches && body.displaced_kg <= 0.0;
-        if let (Some(free), true) = (free, is_first) {
-            findings.extend(free_assembly_finding(free, &name));
-        } else if is_first && !is_carried {
+        if let Some(free) = &equilibrium.free_joints {
+            let tied = statics.tied_to(number);
+            let its = if tied.len() == 1 { "its" } else { "their" };
+            findings.extend(free_assembly_finding(free, (&self.names_of(statics, &tied), its), &equilibrium.tilts));
+        } else if free.is_none() && is_first && !is_carried {
             findings.extend(turn_finding(equilibrium, (statics, number), (&name, verb, its)));
         }
         // A body that rests on another solid need not float at equilibrium.
@@ -517,8 +518,10 @@ impl<const D: usize> PreflightContext<'_, D> {
         )
     }
 
-    fn body_name(&self, statics: &StaticSystem<D>, number: usize) -> &str {
-        &self.solids()[statics.bodies[number].solid].spec.name
+    /// Returns the names of these bodies.
+    pub(super) fn names_of(&self, statics: &StaticSystem<D>, numbers: &[usize]) -> String {
+        let name = |j: &usize| format!("\"{}\"", self.solids()[statics.bodies[*j].solid].spec.name);
+        numbers.iter().map(name).collect::<Vec<_>>().join(" with ")
     }
 
     /// Adds findings about whether the particles can support a body.
@@ -528,10 +531,11 @@ impl<const D: usize> PreflightContext<'_, D> {
         let reach = model.support_radius();
         if body.thinnest_m < reach * (1.0 - CHORD_ERROR) {
             let what = format!(
-                "\"{name}\" is {} m thin, {} dp, and the kernel reaches {} dp: water on its two sides interacts{}{}",
+                "\"{name}\" is {} m thin, {} dp, and the kernel reaches {} dp: {}{}{}",
                 three_digits(body.thinnest_m),
                 three_digits(body.thinnest_dp),
                 three_digits(self.support_radius_dp()),
+                effect_on_sides::<D>(body.thinnest_dp),
                 load_error(body.thinnest_dp),
                 self.thin_buoyancy_error(body)
             );

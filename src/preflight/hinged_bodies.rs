@@ -1,15 +1,15 @@
-//! Bodies on joints with a free motion: the rest of assemblies whose joints are free, and the balance at the start of bodies on a
+//! Bodies on ties that leave a motion free: their rest with all that is tied to them, and the balance at the start of bodies on a
 //! hinge to the ground. At the turn φ about the hinge the moments of buoyancy, weight, steady
 //! forces and the motor are M(φ); the turn to rest is about −M(0)/M'(0).
 
 use serde::Serialize;
 
-use super::{Finding, PreflightContext, hollows::hull, turns::LEVEL};
+use super::{Finding, PreflightContext, floating_bodies::Tilt, hollows::hull, turns::LEVEL};
 use crate::{
     math::{Bivector, Pose, Vector, format::three_digits},
     solid::{
-        JointKind, JointSpec,
-        statics::{NO_WATER, StaticSystem, free_joints},
+        Constraints, JointKind, JointSpec,
+        statics::{FreeRest, NO_WATER, StaticSystem, Support, free_rest},
     },
 };
 
@@ -19,37 +19,62 @@ const TILT: f64 = 1e-4;
 /// Part of the weight times the size of a body below which a moment is round-off.
 const LEAST: f64 = 1e-6;
 
-/// An assembly with the joints between its bodies free.
+/// Bodies that joints, ropes and springs tie together, with the motions free that these leave free.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FreeAssembly {
     /// Natural periods at rest without added mass, s, from the longest.
     pub periods_s: Vec<f64>,
     /// Turn of each body from the start to rest, degrees.
     pub turns_deg: Vec<(String, f64)>,
-    /// Whether the assembly stays at rest; if not, its parts fall over.
+    /// Draft of each body at rest, m.
+    pub drafts_m: Vec<(String, f64)>,
+    /// Tension of each rope at rest, N (N/m in 2-D).
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub tensions_n: Vec<(String, f64)>,
+    /// Whether they have a stable rest near their start; if not, they fall over.
     pub is_stable: bool,
 }
 
-/// Returns the assembly of body `number`, its first one afloat, with its joints free; `None` without such joints, and if it is not
-/// judged.
+/// Returns body `number`, the first one afloat of those tied to it, with them and their ties free; `None` without a tie that leaves a
+/// motion free, and if their rest is not found.
 pub(super) fn free_assembly<const D: usize>(
     context: &PreflightContext<D>,
     statics: &StaticSystem<D>,
     number: usize,
 ) -> Option<FreeAssembly> {
-    if statics.loose_joints(number).is_empty() || !context.is_first_afloat(statics, number) {
+    let first = statics.tied_to(number).into_iter().find(|j| context.support(statics, *j) == Support::Water);
+    // A single body on joints to the ground is judged by its metacentric height.
+    let is_alone = statics.tied_to(number).len() == 1 && !statics.is_roped(number);
+    if is_alone || !statics.has_loose_ties(number) || first != Some(number) {
         return None;
     }
-    let found = free_joints(statics, number)?;
-    let name = |number: usize| context.solids()[statics.bodies[number].solid].spec.name.clone();
-    let turns_deg = found.turns.iter().map(|(number, turn)| (name(*number), turn.to_degrees())).collect();
-    Some(FreeAssembly { periods_s: found.periods, turns_deg, is_stable: !found.is_unstable })
+    Some(named(context, statics, free_rest(statics, number)?))
 }
 
-/// Returns a finding about an assembly with free joints that turns to its rest or has none.
-pub(super) fn free_assembly_finding(free: &FreeAssembly, name: &str) -> Option<Finding> {
+/// Returns this rest with the names of the bodies.
+fn named<const D: usize>(context: &PreflightContext<D>, statics: &StaticSystem<D>, found: FreeRest) -> FreeAssembly {
+    let named = |(number, x): (usize, f64)| (context.solids()[statics.bodies[number].solid].spec.name.clone(), x);
+    let degrees = found.turns.into_iter().map(|(number, turn)| (number, turn.to_degrees()));
+    FreeAssembly {
+        periods_s: found.periods,
+        turns_deg: degrees.map(named).collect(),
+        drafts_m: found.drafts.into_iter().map(named).collect(),
+        tensions_n: found.tensions,
+        is_stable: !found.is_unstable,
+    }
+}
+
+/// Returns a finding about tied bodies that turn to their rest or have none; `called`: their names, and the word for "their". `tilts`: as
+/// one rigid body.
+pub(super) fn free_assembly_finding(free: &FreeAssembly, (name, its): (&str, &str), tilts: &[Tilt]) -> Option<Finding> {
+    let (verb, has) = if its == "its" { ("turns", "it has") } else { ("turn", "they have") };
     if !free.is_stable {
-        let what = format!("{name} will fall over: with their joints free, they have no stable rest near the start");
+        let least = tilts.iter().map(|tilt| tilt.gm_m).fold(0.0, f64::min);
+        let height = match least < 0.0 {
+            true => format!("; as one body {its} metacentric height is {} m", three_digits(least)),
+            false => String::new(),
+        };
+        let what = format!("{name} will fall over: with {its} ties free, {has} no stable rest near the start{height}");
         let mend = "make a joint fixed, give it a motor with stiffness or end stops, or lower the centres of mass";
         return Some(Finding::warning("capsizes", what, mend.into()));
     }
@@ -57,13 +82,36 @@ pub(super) fn free_assembly_finding(free: &FreeAssembly, name: &str) -> Option<F
     (most > LEVEL.to_degrees()).then(|| {
         let turns: Vec<String> =
             free.turns_deg.iter().map(|(name, turn)| format!("\"{name}\" by {}°", three_digits(*turn))).collect();
-        let what = format!("{name} turn to their rest with free joints: {}", turns.join(", "));
+        let what = format!("{name} {verb} to {its} rest with free ties: {}", turns.join(", "));
         Finding::note(
             "lists",
             what,
             "turn them by so much (angle_deg, turn_deg), or shift their centres of mass".into(),
         )
     })
+}
+
+/// Adds findings about tied bodies none of which floats freely, as those on a joint to the ground or under water on a rope. A
+/// single hinge to the ground without other ties has a note of its own.
+pub(super) fn held_findings<const D: usize>(
+    context: &PreflightContext<D>,
+    statics: &StaticSystem<D>,
+    number: usize,
+    findings: &mut Vec<Finding>,
+) {
+    let tied = statics.tied_to(number);
+    let is_held = |j: &usize| matches!(context.support(statics, *j), Support::Held | Support::Lines);
+    if tied[0] != number || !tied.iter().all(is_held) || !statics.has_loose_ties(number) {
+        return;
+    }
+    let constraints = context.system.constraints().at_start();
+    let solid = statics.bodies[number].solid;
+    if tied.len() == 1 && constraints.joints.iter().any(|joint| has_own_note(joint, solid, context, &constraints)) {
+        return;
+    }
+    let Some(found) = free_rest(statics, number) else { return };
+    let (found, name) = (named(context, statics, found), context.names_of(statics, &tied));
+    findings.extend(free_assembly_finding(&found, (&name, if tied.len() == 1 { "its" } else { "their" }), &[]));
 }
 
 /// Adds a note about each body on a single hinge to the ground, without lines and end stops, that starts out of balance.
@@ -73,14 +121,10 @@ pub(super) fn check<const D: usize>(context: &PreflightContext<D>, findings: &mu
     }
     let constraints = context.system.constraints().at_start();
     let is_free = |i: usize| context.solids()[i].body.is_some();
-    for joint in constraints.joints.iter().filter(|joint| joint.kind == JointKind::Hinge && joint.limits.is_none()) {
+    for joint in &constraints.joints {
         let free: Vec<usize> = joint.between.into_iter().flatten().filter(|i| is_free(*i)).collect();
         let &[i] = &free[..] else { continue };
-        let lines = constraints.springs.iter().flat_map(|line| &line.ends);
-        let lines = lines.chain(constraints.ropes.iter().flat_map(|line| &line.ends));
-        let mut lines = lines.chain(constraints.moorings.iter().flat_map(|line| &line.ends));
-        let joints = constraints.joints.iter().filter(|other| other.between.contains(&Some(i))).count();
-        if joints > 1 || lines.any(|end| end.solid == Some(i)) {
+        if !has_own_note(joint, i, context, &constraints) {
             continue;
         }
         let moment = |turn: f64| moment(context, i, joint, turn);
@@ -108,6 +152,25 @@ pub(super) fn check<const D: usize>(context: &PreflightContext<D>, findings: &mu
     }
 }
 
+/// Returns whether a joint is a hinge of free solid number `i` to the ground without end stops, and its only tie.
+fn has_own_note<const D: usize>(
+    joint: &JointSpec<D>,
+    i: usize,
+    context: &PreflightContext<D>,
+    constraints: &Constraints<D>,
+) -> bool {
+    let lines = constraints.springs.iter().flat_map(|line| &line.ends);
+    let lines = lines.chain(constraints.ropes.iter().flat_map(|line| &line.ends));
+    let mut lines = lines.chain(constraints.moorings.iter().flat_map(|line| &line.ends));
+    let joints = constraints.joints.iter().filter(|other| other.between.contains(&Some(i))).count();
+    let free = joint.between.into_iter().flatten().filter(|j| context.solids()[*j].body.is_some());
+    joint.kind == JointKind::Hinge
+        && joint.limits.is_none()
+        && free.eq([i])
+        && joints == 1
+        && !lines.any(|end| end.solid == Some(i))
+}
+
 /// Returns the moment (N m) about the hinge on free solid number `i`, turned about it by `turn` (rad).
 fn moment<const D: usize>(context: &PreflightContext<D>, i: usize, joint: &JointSpec<D>, turn: f64) -> f64 {
     let solid = &context.solids()[i];
@@ -123,7 +186,7 @@ fn moment<const D: usize>(context: &PreflightContext<D>, i: usize, joint: &Joint
     let mut sum = about(centroid, up * (context.system.model().rho0 * volume));
     sum = sum + about(pose.point(&body.centre), up * -body.mass);
     for force in context.system.constraints().at_start().forces.iter().filter(|force| force.solid == i) {
-        let Some((load, torque)) = force.steady_load() else { continue };
+        let Some((load, torque)) = force.steady_load(&pose.rotation) else { continue };
         let at = force.at.as_ref().map_or_else(|| pose.point(&body.centre), around);
         sum = sum + about(at, load) + torque;
     }

@@ -51,6 +51,17 @@ fn shortest_chord<const D: usize>(mut ways: Vec<(f64, Vector<D>)>) -> Option<(f6
     ways.get((TIPS * ways.len() as f64) as usize).copied()
 }
 
+/// Returns what the boundary particles of a part of this thickness (dp), below the reach of the kernel, do to the water on its two sides
+/// (`system::thin_sides`).
+pub(super) fn effect_on_sides<const D: usize>(thickness_dp: f64) -> &'static str {
+    match thickness_dp {
+        x if D == 2 && x < 1.0 - 1e-6 => {
+            "one layer of boundary particles stands for it, with the pressure of each side where both are wet"
+        }
+        _ => "water on its two sides interacts, and its boundary particles have one pressure for both",
+    }
+}
+
 /// Returns the error of the load of water on one side of a wall of this thickness (dp): in tests a dry wall had a load of 0.7 to 1.4
 /// times the exact one at 1 dp, of 1.02 times at 1.5 dp, and the exact one from 2 dp on.
 pub(super) fn load_error(thickness_dp: f64) -> &'static str {
@@ -84,13 +95,14 @@ impl<const D: usize> PreflightContext<'_, D> {
             };
             if thick < reach * (1.0 - 1e-6) {
                 let what = format!(
-                    "\"{}\" is {} m thick at {}, {} dp, and the kernel reaches {} dp: water on its two sides interacts, \
-                     or meets too few boundary particles{}",
+                    "\"{}\" is {} m thick at {}, {} dp, and the kernel reaches {} dp: {}, or water meets \
+                     too few boundary particles{}",
                     solid.spec.name,
                     three_digits(thick),
                     coordinates(&at),
                     three_digits(thick / dp),
                     three_digits(self.support_radius_dp()),
+                    effect_on_sides::<D>(thick / dp),
                     load_error(thick / dp),
                 );
                 let mend = format!(

@@ -16,7 +16,7 @@ use crate::{
         fill::EnclosedSpace,
         hollow::{Enclosure, Hollow, may_enclose},
     },
-    math::Pose,
+    math::{Pose, Vector},
     solid::{
         Constraints, SolidSpec,
         decks::{deck_of, may_stand, standing_joint},
@@ -167,12 +167,12 @@ fn equilibrium_rises<const D: usize>(
     let afloat: Vec<bool> = scene.solid.iter().map(SolidConfig::is_afloat).collect();
     let bottom = level - pool.still.depth;
     let g = ctx.gravity_norm();
-    let mut pulls = vec![0.0; specs.len()];
+    let mut pulls = vec![Vector::zeros(); specs.len()];
     let lines = (&constraints.moorings[..], &constraints.mooring_points[..]);
     let at_rest = forces_at_rest(lines, &specs, &WaterAtRest { rho0, g, level });
     for (spec, forces) in constraints.moorings.iter().zip(at_rest) {
         let ends = spec.ends.iter().zip(forces);
-        ends.for_each(|(end, force)| end.solid.into_iter().for_each(|i| pulls[i] -= force[D - 1] / g));
+        ends.for_each(|(end, force)| end.solid.into_iter().for_each(|i| pulls[i] -= force / g));
     }
     let state = StartState {
         specs: &specs,

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    math::{Bivector, Vector, rotated_tensor},
+    math::{Bivector, Matrix, Vector, rotated_tensor},
     solid::{Kinematics, Lifetime, Load, TimeFunction},
 };
 
@@ -29,7 +29,7 @@ pub struct ForceSpec<const D: usize> {
     pub force: Vec<TimeFunction>,
     /// Axial components of the torque, N m (N m/m in 2-D): none, one in 2-D, three in 3-D.
     pub torque: Vec<TimeFunction>,
-    /// Whether the axes, the world's at the start, turn with the solid.
+    /// Whether the axes are the solid's own, and turn with it; else they are the world's.
     pub rotates_with_solid: bool,
     /// When it acts; it does not break.
     pub lifetime: Lifetime,
@@ -75,16 +75,25 @@ impl<const D: usize> ForceSpec<D> {
         Self { at: Some(at.into()), ..self }
     }
 
-    /// The same load, with axes that turn with the solid.
+    /// The same load along the axes of the solid, which turn with it.
     pub fn rotating_with_solid(self) -> Self {
         Self { rotates_with_solid: true, ..self }
     }
 
-    /// Its force (N) and torque (N m), if they do not change with time.
-    pub(crate) fn steady_load(&self) -> Option<(Vector<D>, Bivector<D>)> {
+    /// Its force (N) and torque (N m) on the solid turned by `rotation`, if its components do not change with time.
+    pub(crate) fn steady_load(&self, rotation: &Matrix<D>) -> Option<(Vector<D>, Bivector<D>)> {
         let steady = |laws: &[TimeFunction]| laws.iter().map(TimeFunction::steady_value).collect::<Option<Vec<f64>>>();
         let (force, turns) = (steady(&self.force)?, steady(&self.torque)?);
-        Some((Vector::from_fn(|i, _| force.get(i).copied().unwrap_or(0.0)), Bivector::from_axial(&turns)))
+        let force = Vector::from_fn(|i, _| force.get(i).copied().unwrap_or(0.0));
+        Some(self.in_world((force, Bivector::from_axial(&turns)), rotation))
+    }
+
+    /// A force and a torque along its axes, in the world's axes with the solid turned by `rotation`.
+    fn in_world(&self, (force, torque): (Vector<D>, Bivector<D>), rotation: &Matrix<D>) -> (Vector<D>, Bivector<D>) {
+        if !self.rotates_with_solid {
+            return (force, torque);
+        }
+        (rotation * force, Bivector(rotated_tensor(rotation, &torque.0)))
     }
 
     /// The same load with this lifetime.
@@ -111,12 +120,8 @@ impl<const D: usize> ForceSpec<D> {
             return Load::zero();
         }
         let ForceCommand { force, torque } = set.cloned().unwrap_or_else(|| self.command_at(t));
-        let mut force = Vector::from_fn(|i, _| force.get(i).copied().unwrap_or(0.0));
-        let mut torque = Bivector::from_axial(&torque);
-        if self.rotates_with_solid {
-            let turn = now.pose.rotation * start.pose.rotation.transpose();
-            (force, torque) = (turn * force, Bivector(rotated_tensor(&turn, &torque.0)));
-        }
+        let force = Vector::from_fn(|i, _| force.get(i).copied().unwrap_or(0.0));
+        let (force, torque) = self.in_world((force, Bivector::from_axial(&torque)), &now.pose.rotation);
         let at = self.at.map_or(now.centre, |at| now.pose.point(&start.pose.local(&at)));
         Load { force, torque: torque + Bivector::torque(&(at - now.centre), &force) }
     }

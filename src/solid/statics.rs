@@ -1,8 +1,9 @@
 //! Static equilibrium of free bodies that joints, ropes, springs, motors of sliders and steady forces tie together, in their
 //! initial orientation.
 //!
-//! Bodies that a joint keeps from rising against one another rise together. Each such group has one unknown, its rise. Newton's
-//! method finds the rises at which buoyancy, weight, lines and forces balance. A rope is a stiff spring that only pulls; the
+//! Bodies that a joint keeps from rising against one another rise together. Each such group has one unknown, its rise; an inclined
+//! guide to a solid that is not free shifts it sideways as it rises. Newton's method finds the rises at which buoyancy, weight, lines and
+//! forces balance. `linkage` finds the rest with the turns that the ties leave free. A rope is a stiff spring that only pulls; the
 //! bottom of the water is a stiff spring that only pushes.
 
 mod linkage;
@@ -13,19 +14,19 @@ mod ties;
 use nalgebra::{DMatrix, DVector};
 
 use super::{
-    Constraints, FreeBody, JointKind, JointSpec, LineEnd, SolidSpec,
+    Constraints, FreeBody, JointKind, JointSpec, Kinematics, LineEnd, SolidSpec,
     constraint::lines::start_length,
     hydrostatics::Hull,
-    joint_groups::{JointGroups, merge},
+    joint_groups::{JointGroups, merge, rise_directions},
     mooring::forces_at_rest,
 };
 use crate::math::{Bivector, Bounds, Pose, Vector};
 
-pub(crate) use linkage::free_joints;
+pub(crate) use linkage::{FreeRest, free_rest};
 pub(crate) use strength::Overload;
 pub(crate) use support::Support;
 pub(crate) use ties::MooredEnd;
-use ties::{Drive, Line, SteadyForce, tension_towards};
+use ties::{Drive, Line, LineStiffness, SteadyForce, tension_towards};
 
 /// Stiffness of a taut rope and of the bottom over that of the largest waterplane.
 const STIFF: f64 = 1e5;
@@ -74,10 +75,14 @@ pub(crate) struct StaticSystem<'a, const D: usize> {
     joints: Vec<JointSpec<D>>,
     lines: Vec<Line<D>>,
     forces: Vec<SteadyForce<D>>,
-    drives: Vec<Drive>,
+    drives: Vec<Drive<D>>,
     /// Stiffness of mooring lines at their ends; the rises at rest leave it out.
     moored: Vec<MooredEnd<D>>,
     water: WaterAtRest,
+    /// All solids at the start.
+    start: Vec<Kinematics<D>>,
+    /// Displacement of each group for each metre of its rise.
+    way: Vec<Vector<D>>,
     /// Rise of each group from the start to rest, m.
     rise: Vec<f64>,
 }
@@ -87,9 +92,9 @@ fn up<const D: usize>() -> Vector<D> {
     Vector::from_fn(|i, _| if i == D - 1 { 1.0 } else { 0.0 })
 }
 
-/// The pose, lifted by `rise` (m).
-fn lifted<const D: usize>(pose: &Pose<D>, rise: f64) -> Pose<D> {
-    Pose { position: pose.position + up() * rise, ..*pose }
+/// The pose, displaced by `way` (m).
+fn displaced<const D: usize>(pose: &Pose<D>, way: Vector<D>) -> Pose<D> {
+    Pose { position: pose.position + way, ..*pose }
 }
 
 impl<'a, const D: usize> StaticSystem<'a, D> {
@@ -140,13 +145,14 @@ impl<'a, const D: usize> StaticSystem<'a, D> {
             let body = number(Some(force.solid))?;
             let own = &bodies[body];
             let at = force.at.unwrap_or_else(|| own.pose.point(&own.body.centre));
-            let (force, torque) = force.steady_load()?;
-            Some(SteadyForce { body, at, force, torque })
+            let (turns, (force, torque)) = (force.rotates_with_solid, force.steady_load(&own.pose.rotation)?);
+            Some(SteadyForce { body, at, force, torque, turns })
         };
         let pulls = forces_at_rest((&constraints.moorings, &constraints.mooring_points), solids, &water);
         let moored = constraints.moorings.iter().zip(pulls).flat_map(|(spec, forces)| {
             let pull = |(end, force): (&LineEnd<D>, Vector<D>)| {
-                Some(SteadyForce { body: number(Some(end.solid?))?, at: end.at, force, torque: Bivector::zero() })
+                let body = number(Some(end.solid?))?;
+                Some(SteadyForce { body, at: end.at, force, torque: Bivector::zero(), turns: false })
             };
             spec.ends.iter().zip(forces).filter_map(pull).collect::<Vec<_>>()
         });
@@ -154,19 +160,16 @@ impl<'a, const D: usize> StaticSystem<'a, D> {
         let drive = |joint: &JointSpec<D>| {
             let (along, force, stiffness, largest) = joint.steady_drive()?;
             let bodies = joint.between.map(number);
-            (force != 0.0 || stiffness != 0.0).then_some(Drive {
-                bodies,
-                steep: along[D - 1],
-                force,
-                stiffness,
-                largest,
-            })
+            (force != 0.0 || stiffness != 0.0).then_some(Drive { bodies, along, force, stiffness, largest })
         };
         let drives = constraints.joints.iter().filter_map(drive).collect();
+        let way = rise_directions(solids, constraints, &groups);
+        let start = solids.iter().map(|solid| solid.initial_kinematics()).collect();
         let (rise, held) = (vec![0.0; solids.len()], groups.held);
         let joints = constraints.joints.clone();
         let moored = Vec::new();
-        let mut made = Self { bodies, group, assembly, held, joints, lines, forces, drives, moored, water, rise };
+        let mut made =
+            Self { bodies, group, assembly, held, joints, lines, forces, drives, moored, water, start, way, rise };
         made.find_rest();
         made
     }
@@ -217,7 +220,7 @@ impl<'a, const D: usize> StaticSystem<'a, D> {
             let pose = self.pose(i);
             let area = plan_area(&body.hull, &pose);
             let step = 1e-6 * self.size(i);
-            let volume = |rise: f64| body.hull.volume_if_dry(&lifted(&pose, rise), body.level);
+            let volume = |rise: f64| body.hull.volume_if_dry(&displaced(&pose, up::<D>() * rise), body.level);
             force[k] += g * (rho0 * volume(0.0) - body.body.mass);
             slope[k][k] += rho0 * g * (volume(step) - volume(-step)) / (2.0 * step);
             let sunk = body.bottom - body.hull.extent(&pose)[0];
@@ -228,47 +231,61 @@ impl<'a, const D: usize> StaticSystem<'a, D> {
         }
         for own in &self.forces {
             if let Some(k) = place(own.body) {
-                force[k] += own.force[D - 1];
+                force[k] += own.force.dot(self.way(own.body));
             }
         }
         for line in &self.lines {
             let (pull, stiffness) = self.pull(line);
             let ends = line.bodies.map(|end| end.and_then(place));
-            for (end, sign) in ends.into_iter().zip([1.0, -1.0]) {
-                let Some(k) = end else { continue };
-                force[k] += sign * pull[D - 1];
-                slope[k][k] -= stiffness;
-                if let Some(other) = if sign > 0.0 { ends[1] } else { ends[0] } {
-                    slope[k][other] += stiffness;
+            let ways = line.bodies.map(|body| body.map_or_else(Vector::zeros, |i| *self.way(i)));
+            for (own, other, sign) in [(0, 1, 1.0), (1, 0, -1.0)] {
+                let Some(k) = ends[own] else { continue };
+                force[k] += sign * pull.dot(&ways[own]);
+                slope[k][k] -= stiffness.between(&ways[own], &ways[own]);
+                if let Some(other_group) = ends[other] {
+                    slope[k][other_group] += stiffness.between(&ways[own], &ways[other]);
                 }
             }
         }
         for drive in &self.drives {
-            let (lift, stiffness) = self.lift(drive);
+            let ([first, second], stiffness) = self.lift(drive);
             let ends = drive.bodies.map(|end| end.and_then(place));
-            for (end, other, sign) in [(ends[0], ends[1], -1.0), (ends[1], ends[0], 1.0)] {
+            for (end, other, own, far) in [(ends[0], ends[1], first, second), (ends[1], ends[0], second, first)] {
                 let Some(k) = end else { continue };
-                force[k] += sign * lift;
-                slope[k][k] -= stiffness;
+                force[k] += own.0;
+                slope[k][k] -= stiffness * own.1 * own.1;
                 if let Some(other) = other {
-                    slope[k][other] += stiffness;
+                    slope[k][other] -= stiffness * own.1 * far.1;
                 }
             }
         }
         (force, slope)
     }
 
-    /// Returns the upward force (N) of a motor on its second body, and its stiffness (N/m) against a rise.
-    fn lift(&self, drive: &Drive) -> (f64, f64) {
-        let [first, second] = drive.bodies.map(|end| end.map_or(0.0, |i| self.rise[self.group[i]]));
-        let force = drive.force - drive.stiffness * drive.steep * (second - first);
-        let stiffness = if force.abs() < drive.largest { drive.stiffness * drive.steep * drive.steep } else { 0.0 };
-        (force.clamp(-drive.largest, drive.largest) * drive.steep, stiffness)
+    /// Returns the lifting force (N) of a motor on each of its bodies with the change of its coordinate for each metre that the body
+    /// rises, and its stiffness (N/m) against a change of the coordinate.
+    fn lift(&self, drive: &Drive<D>) -> ([(f64, f64); 2], f64) {
+        let [first, second] = drive.bodies.map(|end| end.map_or(0.0, |i| drive.along.dot(self.way(i))));
+        let rise = drive.bodies.map(|end| end.map_or(0.0, |i| self.rise[self.group[i]]));
+        let force = drive.force - drive.stiffness * (second * rise[1] - first * rise[0]);
+        let stiffness = if force.abs() < drive.largest { drive.stiffness } else { 0.0 };
+        let force = force.clamp(-drive.largest, drive.largest);
+        ([(-force * first, -first), (force * second, second)], stiffness)
     }
 
-    /// Returns the force (N) of a line on its first end, and its stiffness (N/m) against a rise of an end.
-    fn pull(&self, line: &Line<D>) -> (Vector<D>, f64) {
-        let [a, b] = [0, 1].map(|k| line.at[k] + up::<D>() * line.bodies[k].map_or(0.0, |i| self.rise[self.group[i]]));
+    /// Returns the displacement of body `i` for each metre of its rise.
+    fn way(&self, i: usize) -> &Vector<D> {
+        &self.way[self.bodies[i].solid]
+    }
+
+    /// Returns the displacement (m) of body `i` from the start to rest.
+    fn raised(&self, i: usize) -> Vector<D> {
+        self.way(i) * self.rise[self.group[i]]
+    }
+
+    /// Returns the force (N) of a line on its first end, and its stiffness.
+    fn pull(&self, line: &Line<D>) -> (Vector<D>, LineStiffness<D>) {
+        let [a, b] = [0, 1].map(|k| line.at[k] + line.bodies[k].map_or_else(Vector::zeros, |i| self.raised(i)));
         let mut along = b - a;
         if line.hangs {
             along = up::<D>() * along[D - 1];
@@ -276,11 +293,10 @@ impl<'a, const D: usize> StaticSystem<'a, D> {
         let length = along.norm();
         let stretch = length - line.length;
         if length == 0.0 || (stretch <= 0.0 && !line.pushes) {
-            return (Vector::zeros(), 0.0);
+            return (Vector::zeros(), LineStiffness { unit: up(), along: 0.0, across: 0.0 });
         }
         let (unit, tension) = (along / length, line.stiffness * stretch);
-        let steep = unit[D - 1] * unit[D - 1];
-        (unit * tension, line.stiffness * steep + (tension / length).max(0.0) * (1.0 - steep))
+        (unit * tension, LineStiffness { unit, along: line.stiffness, across: (tension / length).max(0.0) })
     }
 
     /// Finds the rises of `groups` that lines connect.
@@ -363,7 +379,7 @@ impl<'a, const D: usize> StaticSystem<'a, D> {
 
     /// Pose of body `i` at rest.
     pub(crate) fn pose(&self, i: usize) -> Pose<D> {
-        lifted(&self.bodies[i].pose, self.rise[self.group[i]])
+        displaced(&self.bodies[i].pose, self.raised(i))
     }
 
     /// Returns whether a lock of a body, or a joint to a solid that is not free, holds the assembly of body `i` against
@@ -415,8 +431,7 @@ impl<'a, const D: usize> StaticSystem<'a, D> {
         }
         for drive in &self.drives {
             let lift = self.lift(drive).0;
-            let of = |end: usize| if drive.bodies[end] == Some(i) { lift } else { 0.0 };
-            load += of(0) - of(1);
+            load -= (0..2).filter(|end| drive.bodies[*end] == Some(i)).map(|end| lift[end].0).sum::<f64>();
         }
         load - self.forces.iter().filter(|own| own.body == i).map(|own| own.force[D - 1]).sum::<f64>()
     }
@@ -460,7 +475,7 @@ impl<'a, const D: usize> StaticSystem<'a, D> {
                     continue;
                 }
                 match line.bodies[other] {
-                    None => stiffness += stiff,
+                    None => stiffness += stiff.between(self.way(i), self.way(i)),
                     Some(j) if self.group[j] != self.group[i] && self.support(j) == Support::Lines => {
                         mass += with_water(j);
                     }
@@ -470,11 +485,13 @@ impl<'a, const D: usize> StaticSystem<'a, D> {
         }
         for drive in &self.drives {
             match drive.bodies {
-                [Some(j), None] | [None, Some(j)] if self.group[j] == self.group[i] => stiffness += self.lift(drive).1,
+                [Some(j), None] | [None, Some(j)] if self.group[j] == self.group[i] => {
+                    stiffness += self.lift(drive).1 * drive.along.dot(self.way(i)).powi(2);
+                }
                 _ => (),
             }
         }
-        (mass, stiffness + self.mooring_stiffness(i))
+        (mass * self.way(i).norm_squared(), stiffness + self.mooring_stiffness(i))
     }
 
     /// Returns the righting lever (m, axial components) of the assembly of body `i`, turned from rest by `angle` (rad)
@@ -521,7 +538,7 @@ impl<'a, const D: usize> StaticSystem<'a, D> {
             let ends = line.bodies.map(member);
             for (own, sign) in [(0, 1.0), (1, -1.0)] {
                 let (Some(j), None) = (ends[own], ends[1 - own]) else { continue };
-                let at = turned(&(line.at[own] + up::<D>() * self.rise[self.group[j]]), rise);
+                let at = turned(&(line.at[own] + self.raised(j)), rise);
                 let force = match line.bodies[1 - own] {
                     // The other body follows, and its weight or lift stays.
                     Some(_) => self.pull(line).0 * sign,
@@ -531,12 +548,12 @@ impl<'a, const D: usize> StaticSystem<'a, D> {
             }
         }
         for own in self.forces.iter().filter(|own| self.assembly[own.body] == self.assembly[i]) {
-            let at = own.at + up::<D>() * self.rise[self.group[own.body]];
-            add(&turned(&at, rise), &own.force);
+            let at = own.at + self.raised(own.body);
+            add(&turned(&at, rise), &if own.turns { turn * own.force } else { own.force });
         }
         for own in self.moored.iter().filter(|own| member(self.number(own.solid)).is_some()) {
             let Some(j) = self.number(own.solid) else { continue };
-            let rest = own.at + up::<D>() * self.rise[self.group[j]];
+            let rest = own.at + self.raised(j);
             let at = turned(&rest, rise);
             add(&at, &(own.stiffness * (rest - at)));
         }

@@ -10,7 +10,7 @@ use nalgebra::{DMatrix, DVector};
 use super::{
     Constraints, Role, SolidSpec,
     constraint::lines::{LineEnd, start_length},
-    joint_groups::JointGroups,
+    joint_groups::{JointGroups, rise_directions},
 };
 use crate::{
     error::Error,
@@ -39,8 +39,8 @@ pub(crate) struct StartState<'a, const D: usize> {
     pub(crate) displaced: &'a dyn Fn(usize) -> f64,
     /// Height (m) of each solid's lowest point above the bottom of the water.
     pub(crate) above_bottom: &'a dyn Fn(usize) -> f64,
-    /// Load (kg) of the mooring lines with mass on each solid, downward.
-    pub(crate) moored: &'a dyn Fn(usize) -> f64,
+    /// Load (kg) of the mooring lines with mass on each solid, opposite to their pull.
+    pub(crate) moored: &'a dyn Fn(usize) -> Vector<D>,
     /// Gravity, m/s².
     pub(crate) g: f64,
 }
@@ -70,19 +70,20 @@ impl TieLoads {
         if !tied || state.g <= 0.0 {
             return made;
         }
+        let ways = rise_directions(specs, constraints, &made.groups);
         for force in &constraints.forces {
-            if let Some((steady, _)) = force.steady_load() {
-                made.add(state, force.solid, -steady[D - 1] / state.g);
+            if let Some((steady, _)) = force.steady_load(&specs[force.solid].pose.rotation) {
+                made.add(state, force.solid, -steady.dot(&ways[force.solid]) / state.g);
             }
         }
         for joint in &constraints.joints {
             let Some((along, force, _, largest)) = joint.steady_drive() else { continue };
-            let lift = force.clamp(-largest, largest) * along[D - 1] / state.g;
+            let lift = |i: usize| force.clamp(-largest, largest) * along.dot(&ways[i]) / state.g;
             for (end, sign) in joint.between.iter().zip([1.0, -1.0]) {
-                end.iter().for_each(|i| made.add(state, *i, sign * lift));
+                end.iter().for_each(|i| made.add(state, *i, sign * lift(*i)));
             }
         }
-        (0..n).for_each(|i| made.add(state, i, (state.moored)(i)));
+        (0..n).for_each(|i| made.add(state, i, (state.moored)(i).dot(&ways[i])));
         for i in (0..n).filter(|i| !state.afloat[*i]) {
             if let Some(body) = specs[i].initial_body() {
                 made.add(state, i, body.mass - (state.displaced)(i));
@@ -96,10 +97,10 @@ impl TieLoads {
             if hangs || length == 0.0 || (spring.tension_only && stretch < 0.0) {
                 continue;
             }
-            let rise = (spring.ends[1].at[D - 1] - spring.ends[0].at[D - 1]) / length;
-            let load = spring.stiffness * stretch * rise / state.g;
+            let along = (spring.ends[1].at - spring.ends[0].at) / length;
+            let load = |i: usize| spring.stiffness * stretch * along.dot(&ways[i]) / state.g;
             for (end, sign) in spring.ends.iter().zip([-1.0, 1.0]) {
-                end.solid.into_iter().for_each(|i| made.add(state, i, sign * load));
+                end.solid.into_iter().for_each(|i| made.add(state, i, sign * load(i)));
             }
         }
         // The loads (kg) that hanging bodies carry in their turn, with their places (m).

@@ -102,7 +102,7 @@ pub struct ForceConfig {
 pub enum ForceFrame {
     /// Those of the world.
     World,
-    /// Those of the world at the start, turning with the solid.
+    /// Those of the solid, which turn with it.
     Body,
 }
 

@@ -218,7 +218,7 @@ impl<const D: usize> Joint<D> {
     }
 
     /// The row of a mode's coordinate.
-    fn row(&self, mode: usize, ends: &[Kinematics<D>; 2]) -> ConstraintJacobian<D> {
+    pub(in crate::solid) fn row(&self, mode: usize, ends: &[Kinematics<D>; 2]) -> ConstraintJacobian<D> {
         let [first, second] = self.sits(ends);
         match mode.checked_sub(D) {
             None => {
@@ -235,7 +235,7 @@ impl<const D: usize> Joint<D> {
 
     /// The rows of the joint's locks in the engine's order. In 3-D the engine measures a locked turn by its part of v in the
     /// quaternion (w, v) between the frames. The rate of v is ½ (w ω + ω × v).
-    fn lock_jacobians(&self, ends: &[Kinematics<D>; 2]) -> Vec<ConstraintJacobian<D>> {
+    pub(in crate::solid) fn lock_jacobians(&self, ends: &[Kinematics<D>; 2]) -> Vec<ConstraintJacobian<D>> {
         let locked = modes_rotations_first::<D>().filter(|&mode| self.spec.is_locked(mode));
         if D == 2 {
             return locked.map(|mode| self.row(mode, ends)).collect();
@@ -358,6 +358,14 @@ impl<const D: usize> JointSpec<D> {
         let motor = self.motor.as_ref().filter(|_| self.coordinate_mode() == Some(0))?;
         let (force, stiffness) = motor.steady_force()?;
         Some((self.axis.normalize(), force, stiffness, motor.max_force))
+    }
+
+    /// Returns the line along which alone its ends move apart: of a slider, or of a generic joint with one free translation.
+    pub(in crate::solid) fn guide(&self) -> Option<Vector<D>> {
+        let mut free = (0..D).filter(|mode| !self.is_locked(*mode));
+        let (mode, None) = (free.next()?, free.next()) else { return None };
+        let axis = if D == 2 && self.kind == JointKind::Hinge { Vector::zeros() } else { self.axis };
+        Some(frame(&axis).column(mode).into())
     }
 
     /// The modes that have end stops, with these, in the order of the engine.

@@ -1,363 +1,457 @@
-//! Bodies on hinges, ball joints and sliders between them: their trim at rest and their natural periods with these joints free.
+//! Bodies that joints, ropes and springs tie together: their rest with every motion free that their ties leave free, and their natural
+//! periods there.
 //!
-//! The coordinates q are the motions of the first body and those of the joints. With the forces Q(q) of buoyancy, weight, steady
-//! forces and motors on them, rest is Q = 0, and the natural frequencies are those of K φ = ω² M φ with K = −∂Q/∂q. M has no added
-//! mass of the water.
+//! The coordinates x are the translations and rotations of all bodies. The locks of joints, the lengths of taut ropes and end stops in
+//! contact are conditions C(x) = 0. With the forces f of buoyancy, weight, springs, mooring lines, steady forces and motors, and the
+//! reactions λ, rest is
+//!
+//!   f + Jᵀ λ = 0,   C = 0,   J = ∂C/∂x
+//!
+//! Newton's method finds it by steps in the null space Z of J, with the stiffness Zᵀ K Z, K = −∂(f + Jᵀ λ)/∂x. A step along an axis
+//! of negative stiffness has the sign of the force, and so leads to a minimum of the energy. A rope that would push, or a stop that would
+//! pull, lets go. The natural frequencies are those of Zᵀ K Z φ = ω² Zᵀ M Z φ. M has no added mass of the water.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, Dyn, SymmetricEigen};
 
-use super::{Line, StaticSystem, lifted, up};
+use super::{Line, StaticSystem, up};
 use crate::{
-    math::{Bivector, Pose, Vector},
-    solid::{JointKind, JointSpec},
+    math::{Bivector, Pose, Vector, rotated_tensor},
+    solid::{
+        JointSpec, Kinematics, Load,
+        constraint::joint::{Joint, modes_rotations_first},
+    },
 };
 
-/// Half of the difference of a coordinate (rad, or part of the size of the assembly) that gives K.
+/// Half of the difference of a coordinate (rad, or part of the size of the bodies) that gives K.
 const STEP: f64 = 1e-5;
 
 /// Largest change of a coordinate in an iteration (rad, or part of the size).
 const LARGEST: f64 = 0.1;
 
-/// Most iterations of Newton's method.
-const ITERATIONS: usize = 60;
+/// Most iterations.
+const ITERATIONS: usize = 400;
 
 /// Change of all coordinates (rad, or part of the size) at which the iteration ends.
 const CLOSE: f64 = 1e-9;
 
-/// Part of the largest stiffness, and of the largest ω², below which one is 0.
+/// Part of the largest stiffness, and of the largest ω², below which one is 0; part of the weight times the size below which a moment
+/// is.
 const NEUTRAL: f64 = 1e-6;
 
-/// An assembly at rest, with its joints free.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct FreeJoints {
-    /// Turn (rad) of each body of the assembly from the start to rest.
+/// Part of the weight times the size that a negative stiffness exceeds where the bodies are unstable: facets and round-off give a ball a
+/// small one.
+const UNSTABLE: f64 = 1e-4;
+
+/// Turn (rad) away from an unstable rest.
+const NUDGE: f64 = std::f64::consts::PI / 180.0;
+
+/// Turn (rad) to rest beyond which bodies fall over.
+const OVER: f64 = 0.5 * std::f64::consts::PI;
+
+/// Turn (rad) to rest up to which bodies that start unstable do not fall over.
+const SMALL_TURN: f64 = 10.0 * NUDGE;
+
+/// Tied bodies at rest.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct FreeRest {
+    /// Turn (rad) of each body's vertical from the start to rest.
     pub(crate) turns: Vec<(usize, f64)>,
+    /// Depth (m) of the lowest point of each body at rest.
+    pub(crate) drafts: Vec<(usize, f64)>,
+    /// Tension (N; N/m in 2-D) of each rope at rest.
+    pub(crate) tensions: Vec<(String, f64)>,
     /// Natural periods, s, from the longest.
     pub(crate) periods: Vec<f64>,
-    /// Whether the assembly moves away from this rest.
+    /// Whether the bodies have no stable rest near their start.
     pub(crate) is_unstable: bool,
+    /// Whether they start beside an unstable rest.
+    starts_unstable: bool,
 }
 
-/// A coordinate: a translation along an axis, or a rotation about one.
-struct Coordinate<const D: usize> {
-    /// Whether each body of the assembly moves with it.
-    moves: Vec<bool>,
-    turns: bool,
-    /// Axis: axial components of a rotation.
-    axis: Vec<f64>,
-    /// A point of the axis.
-    at: Vector<D>,
-    /// The body that carries the axis; `None` if the axis is fixed in the world.
-    carrier: Option<usize>,
-    /// The joint, and whether the coordinate is the motion of its second body.
-    joint: Option<(usize, bool)>,
-    /// Size (m) of a unit of a translation; 1 of a rotation.
-    unit: f64,
+/// A condition C = 0, or C ≤ 0 of a rope or an end stop, with its reaction λ.
+struct Condition<const D: usize> {
+    /// C, over the size for a length, –.
+    off: f64,
+    /// Its loads on two solids for λ = 1.
+    loads: [(Option<usize>, Load<D>); 2],
+    /// Whether λ cannot be positive.
+    is_one_sided: bool,
 }
 
-/// An assembly of bodies whose joints make a tree.
-struct Linkage<'a, const D: usize> {
+/// Tied bodies, with the number of each solid's pose.
+struct TiedBodies<'a, const D: usize> {
     system: &'a StaticSystem<'a, D>,
     /// Numbers of the bodies.
     members: Vec<usize>,
-    /// The poses at the start, raised by as much as the first body rises to rest.
-    start: Vec<Pose<D>>,
-    coordinates: Vec<Coordinate<D>>,
-    /// Size of the assembly, m.
+    joints: Vec<Joint<D>>,
+    ropes: Vec<&'a Line<D>>,
+    springs: Vec<&'a Line<D>>,
+    /// Place in `members` and axis of each coordinate: the translations come before the rotations.
+    coordinates: Vec<(usize, usize)>,
+    /// Greatest size of a body, m.
     size: f64,
+    /// Weight times size, N m.
+    scale: f64,
 }
 
-/// Returns the rest of the assembly of body `i` with its joints free. `None` if it has a joint of another kind, a loop of joints, a
-/// rope, a mooring line, a lock or a joint to the ground, if it rests at an end stop, or if the search for its rest fails.
-pub(crate) fn free_joints<const D: usize>(system: &StaticSystem<D>, i: usize) -> Option<FreeJoints> {
-    let members: Vec<usize> = system.assembly_of(i).collect();
-    let member = |end: Option<usize>| end.and_then(|solid| system.number(solid)).filter(|j| members.contains(j));
-    let touches = |joint: &&JointSpec<D>| joint.between.into_iter().any(|end| member(end).is_some());
-    let joints: Vec<&JointSpec<D>> = system.joints.iter().filter(touches).collect();
-    let is_known = |kind: JointKind| !matches!(kind, JointKind::Tow | JointKind::Generic);
-    let is_own =
-        |joint: &&JointSpec<D>| is_known(joint.kind) && joint.between.into_iter().all(|end| member(end).is_some());
-    let is_member = |end: &Option<usize>| end.is_some_and(|j| members.contains(&j));
-    // A spring to the ground or between two bodies of the assembly is known by its ends.
-    let is_known_line =
-        |line: &&Line<D>| !line.is_rope && line.bodies.iter().all(|end| end.is_none() || is_member(end));
-    let is_roped = system.lines.iter().any(|line| line.bodies.iter().any(is_member) && !is_known_line(&line));
-    let moored = system.moored.iter().filter_map(|own| system.number(own.solid));
-    let is_locked = |j: &usize| {
-        let body = system.bodies[*j].body;
-        body.locked_translations.contains(&true) || body.locked_rotations.contains(&true)
+/// The equations at a place.
+struct Linearised {
+    /// Reactions.
+    reaction: DVector<f64>,
+    /// Step that closes the conditions.
+    closing: DVector<f64>,
+    /// Motions that the conditions leave free, one a column.
+    free: DMatrix<f64>,
+    /// Forces along them after the closing step.
+    force: DVector<f64>,
+    /// Zᵀ K Z.
+    stiffness: DMatrix<f64>,
+}
+
+/// Returns the rest of body `i` with all that is tied to it. `None` if a body comes to lie on the bottom, or if the search fails.
+pub(crate) fn free_rest<const D: usize>(system: &StaticSystem<D>, i: usize) -> Option<FreeRest> {
+    let members = system.tied_to(i);
+    let size = members.iter().map(|j| system.size(*j)).fold(0.0, f64::max);
+    let weight: f64 = members.iter().map(|j| system.bodies[*j].body.mass * system.water.g).sum();
+    let is_free = |k: usize, axis: usize| {
+        let body = system.bodies[members[k]].body;
+        !if axis < D { body.locked_translations[axis] } else { body.locked_rotations[axis - D] }
     };
-    let is_tied = is_roped || moored.into_iter().any(|j| members.contains(&j)) || members.iter().any(is_locked);
-    if is_tied || !joints.iter().all(is_own) || joints.len() + 1 != members.len() {
+    let axes = D + Bivector::<D>::COMPONENTS;
+    let coordinates: Vec<(usize, usize)> = (0..members.len())
+        .flat_map(|k| (0..axes).map(move |axis| (k, axis)))
+        .filter(|(k, axis)| is_free(*k, *axis))
+        .collect();
+    let is_member = |solid: usize| system.number(solid).is_some_and(|j| members.contains(&j));
+    let touches = |joint: &&JointSpec<D>| joint.between.into_iter().flatten().any(is_member);
+    let joints = system.joints.iter().filter(touches).map(|joint| Joint::new(joint.clone(), &system.start)).collect();
+    let holds = |line: &&Line<D>| line.bodies.into_iter().flatten().any(|j| members.contains(&j));
+    let (ropes, springs) = system.lines.iter().filter(holds).partition(|line| line.is_rope);
+    let tied = TiedBodies { system, joints, ropes, springs, coordinates, size, scale: weight * size, members };
+    if tied.coordinates.is_empty() {
         return None;
     }
-    let linkage = Linkage::new(system, members, &joints)?;
-    linkage.rest(&joints)
+    let found = tied.rest(NUDGE)?;
+    // A mast that a stay keeps from falling to one side falls to the other.
+    let other = if found.starts_unstable && !found.is_unstable { tied.rest(-NUDGE) } else { None };
+    Some(other.filter(|other| other.is_unstable).unwrap_or(found))
 }
 
-/// Returns the pose moved by `way` (m or rad) along or about an axis.
-fn moved<const D: usize>(pose: &Pose<D>, turns: bool, (axis, at): (&[f64], &Vector<D>), way: f64) -> Pose<D> {
-    let along = Vector::from_fn(|k, _| axis.get(k).copied().unwrap_or(0.0) * way);
-    if !turns {
-        return Pose { position: pose.position + along, ..*pose };
+impl<const D: usize> TiedBodies<'_, D> {
+    fn solid(&self, k: usize) -> usize {
+        self.system.bodies[self.members[k]].solid
     }
-    let turn = Bivector::<D>::from_axial(&axis.iter().map(|a| a * way).collect::<Vec<_>>()).exp();
-    Pose { position: at + turn * (pose.position - at), rotation: turn * pose.rotation }
-}
 
-impl<'a, const D: usize> Linkage<'a, D> {
-    /// The linkage of these bodies; `None` if their joints make a loop.
-    fn new(system: &'a StaticSystem<'a, D>, members: Vec<usize>, joints: &[&JointSpec<D>]) -> Option<Self> {
-        let n = members.len();
-        // All rise alike, so that the joints are where they start.
-        let rise = system.rise[system.group[members[0]]];
-        let start: Vec<Pose<D>> = members.iter().map(|j| lifted(&system.bodies[*j].pose, rise)).collect();
-        let size = members.iter().map(|j| system.size(*j)).fold(0.0, f64::max);
-        let place = |end: Option<usize>| members.iter().position(|j| Some(system.bodies[*j].solid) == end);
-        let ends: Vec<[usize; 2]> = joints
-            .iter()
-            .map(|joint| Some([place(joint.between[0])?, place(joint.between[1])?]))
-            .collect::<Option<_>>()?;
-        let rotations = if D == 2 { 1 } else { 3 };
-        let unit = |axis: usize, count: usize| (0..count).map(|k| f64::from(k == axis)).collect::<Vec<f64>>();
-        let centre = start[0].point(&system.bodies[members[0]].body.centre);
-        let free = |turns: bool, axis: Vec<f64>| Coordinate {
-            moves: vec![true; n],
-            turns,
-            axis,
-            at: centre,
-            carrier: None,
-            joint: None,
-            unit: if turns { 1.0 } else { size },
-        };
-        let mut coordinates: Vec<Coordinate<D>> = (0..D).map(|axis| free(false, unit(axis, D))).collect();
-        coordinates.extend((0..rotations).map(|axis| free(true, unit(axis, rotations))));
-        // From the first body outwards: the bodies beyond a joint move with it.
-        let beyond = |joint: usize| {
-            let mut side = vec![false; n];
-            side[0] = true;
-            let others = || ends.iter().enumerate().filter(|(other, _)| *other != joint);
-            while let Some((_, [a, b])) = others().find(|(_, [a, b])| side[*a] != side[*b]) {
-                (side[*a], side[*b]) = (true, true);
-            }
-            side.iter().map(|near| !near).collect::<Vec<bool>>()
-        };
-        for (number, joint) in joints.iter().enumerate() {
-            let (moves, [first, second]) = (beyond(number), ends[number]);
-            if moves[first] == moves[second] {
-                return None;
-            }
-            let (carrier, is_second) = if moves[second] { (first, true) } else { (second, false) };
-            let axis = || joint.axis.normalize().iter().copied().collect::<Vec<f64>>();
-            let axes: Vec<(bool, Vec<f64>)> = match joint.kind {
-                JointKind::Hinge if D == 2 => vec![(true, vec![1.0])],
-                JointKind::Hinge => vec![(true, axis())],
-                JointKind::Slider => vec![(false, axis())],
-                JointKind::Ball => (0..3).map(|axis| (true, unit(axis, 3))).collect(),
-                JointKind::Fixed | JointKind::Tow | JointKind::Generic => Vec::new(),
-            };
-            let single = axes.len() == 1;
-            coordinates.extend(axes.into_iter().map(|(turns, axis)| Coordinate {
-                moves: moves.clone(),
-                turns,
-                axis,
-                at: joint.at + up::<D>() * rise,
-                carrier: Some(carrier),
-                joint: single.then_some((number, is_second)),
-                unit: if turns { 1.0 } else { size },
-            }));
+    /// The solids at the start, raised by as much as their bodies rise to rest in their orientation.
+    fn start(&self) -> Vec<Kinematics<D>> {
+        let mut all = self.system.start.clone();
+        for (k, j) in self.members.iter().enumerate() {
+            let (pose, body) = (self.system.pose(*j), self.system.bodies[*j].body);
+            all[self.solid(k)] = Kinematics { pose, centre: pose.point(&body.centre), ..all[self.solid(k)] };
         }
-        Some(Self { system, members, start, coordinates, size })
+        all
     }
 
-    /// Returns the axis of a coordinate and a point of it, with the bodies at `poses`.
-    fn axis(&self, own: &Coordinate<D>, poses: &[Pose<D>]) -> (Vec<f64>, Vector<D>) {
-        let Some(carrier) = own.carrier else {
-            let at = poses[0].point(&self.system.bodies[self.members[0]].body.centre);
-            return (own.axis.clone(), at);
-        };
-        let (from, to) = (&self.start[carrier], &poses[carrier]);
-        let at = to.point(&from.local(&own.at));
-        if own.turns && D == 2 {
-            return (own.axis.clone(), at);
-        }
-        let axis = Vector::<D>::from_fn(|k, _| own.axis[k]);
-        let axis = to.rotation * (from.rotation.transpose() * axis);
-        (axis.iter().copied().collect(), at)
-    }
-
-    /// Returns the poses after a motion of `way` along a coordinate.
-    fn displaced(&self, poses: &[Pose<D>], own: &Coordinate<D>, way: f64) -> Vec<Pose<D>> {
-        let (axis, at) = self.axis(own, poses);
-        let one = |(pose, moves): (&Pose<D>, &bool)| {
-            if *moves { moved(pose, own.turns, (&axis, &at), way * own.unit) } else { *pose }
-        };
-        poses.iter().zip(&own.moves).map(one).collect()
-    }
-
-    /// Returns the place (m) of an end of a line with the bodies at `poses`.
-    fn end(&self, line: &Line<D>, end: usize, poses: &[Pose<D>]) -> Vector<D> {
-        let at = line.at[end];
-        let body = line.bodies[end].and_then(|j| Some((j, self.members.iter().position(|own| *own == j)?)));
-        body.map_or(at, |(j, k)| poses[k].point(&self.system.bodies[j].pose.local(&at)))
-    }
-
-    /// Returns the force (N m) on each coordinate with the bodies at `poses` and the joints' coordinates at `q`.
-    fn forces(&self, poses: &[Pose<D>], q: &DVector<f64>, joints: &[&JointSpec<D>]) -> DVector<f64> {
-        let g = self.system.water.g;
-        // The forces on each body with their points, and a torque.
-        let loads = |k: usize| {
-            let (number, pose) = (self.members[k], &poses[k]);
-            let own = &self.system.bodies[number];
-            let (volume, centroid) = own.hull.submerged_volume(pose, own.level);
-            let mut all = vec![(pose.point(&own.body.centre), up::<D>() * (-own.body.mass * g))];
-            all.extend((volume != 0.0).then(|| (centroid, up::<D>() * (self.system.water.rho0 * volume * g))));
-            let mut torque = Bivector::zero();
-            for force in self.system.forces.iter().filter(|force| force.body == number) {
-                all.push((pose.point(&own.pose.local(&force.at)), force.force));
-                torque = torque + force.torque;
+    /// The solids after a step of the coordinates.
+    fn moved(&self, solids: &[Kinematics<D>], step: &DVector<f64>) -> Vec<Kinematics<D>> {
+        let mut all = solids.to_vec();
+        for k in 0..self.members.len() {
+            let (mut way, mut turn) = (Vector::zeros(), [0.0; 3]);
+            for ((_, axis), own) in self.coordinates.iter().zip(step.iter()).filter(|((other, _), _)| *other == k) {
+                if *axis < D { way[*axis] = own * self.size } else { turn[axis - D] = *own }
             }
-            for line in &self.system.lines {
-                let ends = [0, 1].map(|end| self.end(line, end, poses));
-                let along = ends[1] - ends[0];
-                let (length, stretch) = (along.norm(), along.norm() - line.length);
-                if length > 0.0 && (stretch > 0.0 || line.pushes) {
-                    let pull = along * (line.stiffness * stretch / length);
-                    let own = |(end, body): (usize, &Option<usize>)| {
-                        (*body == Some(number)).then(|| (ends[end], if end == 0 { pull } else { -pull }))
-                    };
-                    all.extend(line.bodies.iter().enumerate().filter_map(own));
+            let (now, turn) = (&mut all[self.solid(k)], Bivector::<D>::from_axial(&turn).exp());
+            let arm = turn * (now.pose.position - now.centre);
+            now.centre += way;
+            now.pose = Pose { position: now.centre + arm, rotation: turn * now.pose.rotation };
+        }
+        all
+    }
+
+    /// The place (m) of an end of a line, and its solid if that is free.
+    fn end(&self, line: &Line<D>, end: usize, solids: &[Kinematics<D>]) -> (Vector<D>, Option<usize>) {
+        let Some(body) = line.bodies[end].map(|j| &self.system.bodies[j]) else { return (line.at[end], None) };
+        (solids[body.solid].pose.point(&body.pose.local(&line.at[end])), Some(body.solid))
+    }
+
+    /// The load of water and weight on a body.
+    fn load_afloat(&self, k: usize, solids: &[Kinematics<D>]) -> Load<D> {
+        let (own, now) = (&self.system.bodies[self.members[k]], &solids[self.solid(k)]);
+        let weight = Load { force: up::<D>() * (-own.body.mass * self.system.water.g), torque: Bivector::zero() };
+        let (volume, centroid) = own.hull.submerged_volume(&now.pose, own.level);
+        if volume == 0.0 {
+            return weight;
+        }
+        let lift = up::<D>() * (self.system.water.rho0 * volume * self.system.water.g);
+        weight + Load::from_force_at(&(centroid - now.centre), lift)
+    }
+
+    /// The component of a load along a coordinate, N m.
+    fn component(&self, load: &Load<D>, axis: usize) -> f64 {
+        if axis < D { load.force[axis] * self.size } else { load.torque.axial()[axis - D] }
+    }
+
+    /// The forces (N m) along the coordinates, with these loads of water and weight.
+    fn forces(&self, solids: &[Kinematics<D>], afloat: &[Load<D>]) -> DVector<f64> {
+        let mut loads = vec![Load::zero(); solids.len()];
+        (0..self.members.len()).for_each(|k| loads[self.solid(k)] = afloat[k]);
+        let mut pull = |at: Vector<D>, solid: Option<usize>, force: Vector<D>| {
+            if let Some(solid) = solid {
+                loads[solid] += Load::from_force_at(&(at - solids[solid].centre), force);
+            }
+        };
+        for line in &self.springs {
+            let [(a, first), (b, second)] = [0, 1].map(|end| self.end(line, end, solids));
+            let (length, stretch) = ((b - a).norm(), (b - a).norm() - line.length);
+            if length > 0.0 && (stretch > 0.0 || line.pushes) {
+                let force = (b - a) * (line.stiffness * stretch / length);
+                pull(a, first, force);
+                pull(b, second, -force);
+            }
+        }
+        for own in &self.system.moored {
+            let Some(body) = self.system.number(own.solid).map(|j| &self.system.bodies[j]) else { continue };
+            let at = solids[own.solid].pose.point(&body.pose.local(&own.at));
+            pull(at, Some(own.solid), own.stiffness * (own.at - at));
+        }
+        for own in &self.system.forces {
+            let body = &self.system.bodies[own.body];
+            let now = &solids[body.solid];
+            let (mut force, mut torque) = (own.force, own.torque);
+            if own.turns {
+                let turn = now.pose.rotation * body.pose.rotation.transpose();
+                (force, torque) = (turn * force, torque.rotated(&turn));
+            }
+            let arm = now.pose.point(&body.pose.local(&own.at)) - now.centre;
+            loads[body.solid] += Load { torque, ..Load::zero() };
+            loads[body.solid] += Load::from_force_at(&arm, force);
+        }
+        for joint in &self.joints {
+            let ends = joint.end_kinematics(solids);
+            let (Some(motor), Some(row)) = (&joint.spec.motor, joint.coordinate_jacobian(&ends)) else { continue };
+            let command = motor.command_at(0.0);
+            let drive = command.force + command.stiffness * (command.position - joint.position(&ends));
+            let both = row.loads(drive.clamp(-motor.max_force, motor.max_force));
+            for (end, load) in joint.spec.between.iter().zip(both) {
+                end.iter().for_each(|solid| loads[*solid] += load);
+            }
+        }
+        let along = self.coordinates.iter().map(|(k, axis)| self.component(&loads[self.solid(*k)], *axis));
+        DVector::from_iterator(self.coordinates.len(), along)
+    }
+
+    /// All conditions: of the locks of joints, of end stops and of ropes, in this order.
+    fn conditions(&self, solids: &[Kinematics<D>]) -> Vec<Condition<D>> {
+        let (mut locks, mut others) = (Vec::new(), Vec::new());
+        for joint in &self.joints {
+            let ends = joint.end_kinematics(solids);
+            let unit = |mode: usize| if mode < D { 1.0 / self.size } else { 1.0 };
+            let between = |[a, b]: [Load<D>; 2]| [(joint.spec.between[0], a), (joint.spec.between[1], b)];
+            let modes = modes_rotations_first::<D>().filter(|mode| joint.spec.is_locked(*mode));
+            for (mode, row) in modes.zip(joint.lock_jacobians(&ends)) {
+                // The row of a locked turn in 3-D is that of half of the angle.
+                let part = if D == 3 && mode >= D { 0.5 } else { unit(mode) };
+                let loads = between(row.loads(if mode < D { unit(mode) } else { 1.0 }));
+                locks.push(Condition { off: joint.coordinate(mode, &ends) * part, loads, is_one_sided: false });
+            }
+            for (mode, [least, greatest]) in joint.spec.end_stops() {
+                let (at, row) = (joint.coordinate(mode, &ends), joint.row(mode, &ends));
+                for (past, sign) in [(least - at, -1.0), (at - greatest, 1.0)] {
+                    let loads = between(row.loads(sign * unit(mode)));
+                    others.push(Condition { off: past * unit(mode), loads, is_one_sided: true });
                 }
             }
-            (all, torque)
-        };
-        let loads: Vec<_> = (0..poses.len()).map(loads).collect();
-        let force = |(c, own): (usize, &Coordinate<D>)| {
-            let (axis, at) = self.axis(own, poses);
-            let along = |x: &[f64]| x.iter().zip(&axis).map(|(x, a)| x * a).sum::<f64>();
-            let of_body = |(forces, torque): &(Vec<(Vector<D>, Vector<D>)>, Bivector<D>)| match own.turns {
-                true => forces.iter().fold(*torque, |sum, (x, f)| sum + Bivector::torque(&(x - at), f)).axial(),
-                false => forces.iter().map(|(_, f)| f).sum::<Vector<D>>().iter().copied().collect(),
-            };
-            let moving = loads.iter().zip(&own.moves).filter(|(_, moves)| **moves);
-            let of_water: f64 = moving.map(|(load, _)| along(&of_body(load))).sum();
-            let of_motor = own.joint.and_then(|(number, is_second)| {
-                let motor = joints[number].motor.as_ref()?;
-                let (sign, command) = (if is_second { 1.0 } else { -1.0 }, motor.command_at(0.0));
-                let drive = command.force + command.stiffness * (command.position - sign * q[c] * own.unit);
-                Some(sign * drive.clamp(-motor.max_force, motor.max_force))
-            });
-            (of_water + of_motor.unwrap_or_default()) * own.unit
-        };
-        DVector::from_iterator(self.coordinates.len(), self.coordinates.iter().enumerate().map(force))
-    }
-
-    /// Returns the stiffness matrix (N m) of the coordinates.
-    fn stiffness(&self, poses: &[Pose<D>], q: &DVector<f64>, joints: &[&JointSpec<D>]) -> DMatrix<f64> {
-        let n = self.coordinates.len();
-        let mut all = DMatrix::zeros(n, n);
-        for (c, own) in self.coordinates.iter().enumerate() {
-            let [back, ahead] = [-STEP, STEP].map(|way| {
-                let mut there = q.clone();
-                there[c] += way;
-                self.forces(&self.displaced(poses, own, way), &there, joints)
-            });
-            all.set_column(c, &((back - ahead) / (2.0 * STEP)));
         }
-        (&all + all.transpose()) * 0.5
+        for line in &self.ropes {
+            let [(a, first), (b, second)] = [0, 1].map(|end| self.end(line, end, solids));
+            let length = (b - a).norm();
+            let unit = if length > 0.0 { (b - a) / length } else { up() };
+            let load = |at: Vector<D>, solid: Option<usize>, sign: f64| {
+                let arm = solid.map_or_else(Vector::zeros, |solid| at - solids[solid].centre);
+                (solid, Load::from_force_at(&arm, unit * (sign / self.size)))
+            };
+            let loads = [load(a, first, -1.0), load(b, second, 1.0)];
+            others.push(Condition { off: (length - line.length) / self.size, loads, is_one_sided: true });
+        }
+        locks.extend(others);
+        locks
     }
 
-    /// Returns the mass matrix (kg m²) of the coordinates.
-    fn mass(&self, poses: &[Pose<D>]) -> DMatrix<f64> {
-        let n = self.coordinates.len();
-        let centre = |k: usize, pose: &Pose<D>| pose.point(&self.system.bodies[self.members[k]].body.centre);
-        // Velocities of the centres, and spins in the frames of the bodies.
-        let rates: Vec<Vec<(Vector<D>, Vec<f64>)>> = self
-            .coordinates
-            .iter()
-            .map(|own| {
-                let [back, ahead] = [-STEP, STEP].map(|way| self.displaced(poses, own, way));
-                let axis = self.axis(own, poses).0;
-                let rate = |k: usize| {
-                    let velocity = (centre(k, &ahead[k]) - centre(k, &back[k])) / (2.0 * STEP);
-                    let spin = match own.turns && own.moves[k] {
-                        true if D == 2 => axis.clone(),
-                        true => {
-                            let axis = Vector::<D>::from_fn(|i, _| axis[i]);
-                            (poses[k].rotation.transpose() * axis).iter().copied().collect()
-                        }
-                        false => vec![0.0; axis.len()],
-                    };
-                    (velocity, spin)
-                };
-                (0..poses.len()).map(rate).collect()
-            })
-            .collect();
-        DMatrix::from_fn(n, n, |a, b| {
-            let of_body = |k: usize| {
-                let body = self.system.bodies[self.members[k]].body;
-                let ((v, spin), (w, other)) = (&rates[a][k], &rates[b][k]);
-                let turning: f64 = match D {
-                    2 => spin[0] * other[0] * body.inertia[(0, 0)],
-                    _ => (0..D)
-                        .flat_map(|i| (0..D).map(move |j| (i, j)))
-                        .map(|(i, j)| spin[i] * body.inertia[(i, j)] * other[j])
-                        .sum(),
-                };
-                body.mass * v.dot(w) + turning
-            };
-            (0..poses.len()).map(of_body).sum()
+    /// J of the `active` ones of these conditions.
+    fn rows(&self, all: &[Condition<D>], active: &[bool]) -> DMatrix<f64> {
+        let held: Vec<&Condition<D>> = all.iter().zip(active).filter(|(_, held)| **held).map(|(own, _)| own).collect();
+        DMatrix::from_fn(held.len(), self.coordinates.len(), |row, c| {
+            let (k, axis) = self.coordinates[c];
+            let own = held[row].loads.iter().filter(|(solid, _)| *solid == Some(self.solid(k)));
+            own.map(|(_, load)| self.component(load, axis)).sum()
         })
     }
 
-    /// Returns the rest of the linkage, its natural periods there, and whether it is stable.
-    fn rest(&self, joints: &[&JointSpec<D>]) -> Option<FreeJoints> {
-        let (mut poses, mut q) = (self.start.clone(), DVector::zeros(self.coordinates.len()));
-        let mut is_at_rest = false;
+    /// The equations with the solids there and these conditions.
+    fn linearised(&self, solids: &[Kinematics<D>], all: &[Condition<D>], active: &[bool]) -> Linearised {
+        let n = self.coordinates.len();
+        let afloat: Vec<Load<D>> = (0..self.members.len()).map(|k| self.load_afloat(k, solids)).collect();
+        let (force, rows) = (self.forces(solids, &afloat), self.rows(all, active));
+        let held = all.iter().zip(active).filter(|(_, held)| **held).map(|(own, _)| own.off);
+        let off = DVector::from_iterator(rows.nrows(), held);
+        // Conditions that repeat others, as those of a loop in space, have singular values of 0.
+        let SymmetricEigen { eigenvectors, eigenvalues } = SymmetricEigen::new(rows.tr_mul(&rows));
+        let least = 1e-10 * eigenvalues.amax();
+        let is_held = |c: &usize| eigenvalues[*c] > least;
+        let ways = |columns: Vec<usize>| eigenvectors.select_columns(&columns);
+        let (held, free) = (ways((0..n).filter(is_held).collect()), ways((0..n).filter(|c| !is_held(c)).collect()));
+        let inverse = DVector::from_iterator(held.ncols(), (0..n).filter(is_held).map(|c| 1.0 / eigenvalues[c]));
+        let solve = |x: DVector<f64>| &held * held.tr_mul(&x).component_mul(&inverse);
+        let closing = -solve(rows.tr_mul(&off));
+        let reaction = -(&rows * solve(force.clone()));
+        let mut stiffness = DMatrix::zeros(n, n);
+        for (c, (k, _)) in self.coordinates.iter().enumerate() {
+            let [back, ahead] = [-STEP, STEP].map(|way| {
+                let mut step = DVector::zeros(n);
+                step[c] = way;
+                let (there, mut afloat) = (self.moved(solids, &step), afloat.clone());
+                afloat[*k] = self.load_afloat(*k, &there);
+                self.forces(&there, &afloat) + self.rows(&self.conditions(&there), active).tr_mul(&reaction)
+            });
+            stiffness.set_column(c, &((back - ahead) / (2.0 * STEP)));
+        }
+        let force = free.tr_mul(&(force - &stiffness * &closing));
+        let stiffness = free.tr_mul(&(stiffness * &free));
+        let stiffness = (&stiffness + stiffness.transpose()) * 0.5;
+        Linearised { reaction, closing, free, force, stiffness }
+    }
+
+    /// The next step of the coordinates; `nudge` (rad) leads away from an unstable rest.
+    fn step(&self, here: &Linearised, nudge: f64) -> DVector<f64> {
+        let Some(SymmetricEigen { eigenvectors, eigenvalues }) = here.eigen() else { return here.closing.clone() };
+        let floor = NEUTRAL * eigenvalues.amax().max(self.scale);
+        let mut step = here.closing.clone();
+        for (stiff, axis) in eigenvalues.iter().zip(eigenvectors.column_iter()) {
+            let own = here.force.dot(&axis);
+            let part = match *stiff {
+                x if x < -UNSTABLE * self.scale && own.abs() < CLOSE * self.scale => nudge,
+                x if x < -UNSTABLE * self.scale && own.abs() < -x * NUDGE => NUDGE.copysign(own),
+                x if x < floor && own.abs() < NEUTRAL * self.scale => 0.0,
+                x => own / x.abs().max(floor),
+            };
+            step += &here.free * axis * part.clamp(-LARGEST, LARGEST);
+        }
+        step
+    }
+
+    /// Finds the rest; `nudge` (rad) leads away from an unstable one.
+    fn rest(&self, nudge: f64) -> Option<FreeRest> {
+        let mut at = self.start();
+        let mut active: Vec<bool> = self.conditions(&at).iter().map(|own| !own.is_one_sided).collect();
+        let (mut longest, mut last) = (LARGEST, DVector::zeros(self.coordinates.len()));
+        let mut is_unstable = None;
         for _ in 0..ITERATIONS {
-            let stiffness = self.stiffness(&poses, &q, joints);
-            let largest = stiffness.amax();
-            let step = stiffness.svd(true, true).solve(&self.forces(&poses, &q, joints), NEUTRAL * largest).ok()?;
+            let all = self.conditions(&at);
+            active.iter_mut().zip(&all).for_each(|(held, own)| *held |= own.off > CLOSE);
+            let here = self.linearised(&at, &all, &active);
+            let starts_unstable = *is_unstable.get_or_insert_with(|| here.is_unstable(self.scale));
+            let mut step = self.step(&here, nudge);
             let most = step.amax();
-            let part = (LARGEST / most).min(1.0);
-            for (own, way) in self.coordinates.iter().zip(step.iter()) {
-                poses = self.displaced(&poses, own, way * part);
-            }
-            q += step * part;
-            is_at_rest = most < CLOSE;
-            if is_at_rest || !most.is_finite() {
+            if !most.is_finite() {
                 break;
             }
+            if most < CLOSE {
+                let held = (0..all.len()).filter(|own| active[*own]).zip(here.reaction.iter());
+                let pushing = held.filter(|(own, _)| all[*own].is_one_sided);
+                let worst = pushing.max_by(|a, b| a.1.total_cmp(b.1)).filter(|(_, push)| **push > CLOSE * self.scale);
+                if let Some((own, _)) = worst {
+                    active[own] = false;
+                    continue;
+                }
+                let is_closed = all.iter().zip(&active).all(|(own, held)| !held || own.off.abs() < NEUTRAL);
+                return if is_closed { self.found(&at, (&all, &active), &here, starts_unstable) } else { None };
+            }
+            // Where the forces have a kink, steps to and fro become shorter.
+            longest = if step.dot(&last) < 0.0 { 0.5 * longest.min(last.amax()) } else { LARGEST.min(1.5 * longest) };
+            step *= (longest / most).min(1.0);
+            at = self.moved(&at, &step);
+            last = step;
         }
-        let within = |(own, q): (&Coordinate<D>, &f64)| {
-            let Some((number, is_second)) = own.joint else { return true };
-            let way = if is_second { q * own.unit } else { -q * own.unit };
-            joints[number].limits.is_none_or(|[min, max]| (min..=max).contains(&way))
-        };
-        let (force, weight) = (self.forces(&poses, &q, joints), self.weight());
-        let is_balanced = force.amax() < NEUTRAL * weight * self.size;
-        if !is_at_rest || !is_balanced || !self.coordinates.iter().zip(q.iter()).all(within) {
+        let none = |is_unstable| FreeRest { is_unstable, starts_unstable: true, ..FreeRest::default() };
+        is_unstable.filter(|is| *is).map(none)
+    }
+
+    /// The rest with the solids there; `None` if a body lies on the bottom.
+    fn found(
+        &self,
+        at: &[Kinematics<D>],
+        (all, active): (&[Condition<D>], &[bool]),
+        here: &Linearised,
+        starts_unstable: bool,
+    ) -> Option<FreeRest> {
+        let lowest = |j: usize| self.system.bodies[j].hull.extent(&at[self.system.bodies[j].solid].pose)[0];
+        if self.members.iter().any(|j| lowest(*j) < self.system.bodies[*j].bottom - NEUTRAL * self.size) {
             return None;
         }
-        let root = self.mass(&poses).cholesky()?.l();
-        let half = root.solve_lower_triangular(&self.stiffness(&poses, &q, joints))?;
+        let start = self.start();
+        let turn = |(k, number): (usize, &usize)| {
+            let turn = at[self.solid(k)].pose.rotation * start[self.solid(k)].pose.rotation.transpose();
+            // Upwards, as it has turned.
+            let across = (0..D - 1).map(|i| turn[(i, D - 1)].powi(2)).sum::<f64>().sqrt();
+            (*number, across.atan2(turn[(D - 1, D - 1)]))
+        };
+        let turns: Vec<(usize, f64)> = self.members.iter().enumerate().map(turn).collect();
+        let reactions = {
+            let mut held = here.reaction.iter();
+            active.iter().map(|is| if *is { held.next().copied().unwrap_or(0.0) } else { 0.0 }).collect::<Vec<f64>>()
+        };
+        let of_ropes = &reactions[all.len() - self.ropes.len()..];
+        let tension = |(line, reaction): (&&Line<D>, &f64)| (line.name.clone(), (-reaction / self.size).max(0.0));
+        let most = turns.iter().map(|(_, turn)| *turn).fold(0.0, f64::max);
+        let falls = most > OVER || (starts_unstable && most > SMALL_TURN);
+        Some(FreeRest {
+            drafts: self.members.iter().map(|j| (*j, self.system.bodies[*j].level - lowest(*j))).collect(),
+            tensions: self.ropes.iter().zip(of_ropes).map(tension).collect(),
+            periods: self.periods(at, here)?,
+            is_unstable: falls || here.is_unstable(self.scale),
+            starts_unstable,
+            turns,
+        })
+    }
+
+    /// Natural periods (s) from the longest.
+    fn periods(&self, at: &[Kinematics<D>], here: &Linearised) -> Option<Vec<f64>> {
+        if here.free.ncols() == 0 {
+            return Some(Vec::new());
+        }
+        let n = self.coordinates.len();
+        let mass = DMatrix::from_fn(n, n, |a, b| {
+            let ((k, first), (other, second)) = (self.coordinates[a], self.coordinates[b]);
+            let body = self.system.bodies[self.members[k]].body;
+            match (first.checked_sub(D), second.checked_sub(D)) {
+                (None, None) if (k, first) == (other, second) => body.mass * self.size * self.size,
+                (Some(_), Some(_)) if D == 2 && k == other => body.inertia[(0, 0)],
+                (Some(i), Some(j)) if k == other => {
+                    rotated_tensor(&at[self.solid(k)].pose.rotation, &body.inertia)[(i, j)]
+                }
+                _ => 0.0,
+            }
+        });
+        let root = here.free.tr_mul(&(mass * &here.free)).cholesky()?.l();
+        let half = root.solve_lower_triangular(&here.stiffness)?;
         let squares = root.solve_lower_triangular(&half.transpose())?.symmetric_eigenvalues();
         let least = NEUTRAL * squares.amax();
         let mut periods: Vec<f64> =
             squares.iter().filter(|w| **w > least).map(|w| std::f64::consts::TAU / w.sqrt()).collect();
         periods.sort_by(|a, b| b.total_cmp(a));
-        let turn = |(k, number): (usize, &usize)| {
-            let turn = poses[k].rotation * self.start[k].rotation.transpose();
-            let turned = Pose { rotation: turn, position: Vector::zeros() }.rotation_vector();
-            (*number, turned.iter().map(|a| a * a).sum::<f64>().sqrt())
-        };
-        let turns = self.members.iter().enumerate().map(turn).collect();
-        Some(FreeJoints { turns, periods, is_unstable: squares.iter().any(|w| *w < -least) })
+        Some(periods)
+    }
+}
+
+impl Linearised {
+    /// The axes of the free motions and their stiffness; `None` without any.
+    fn eigen(&self) -> Option<SymmetricEigen<f64, Dyn>> {
+        (self.stiffness.nrows() > 0).then(|| SymmetricEigen::new(self.stiffness.clone()))
     }
 
-    /// Weight of the assembly, N.
-    fn weight(&self) -> f64 {
-        self.members.iter().map(|j| self.system.bodies[*j].body.mass * self.system.water.g).sum()
+    /// Whether a stiffness is negative.
+    fn is_unstable(&self, scale: f64) -> bool {
+        self.eigen().is_some_and(|eigen| eigen.eigenvalues.iter().any(|x| *x < -UNSTABLE * scale))
     }
 }
 

@@ -58,7 +58,7 @@ impl<const D: usize> StaticSystem<'_, D> {
         }
         let mut torque = Bivector::zero();
         let mut add = |at: Vector<D>, force: Vector<D>| torque = torque + Bivector::torque(&(at - joint.at), &force);
-        let lifted = |j: usize, at: &Vector<D>| at + up::<D>() * self.rise[self.group[j]];
+        let lifted = |j: usize, at: &Vector<D>| at + self.raised(j);
         for j in own.iter().copied() {
             let (body, pose) = (&self.bodies[j], self.pose(j));
             let (volume, centroid) = body.hull.submerged_volume(&pose, self.water.level);

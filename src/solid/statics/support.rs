@@ -1,6 +1,6 @@
-//! The effect that carries a body at rest.
+//! The effect that carries a body at rest, and the bodies that are tied to it.
 
-use super::{StaticSystem, plan_area};
+use super::{JointKind, JointSpec, StaticSystem, merge, plan_area};
 
 /// The effect that carries a body at rest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,5 +58,32 @@ impl<const D: usize> StaticSystem<'_, D> {
         let (hull, pose, mass) = (&self.bodies[i].hull, self.pose(i), self.bodies[i].body.mass);
         let most = self.water.rho0 * hull.volume_if_dry(&pose, hull.extent(&pose)[1]);
         self.floats_alone(i) && (most - mass).abs() < 1e-6 * mass
+    }
+
+    /// Returns the bodies between which and body `i` there are joints, ropes or springs, with it.
+    pub(crate) fn tied_to(&self, i: usize) -> Vec<usize> {
+        let mut part = self.assembly.clone();
+        for line in &self.lines {
+            if let [Some(a), Some(b)] = line.bodies {
+                merge(&mut part, a, b);
+            }
+        }
+        (0..part.len()).filter(|j| part[*j] == part[i]).collect()
+    }
+
+    /// Returns whether a rope, or a joint that leaves a motion free, ties body `i` or what is tied to it.
+    pub(crate) fn has_loose_ties(&self, i: usize) -> bool {
+        let own = self.tied_to(i);
+        let is_own = |end: Option<usize>| end.is_some_and(|j| own.contains(&j));
+        let is_loose = |joint: &JointSpec<D>| {
+            let ends = joint.between.map(|end| end.and_then(|solid| self.number(solid)));
+            joint.kind != JointKind::Fixed && ends.into_iter().any(is_own)
+        };
+        self.joints.iter().any(is_loose) || own.iter().any(|j| self.is_roped(*j))
+    }
+
+    /// Returns whether a rope ties body `i`.
+    pub(crate) fn is_roped(&self, i: usize) -> bool {
+        self.lines.iter().any(|line| line.is_rope && line.bodies.contains(&Some(i)))
     }
 }

@@ -26,20 +26,41 @@ pub(super) struct SteadyForce<const D: usize> {
     pub(super) at: Vector<D>,
     pub(super) force: Vector<D>,
     pub(super) torque: Bivector<D>,
+    /// Whether both turn with the body.
+    pub(super) turns: bool,
 }
 
 /// The motor of a slider between two bodies, or a body and the ground.
-pub(super) struct Drive {
+pub(super) struct Drive<const D: usize> {
     /// Numbers of the bodies; `None`: the ground. It drives the second.
     pub(super) bodies: [Option<usize>; 2],
-    /// Upward part of its direction, –.
-    pub(super) steep: f64,
+    /// Its direction.
+    pub(super) along: Vector<D>,
     /// Force (N) where the joint starts.
     pub(super) force: f64,
     /// Stiffness, N/m.
     pub(super) stiffness: f64,
     /// Largest force, N.
     pub(super) largest: f64,
+}
+
+/// Stiffness of a line against motions of its ends.
+#[derive(Clone, Copy)]
+pub(super) struct LineStiffness<const D: usize> {
+    /// Its direction.
+    pub(super) unit: Vector<D>,
+    /// Against its stretch, N/m.
+    pub(super) along: f64,
+    /// Against its turn, N/m.
+    pub(super) across: f64,
+}
+
+impl<const D: usize> LineStiffness<D> {
+    /// Returns the force (N/m) against a motion of an end along `way`, along another one.
+    pub(super) fn between(&self, way: &Vector<D>, other: &Vector<D>) -> f64 {
+        let stretch = self.unit.dot(way) * self.unit.dot(other);
+        self.along * stretch + self.across * (way.dot(other) - stretch)
+    }
 }
 
 /// The end of a mooring line on a free body.

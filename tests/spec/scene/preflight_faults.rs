@@ -245,6 +245,44 @@ fn an_equilibrium_draft_beside_a_load_that_a_joint_lets_through_is_noted() {
     has_no(&format!("{WATER}{TANK}{float}{}{force}", hinge.replace("hinge", "fixed")), "off_draft");
 }
 
+/// A float of 72 kg/m and 0.8 m² per metre of draft on a guide at 30°. A level force of 100 N/m lifts it by 100 cot 30° N/m, 17.66 kg/m; so
+/// does one along an axis of a float that starts turned by 180°, with the opposite sign.
+#[test]
+fn an_equilibrium_draft_on_an_inclined_guide_includes_what_the_guide_lets_through() {
+    let float = |more: &str| body("b", [0.8, 0.3], 300.0, &format!("x = 1.0, draft = \"equilibrium\"{more}"));
+    let guide = "[[joint]]\nname = \"j\"\nkind = \"slider\"\nbetween = [\"b\"]\nat = [1.0, 0.6]\nalong = [0.8660254037844386, 0.5]\n";
+    let force = "[[force]]\nname = \"f\"\non = \"b\"\nforce = [100.0, 0.0]\n";
+    let lift = 100.0 * 3f64.sqrt() / 9.81;
+    for (more, frame, load) in [("", "", -lift), (", angle_deg = 180.0", "frame = \"body\"\n", lift)] {
+        let text = format!("{WATER}{TANK}{}{guide}{force}{frame}", float(more));
+        let (found, exact) = (report(&text).bodies.remove(0), (72.0 + load) / 800.0);
+        assert!((found.draft_m - exact).abs() < 1e-9, "{} m for {exact} m", found.draft_m);
+        assert!((found.afloat.unwrap().draft_m - exact).abs() < 1e-9);
+        has_no(&text, "off_draft");
+    }
+}
+
+/// A buoy of 60 kg/m that displaces 120 kg/m floats alone with a draft of 0.1 m. A rope of 0.3 m to the bed, 0.6 m below the level, holds
+/// its lower side at 0.3 m, with the whole of it under water: 60 g N/m.
+#[test]
+fn a_rope_to_the_bed_tells_its_tension_and_the_turn_to_rest() {
+    let buoy = body("b", [0.6, 0.2], 500.0, "x = 1.0, bottom = 0.2");
+    let rope = |from: f64, length: f64| {
+        format!("[[rope]]\nname = \"r\"\nbetween = [\"b\"]\nfrom = [{from}, 0.2]\nto = [1.0, 0.0]\nlength = {length}\n")
+    };
+    let found = report(&format!("{WATER}{TANK}{buoy}{}", rope(1.0, 0.3)));
+    assert!((found.bodies[0].load_kg - 60.0).abs() < 0.01 && found.bodies[0].support == "lines", "{:?}", found.bodies);
+    assert!(find(&found, "lists").is_none(), "{:#?}", found.findings);
+    // A square one, made fast at a corner, turns by 45°.
+    let square = body("b", [0.2, 0.2], 500.0, "x = 1.0, bottom = 0.2");
+    let turned = finding(&format!("{WATER}{TANK}{square}{}", rope(1.1, 0.3)), "lists").what;
+    assert!(turned.contains("\"b\" by 45°"), "{turned}");
+    // Long enough, it is slack, and the buoy floats as alone.
+    let slack = report(&format!("{WATER}{TANK}{buoy}{}", rope(1.0, 0.55)));
+    let free = slack.bodies[0].afloat.as_ref().unwrap().free_joints.as_ref().unwrap();
+    assert!(free.tensions_n[0].1 == 0.0 && (free.drafts_m[0].1 - 0.1).abs() < 1e-6, "{free:?}");
+}
+
 /// The loads of dry walls of 1, 1.5 and 2 dp that a tester measured.
 #[test]
 fn a_thin_dry_wall_is_told_with_the_error_of_its_load() {

@@ -203,7 +203,7 @@ fn a_probe_beyond_a_symmetry_plane_is_told_with_its_mirror_image() {
 }
 
 #[test]
-fn a_mast_on_a_hinge_falls_and_joints_that_are_not_judged_are_named_beside_gm() {
+fn a_mast_on_a_hinge_falls_unless_a_motor_or_stays_on_both_sides_hold_it() {
     let joined = |kind: &str, more: &str| {
         let raft = block("b", [0.4, 0.2], "x = 0.8, draft = \"equilibrium\"", "density = 400.0");
         let mast = block("m", [0.08, 0.3], "x = 0.8, bottom = 0.55", "density = 200.0");
@@ -220,9 +220,15 @@ fn a_mast_on_a_hinge_falls_and_joints_that_are_not_judged_are_named_beside_gm() 
     // A motor of 100 N m/rad holds the mast, whose weight of 4.8 kg 0.15 m above the hinge turns it by 7 N m/rad.
     let held = joined("hinge", "motor = { stiffness = 100.0 }\n");
     assert!(find(&held, "capsizes").is_none() && find(&held, "loose_joint").is_none(), "{:#?}", held.findings);
-    let rope = "[[rope]]\nname = \"s\"\nbetween = [\"b\", \"m\"]\nfrom = [0.7, 0.55]\nto = [0.8, 0.8]\n";
-    let tied = joined("hinge", rope);
-    assert!(find(&tied, "loose_joint").unwrap().what.contains("\"b\" with \"m\" take joint \"j\" as rigid"));
+    // One stay lets it fall to its own side; stays on both sides hold it.
+    let stay = |name: &str, foot: f64| {
+        format!("[[rope]]\nname = \"{name}\"\nbetween = [\"b\", \"m\"]\nfrom = [{foot}, 0.55]\nto = [0.8, 0.8]\n")
+    };
+    for foot in [0.7, 0.9] {
+        assert!(find(&joined("hinge", &stay("s", foot)), "capsizes").is_some());
+    }
+    let stayed = joined("hinge", &(stay("s", 0.7) + &stay("t", 0.9)));
+    assert!(find(&stayed, "capsizes").is_none() && find(&stayed, "loose_joint").is_none(), "{:#?}", stayed.findings);
     assert!(find(&joined("fixed", ""), "loose_joint").is_none());
 }
 
@@ -251,7 +257,7 @@ fn hinged_barges_are_told_with_the_trim_of_each_part() {
         assert!((told / turn - 1.0).abs() < 0.03, "{name}: {told}° for {turn}°");
     }
     assert!(
-        find(&found, "lists").unwrap().what.contains("turn to their rest with free joints: \"left\" by"),
+        find(&found, "lists").unwrap().what.contains("turn to their rest with free ties: \"left\" by"),
         "{found:#?}"
     );
     assert!(find(&barges(0.0), "lists").is_none());

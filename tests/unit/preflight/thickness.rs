@@ -21,3 +21,13 @@ fn the_thickness_of_a_shape_is_that_of_its_thinnest_part() {
     let boat = thin(Shape::Polygon { points: hull });
     assert!((0.03..=0.0601).contains(&boat), "{boat}");
 }
+
+/// `system::thin_sides` gives the two sides of a part thinner than dp pressures of their own in 2-D, and of no other part.
+#[test]
+fn only_parts_thinner_than_dp_in_2d_have_a_pressure_for_each_side() {
+    let of_each_side = |text: &str| text.contains("the pressure of each side");
+    assert!(of_each_side(effect_on_sides::<2>(0.3)));
+    for text in [effect_on_sides::<2>(1.0), effect_on_sides::<2>(2.5), effect_on_sides::<3>(0.3)] {
+        assert!(!of_each_side(text) && text.contains("one pressure for both"), "{text}");
+    }
+}

@@ -3,7 +3,7 @@
 use super::*;
 use crate::{
     geometry::Shape,
-    solid::{JointKind, JointSpec, Role, RopeSpec, SpringSpec},
+    solid::{ForceSpec, JointKind, JointSpec, Motor, Role, RopeSpec, SpringSpec},
 };
 
 const WATER: WaterAtRest = WaterAtRest { rho0: 1000.0, g: 10.0, level: 0.0 };
@@ -157,4 +157,31 @@ fn an_anchor_on_the_bottom_holds_a_buoy_down_or_stays_slack() {
         assert_eq!((system.support(0), system.support(1)), (Support::Water, Support::Bottom));
         assert!((draft(system, 0) - 0.1).abs() < 1e-9 && system.tie_load(0).abs() < 1e-9);
     });
+}
+
+/// On a guide at 30° to the horizontal, a level force F lifts with F cot 30°: 173.2 N/m over 10 kN/m² of waterplane of 1 m. A motor of
+/// 50 N/m along the guide lifts with 50/sin 30° = 100 N/m.
+#[test]
+fn an_inclined_slider_turns_a_level_force_into_a_rise() {
+    let solids = [block("float", [1.0, 0.4], 500.0, [0.0, -0.2])];
+    let (sin, cos) = 30f64.to_radians().sin_cos();
+    let guide =
+        JointSpec::new("g", JointKind::Slider, [None, Some(0)], Vector::from([0.0, 1.0]), Vector::from([cos, sin]));
+    let force = ForceSpec::new("f", 0).force([100.0, 0.0]);
+    for (joint, forces, lift) in [
+        (guide.clone(), vec![force], 100.0 * cos / sin),
+        (guide.motor(Motor::default().force(50.0)), vec![], 50.0 / sin),
+    ] {
+        at_rest(&solids, &Constraints { joints: vec![joint], forces, ..Constraints::default() }, |system| {
+            let (rise, way) = (lift / 1e4, system.pose(0).position);
+            assert!((way - Vector::from([rise * cos / sin, rise])).norm() < 1e-9, "{way:?}, rise {rise}");
+            assert_eq!(system.support(0), Support::Water);
+            // What heaves by 1 m moves by 2 m along the guide.
+            assert!((system.heaving_mass_and_stiffness(0).0 - 4.0 * 200.0).abs() < 1e-9);
+            let found = free_rest(system, 0).unwrap();
+            assert!((found.drafts[0].1 - (0.2 - rise)).abs() < 1e-9 && found.periods.len() == 1, "{found:?}");
+            let exact = std::f64::consts::TAU * (800.0f64 / 1e4).sqrt();
+            assert!((found.periods[0] / exact - 1.0).abs() < 1e-6, "{found:?}, exact {exact} s");
+        });
+    }
 }

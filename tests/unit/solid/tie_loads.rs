@@ -20,7 +20,7 @@ fn loads(masses: &[f64], afloat: usize, ties: &Constraints<2>) -> TieLoads {
         afloat: &afloat,
         displaced: &|_| 1.0,
         above_bottom: &|_| 2.0,
-        moored: &|_| 0.0,
+        moored: &|_| Vector::zeros(),
         g: 10.0,
     };
     TieLoads::at_start(&state, ties)
@@ -133,4 +133,17 @@ fn a_tense_mooring_and_a_steady_force_load_a_buoy() {
     assert_eq!(loads(&[5.0], 1, &ties).on(0), 0.0, "slack");
     ties.forces.push(ForceSpec::new("crane", 0).force([0.0, 30.0]));
     assert_eq!(loads(&[5.0], 1, &ties).on(0), -3.0);
+}
+
+/// On a guide at 30° to the horizontal a level force F takes F cot 30° of the load, one along the guide F/sin 30°; g is 10 m/s².
+#[test]
+fn an_inclined_slider_to_the_ground_passes_on_what_acts_along_it() {
+    let (sin, cos) = 30f64.to_radians().sin_cos();
+    let guide = JointSpec::new("g", JointKind::Slider, [None, Some(0)], Vector::zeros(), Vector::from([cos, sin]));
+    for (force, exact) in [([20.0, 0.0], -2.0 * cos / sin), ([20.0 * cos, 20.0 * sin], -2.0 / sin), ([0.0, -20.0], 2.0)]
+    {
+        let forces = vec![ForceSpec::new("f", 0).force(force)];
+        let found = loads(&[5.0], 1, &Constraints { joints: vec![guide.clone()], forces, ..Constraints::default() });
+        assert_on(&found, &[exact]);
+    }
 }

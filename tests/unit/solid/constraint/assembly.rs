@@ -185,6 +185,19 @@ fn a_body_frame_force_rotates_with_the_body_and_a_world_frame_force_does_not() {
     assert!((beside.spin.axial()[0] - PI + 12.0 * 0.05 / inertia).abs() < 1e-9, "{beside:?}");
 }
 
+/// A thruster at the stern of a boat that starts turned by 90° pushes along the boat, which is along y, and not along x.
+#[test]
+fn a_body_frame_force_is_along_the_axes_of_a_body_that_starts_turned() {
+    let boat = bar::<2>("boat", 0.4, point(0.0, 0.0), true).at(Pose::rotated(Vector::zeros(), &[0.5 * PI]));
+    let thrust = ForceSpec::<2>::new("thrust", 0).force([12.0, 0.0]).rotating_with_solid();
+    let (mass, links) =
+        (boat.initial_body().unwrap().mass, Constraints { forces: vec![thrust], ..Constraints::default() });
+    let mut air = DrySystem::new(vec![boat], links, 0.0);
+    air.run(1e-3, 1.0);
+    let velocity = air.now()[0].velocity;
+    assert!((velocity - Vector::from([0.0, 12.0 / mass])).norm() < 1e-9, "{velocity:?}");
+}
+
 /// Speed (m/s) after 1 s of a box of friction 0.5 on a plane of friction 0.5 with a slope of 20 degrees.
 fn slides(contact: Option<ContactSpec>) -> f64 {
     let slope = 20f64.to_radians();
