@@ -11,13 +11,12 @@ use super::super::rapier::{
         GenericJoint, ImpulseJoint, ImpulseJointHandle, JointAxesMask, JointLimits, RigidBody, RigidBodyBuilder,
         RigidBodyHandle, SpringCoefficients,
     },
-    geometry::{Collider, ColliderHandle, ColliderSet, SolverFlags},
+    geometry::{ColliderHandle, ColliderSet, SolverFlags},
     math::{Pose as Frame, Vector as Point},
     pipeline::{ContactModificationContext, PairFilterContext, PhysicsHooks, PhysicsWorld},
 };
 use super::{
-    super::align, D, from_angular, from_frame, from_point, kinematics_of, mobility_of, seams::is_hidden, to_angular,
-    to_frame, to_point,
+    super::align, D, from_angular, from_frame, from_point, kinematics_of, mobility_of, to_angular, to_frame, to_point,
 };
 use crate::{
     math::{Pose, Vector},
@@ -105,7 +104,7 @@ impl RapierJoints {
             links.joints.iter().map(|joint| Joint::new(joint.clone(), start)).collect(),
             links.ropes.iter().map(|rope| AttachedLine::new(&rope.ends, start)).collect(),
         );
-        let contact_pairs = ContactPairHooks { own: links.contacts.clone(), restitution, slowest: 0.0, flush: 0.0 };
+        let contact_pairs = ContactPairHooks { own: links.contacts.clone(), restitution, slowest: 0.0 };
         Self { joints, ropes, specs, added_impulses: Vec::new(), contact_pairs }
     }
 
@@ -332,8 +331,6 @@ pub(super) struct ContactPairHooks {
     pub(super) restitution: Vec<f64>,
     /// Approach speed above which bodies with restitution meet by impulses, m/s.
     pub(super) slowest: f64,
-    /// Length up to which parts are flush, m.
-    pub(super) flush: f64,
 }
 
 impl ContactPairHooks {
@@ -353,22 +350,6 @@ impl ContactPairHooks {
     fn of(&self, colliders: &ColliderSet, pair: [ColliderHandle; 2]) -> Option<&ContactSpec> {
         let [a, b] = pair.map(|collider| colliders[collider].user_data as usize);
         self.own.find(a, b)
-    }
-
-    /// Removes the points of a contact at seams of flush parts.
-    fn leave_out_seams(&self, context: &mut ContactModificationContext) {
-        let (bodies, colliders, pair) = (context.bodies, context.colliders, [context.collider1, context.collider2]);
-        let is_hidden = |k: usize, at: Point, out: Point| {
-            let body = colliders[pair[1 - k]].user_data as usize;
-            let can_touch =
-                |other: &Collider| self.own.find(body, other.user_data as usize).is_none_or(|spec| spec.can_touch);
-            is_hidden((bodies, colliders), pair[k], (at, out), self.flush, can_touch)
-        };
-        if let Some(contact) = context.rigid_mut() {
-            let normal = *contact.normal;
-            let is_real = |at: [Point; 2]| !is_hidden(0, at[0], normal) && !is_hidden(1, at[1], -normal);
-            contact.solver_contacts.retain(|point| is_real([point.anchor1, point.anchor2]));
-        }
     }
 
     /// Removes the points of a contact whose bodies do not touch yet and will meet by impulses. The engine would slow them before.
@@ -401,7 +382,6 @@ impl PhysicsHooks for ContactPairHooks {
         if let (Some(friction), Some(contact)) = (own, context.rigid_mut()) {
             *contact.friction = friction;
         }
-        self.leave_out_seams(context);
         self.leave_to_impacts(context);
         align(context);
     }

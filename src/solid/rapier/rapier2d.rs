@@ -35,7 +35,7 @@ use rapier::{
     geometry::{ContactData, SharedShape, TriMesh, TypedShape},
     math::{Pose as Frame, Rotation, Vector as Point},
     parry::{mass_properties::MassProperties, transformation::hertel_mehlhorn},
-    pipeline::{ContactModificationContext, PhysicsWorld},
+    pipeline::{ActiveHooks, ContactModificationContext, PhysicsWorld},
     utils::OrthonormalBasis,
 };
 
@@ -91,6 +91,9 @@ fn lock(builder: RigidBodyBuilder, body: &FreeBody<D>) -> RigidBodyBuilder {
 fn friction(direction: Point, data: &ContactData) -> Point {
     direction.orthonormal_vector() * data.tangent_impulse[0]
 }
+
+/// Contact hooks of every collider by default: 2-D needs no hooks.
+const HOOKS: ActiveHooks = ActiveHooks::empty();
 
 /// Does nothing: friction in 2-D has a single direction.
 fn align(_context: &mut ContactModificationContext) {}

@@ -41,7 +41,7 @@ use rapier::{
         mass_properties::MassProperties,
         transformation::vhacd::{VHACD, VHACDParameters},
     },
-    pipeline::{ContactModificationContext, PhysicsWorld},
+    pipeline::{ActiveHooks, ContactModificationContext, PhysicsWorld},
     utils::OrthonormalBasis,
 };
 
@@ -117,6 +117,9 @@ fn friction(direction: Point, data: &ContactData) -> Point {
     let tangent = direction.orthonormal_vector();
     tangent * data.tangent_impulse[0] + direction.cross(tangent) * data.tangent_impulse[1]
 }
+
+/// Contact hooks that every collider has by default: this module corrects the direction of friction.
+const HOOKS: ActiveHooks = ActiveHooks::MODIFY_SOLVER_CONTACTS;
 
 /// Makes the friction of a contact act against the sliding velocity v. The engine subtracts K⁻¹ v from the impulse and
 /// limits the result to μ N. The matrix K maps impulses in the contact plane to velocities there. Friction then acts

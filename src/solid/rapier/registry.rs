@@ -9,7 +9,7 @@ use super::super::rapier::{
     pipeline::{ActiveHooks, PhysicsWorld},
 };
 use super::{
-    D, RapierWorld,
+    D, HOOKS, RapierWorld,
     colliders::{ConvexParts, collect_parts, thickness},
     lock, mass_properties, to_angular, to_frame, to_point,
 };
@@ -99,7 +99,11 @@ pub(super) fn insert_solid(
     parts: &ConvexParts,
     pairs: bool,
 ) -> RigidBodyHandle {
-    let hooks = if pairs { ActiveHooks::all() } else { ActiveHooks::MODIFY_SOLVER_CONTACTS };
+    let hooks = match solid.restitution {
+        _ if pairs => ActiveHooks::all(),
+        0.0 => HOOKS,
+        _ => HOOKS | ActiveHooks::MODIFY_SOLVER_CONTACTS,
+    };
     let builder = match (&solid.role, solid.initial_body()) {
         (Role::Driven(_), _) => RigidBodyBuilder::kinematic_position_based(),
         (_, None) => RigidBodyBuilder::fixed(),

@@ -7,7 +7,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{super::Angular, Frame, PhysicsWorld, Point, RigidBodyHandle, seams::is_hidden};
+use super::{super::Angular, Frame, PhysicsWorld, Point, RigidBodyHandle};
 
 /// An impact of two solids at a point.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
@@ -55,14 +55,14 @@ struct Touch {
     across: Point,
 }
 
-/// Makes the bodies of `world` that are about to touch in a step of `dt` (s) separate again; parts are flush up to `flush` (m). `pair`
-/// returns the restitution and friction of two solids from their numbers and mean friction. Returns the impacts, point by point.
+/// Makes the bodies of `world` that are about to touch in a step of `dt` (s) separate again. `pair` returns the
+/// restitution and friction of two solids from their numbers and mean friction. Returns the impacts, point by point.
 pub(super) fn apply_impacts(
     world: &mut PhysicsWorld,
-    (dt, flush): (f64, f64),
+    dt: f64,
     pair: impl Fn(usize, usize, f64) -> (f64, f64),
 ) -> Vec<Impact> {
-    let mut touches = find(world, (dt, flush), pair);
+    let mut touches = find(world, dt, pair);
     for touch in &mut touches {
         touch.response = response(world, touch, touch.normal);
     }
@@ -96,7 +96,7 @@ pub(super) fn slowest_impact(world: &PhysicsWorld, dt: f64) -> f64 {
 }
 
 /// Returns the points of all pairs with at least one point of sufficient approach speed.
-fn find(world: &PhysicsWorld, (dt, flush): (f64, f64), law: impl Fn(usize, usize, f64) -> (f64, f64)) -> Vec<Touch> {
+fn find(world: &PhysicsWorld, dt: f64, law: impl Fn(usize, usize, f64) -> (f64, f64)) -> Vec<Touch> {
     let slowest = slowest_impact(world, dt);
     let mut touches = Vec::new();
     for pair in world.narrow_phase.contact_pairs() {
@@ -110,11 +110,6 @@ fn find(world: &PhysicsWorld, (dt, flush): (f64, f64), law: impl Fn(usize, usize
         }
         let bodies = [first, second];
         let skins = colliders.map(|c| c.contact_skin());
-        let set = (&world.bodies, &world.colliders);
-        let hidden = |p1: Point, p2: Point, normal: Point| {
-            is_hidden(set, pair.collider1, (p1, normal), flush, |_| true)
-                || is_hidden(set, pair.collider2, (p2, -normal), flush, |_| true)
-        };
         let (mut close, mut struck) = (Vec::new(), false);
         for manifold in pair.manifolds() {
             let poses = [
@@ -128,8 +123,8 @@ fn find(world: &PhysicsWorld, (dt, flush): (f64, f64), law: impl Fn(usize, usize
                 let gap = (p2 - p1).dot(normal) - skins[0] - skins[1];
                 let at = 0.5 * (p1 + p2) + normal * (0.5 * (skins[0] - skins[1]));
                 let meeting = parting(world, bodies, at).dot(normal);
-                struck |= meeting < -slowest && gap + AHEAD * meeting * dt < 0.0 && !hidden(p1, p2, normal);
-                if meeting < 0.0 && gap + 2.0 * AHEAD * meeting * dt < 0.0 && !hidden(p1, p2, normal) {
+                struck |= meeting < -slowest && gap + AHEAD * meeting * dt < 0.0;
+                if meeting < 0.0 && gap + 2.0 * AHEAD * meeting * dt < 0.0 {
                     let (along, across) = (0.0, Point::ZERO);
                     let response = 0.0;
                     let touch =

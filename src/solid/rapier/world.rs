@@ -11,7 +11,7 @@
 //! - Contact recycling is off, because it leaves small bodies hanging on ledges. Sleep is off.
 //! - Continuous collision detection is off, because no body passes through a wall in one step of the water.
 //!
-//! The module `restitution` makes bodies rebound; the springs do not. `seams` leaves out contacts between flush parts. Colliders have the true faces; other bodies touch them
+//! The module `restitution` makes bodies rebound; the springs do not. Colliders have the true faces; other bodies touch them
 //! there, or at the contact skin that the solid sets. The friction and restitution of a pair are the means of both solids'
 //! values. Only this module applies weight. Mass and inertia belong to the body; colliders have no mass.
 
@@ -30,9 +30,6 @@ mod joints;
 #[allow(clippy::duplicate_mod, reason = "one source, compiled against each engine")]
 #[path = "contact_forces.rs"]
 mod contact_forces;
-#[allow(clippy::duplicate_mod, reason = "one source, compiled against each engine")]
-#[path = "seams.rs"]
-mod seams;
 
 use super::rapier::{
     dynamics::{LockedAxes, RigidBody, RigidBodyHandle, SpringCoefficients},
@@ -40,8 +37,8 @@ use super::rapier::{
     pipeline::PhysicsWorld,
 };
 use super::{
-    Angular, D, ENGINE, from_angular, from_rotation, inverse_inertia, lock, mass_properties, to_angular, to_rotation,
-    tune, unwind, wind,
+    Angular, D, ENGINE, HOOKS, from_angular, from_rotation, inverse_inertia, lock, mass_properties, to_angular,
+    to_rotation, tune, unwind, wind,
 };
 use crate::{
     error::{ErrorCode, Result},
@@ -57,9 +54,6 @@ use restitution::Impact;
 
 /// Largest overlap at the start, in dp: it allows for round-off of the placement.
 const OVERLAP_MAX: f64 = 0.05;
-
-/// Length up to which parts are flush, over the distance at which the engine begins to predict contacts, –.
-const FLUSH: f64 = 0.01;
 
 /// Damping ratio of a contact, –: critical damping.
 const CONTACT_DAMPING: f64 = 1.0;
@@ -300,8 +294,7 @@ impl Engine<D> for RapierWorld {
         let before: Vec<Point> = (0..self.bodies.len()).map(|i| self.body(i).linvel()).collect();
         let spins: Vec<Angular> = (0..self.bodies.len()).map(|i| self.body(i).angvel()).collect();
         self.ties.contact_pairs.slowest = restitution::slowest_impact(&self.world, dt);
-        self.ties.contact_pairs.flush = FLUSH * self.reach;
-        self.met = restitution::apply_impacts(&mut self.world, (dt, FLUSH * self.reach), |a, b, mu| {
+        self.met = restitution::apply_impacts(&mut self.world, dt, |a, b, mu| {
             self.ties.contact_pairs.restitution_and_friction(a, b, mu)
         });
         self.ties.update_rope_limits(&mut self.world, dt);
