@@ -17,6 +17,8 @@ pub(crate) fn of_pair_loop<const D: usize>(system: &System<D>, pair_loop: &mut d
     let (medium, state) = (&system.properties, &system.equation_of_state);
     let input = System::pair_input(&system.neighbours, &system.fluid, &system.boundary, medium, state);
     let mut boundary = vec![PairSums::zero(); system.rates.boundary.len()];
+    // It has not been told what has changed since its last pass.
+    pair_loop.inputs_changed();
     pair_loop.rates(&input, RequestedSums::Rates, &mut boundary);
     System::add_gap_pressure(&system.gap_pressure, &input, &mut boundary);
     of_pass(system, &boundary, &film::loads(system, &boundary).loads)
