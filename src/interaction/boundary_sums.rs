@@ -33,8 +33,13 @@ pub(super) trait BoundarySums<const D: usize>: Send + Sync {
     fn sum_slab(&self, level: Level, packed: &PackedParticles<D>, slab: &Slab, flow: bool, sums: &mut [LaneRow]);
 }
 
-/// A kernel, multiplied by the volume of a particle at ρ₀, and the square of its support.
-pub(super) struct KernelSums<K>(pub(super) K, pub(super) f64);
+/// The sums under a kernel.
+pub(super) struct KernelSums<K> {
+    /// The kernel, multiplied by the volume of a particle at ρ₀.
+    pub(super) kernel: K,
+    /// The square of its support.
+    pub(super) reach2: f64,
+}
 
 /// Number of rows of sums, with the velocity or without.
 #[inline(always)]
@@ -57,7 +62,7 @@ impl<K: Kernel, const D: usize> BoundarySums<D> for KernelSums<K> {
                 let (wall, water) = (&skin[i as usize], &water[j as usize]);
                 let r: [f64; D] = std::array::from_fn(|k| wall.r[k] - water.r[k]);
                 let r2 = r.iter().map(|x| x * x).sum();
-                let w = self.0.w(r2);
+                let w = self.kernel.w(r2);
                 fit.add(w, water.side.p, water.side.specific_volume, r);
                 if flow {
                     fit.add_velocity(w, water.side.specific_volume, water.v);
@@ -69,18 +74,14 @@ impl<K: Kernel, const D: usize> BoundarySums<D> for KernelSums<K> {
 
     #[cfg(feature = "gpu")]
     fn traces(&self) -> [crate::sph::trace::Trace; 2] {
-        [super::trace::extrapolation::<K, D>(&self.0), super::trace::slope(&self.0)]
+        [super::trace::extrapolation::<K, D>(&self.kernel), super::trace::slope(&self.kernel)]
     }
 
     fn sum_slab(&self, level: Level, packed: &PackedParticles<D>, slab: &Slab, flow: bool, sums: &mut [LaneRow]) {
-        let reach2 = self.1;
+        let Self { kernel, reach2 } = *self;
         match flow {
-            true => {
-                simd::dispatch(level, BoundarySlabTask::<_, true, D> { kernel: self.0, reach2, packed, slab, sums })
-            }
-            false => {
-                simd::dispatch(level, BoundarySlabTask::<_, false, D> { kernel: self.0, reach2, packed, slab, sums })
-            }
+            true => simd::dispatch(level, BoundarySlabTask::<_, true, D> { kernel, reach2, packed, slab, sums }),
+            false => simd::dispatch(level, BoundarySlabTask::<_, false, D> { kernel, reach2, packed, slab, sums }),
         }
     }
 }

@@ -171,7 +171,8 @@ where
     let moments = T::GRADIENT_CORRECTION.then(|| -> Box<dyn compiled::PairTerms<D>> {
         Box::new(compiled::CompiledTerms::new(kernel, RenormalizationTerm, RenormalizationTerm, medium))
     });
-    let fits = Box::new(boundary_sums::KernelSums(kernel.normalised_on_lattice(medium), laws.reach2));
+    let fits =
+        Box::new(boundary_sums::KernelSums { kernel: kernel.normalised_on_lattice(medium), reach2: laws.reach2 });
     match level {
         Some(level) => Box::new(simd::SimdPairLoop::new(laws, moments, fits, units, level)),
         None => Box::new(reference::ReferencePairLoop::new(laws, moments, fits)),

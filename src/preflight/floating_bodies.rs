@@ -452,8 +452,8 @@ impl<const D: usize> PreflightContext<'_, D> {
         }
         let Some(equilibrium) = &body.afloat else { return };
         let all: Vec<usize> = statics.assembly_of(number).collect();
-        let name = self.names_of(statics, &all);
-        let (verb, its) = if all.len() == 1 { ("s", "its") } else { ("", "their") };
+        let (name, its) = self.called(statics, &all);
+        let verb = if all.len() == 1 { "s" } else { "" };
         let afloat = |j: &usize| self.support(statics, *j) == Support::Water;
         let is_first = self.is_first_afloat(statics, number);
         let loose = statics.loose_joints(number);
@@ -468,9 +468,8 @@ impl<const D: usize> PreflightContext<'_, D> {
         // A body in the air that lies on another does not float.
         let is_carried = touches && body.displaced_kg <= 0.0;
         if let Some(free) = &equilibrium.free_joints {
-            let tied = statics.tied_to(number);
-            let its = if tied.len() == 1 { "its" } else { "their" };
-            findings.extend(free_assembly_finding(free, (&self.names_of(statics, &tied), its), &equilibrium.tilts));
+            let called = self.called(statics, &statics.tied_to(number));
+            findings.extend(free_assembly_finding(free, called, &equilibrium.tilts));
         } else if free.is_none() && is_first && !is_carried {
             findings.extend(turn_finding(equilibrium, (statics, number), (&name, verb, its)));
         }
@@ -518,10 +517,11 @@ impl<const D: usize> PreflightContext<'_, D> {
         )
     }
 
-    /// Returns the names of these bodies.
-    pub(super) fn names_of(&self, statics: &StaticSystem<D>, numbers: &[usize]) -> String {
+    /// Returns the names of these bodies, and "its" for one of them or "their".
+    pub(super) fn called(&self, statics: &StaticSystem<D>, numbers: &[usize]) -> (String, &'static str) {
         let name = |j: &usize| format!("\"{}\"", self.solids()[statics.bodies[*j].solid].spec.name);
-        numbers.iter().map(name).collect::<Vec<_>>().join(" with ")
+        let names: Vec<String> = numbers.iter().map(name).collect();
+        (names.join(" with "), if names.len() == 1 { "its" } else { "their" })
     }
 
     /// Adds findings about whether the particles can support a body.

@@ -64,9 +64,13 @@ fn named<const D: usize>(context: &PreflightContext<D>, statics: &StaticSystem<D
     }
 }
 
-/// Returns a finding about tied bodies that turn to their rest or have none; `called`: their names, and the word for "their". `tilts`: as
-/// one rigid body.
-pub(super) fn free_assembly_finding(free: &FreeAssembly, (name, its): (&str, &str), tilts: &[Tilt]) -> Option<Finding> {
+/// Returns a finding about tied bodies that turn to their rest or have none. They have a name and a word for "their"
+/// ([`PreflightContext::called`]), and the `tilts` of one rigid body.
+pub(super) fn free_assembly_finding(
+    free: &FreeAssembly,
+    (name, its): (String, &str),
+    tilts: &[Tilt],
+) -> Option<Finding> {
     let (verb, has) = if its == "its" { ("turns", "it has") } else { ("turn", "they have") };
     if !free.is_stable {
         let least = tilts.iter().map(|tilt| tilt.gm_m).fold(0.0, f64::min);
@@ -110,8 +114,7 @@ pub(super) fn held_findings<const D: usize>(
         return;
     }
     let Some(found) = free_rest(statics, number) else { return };
-    let (found, name) = (named(context, statics, found), context.names_of(statics, &tied));
-    findings.extend(free_assembly_finding(&found, (&name, if tied.len() == 1 { "its" } else { "their" }), &[]));
+    findings.extend(free_assembly_finding(&named(context, statics, found), context.called(statics, &tied), &[]));
 }
 
 /// Adds a note about each body on a single hinge to the ground, without lines and end stops, that starts out of balance.
@@ -159,16 +162,13 @@ fn has_own_note<const D: usize>(
     context: &PreflightContext<D>,
     constraints: &Constraints<D>,
 ) -> bool {
-    let lines = constraints.springs.iter().flat_map(|line| &line.ends);
-    let lines = lines.chain(constraints.ropes.iter().flat_map(|line| &line.ends));
-    let mut lines = lines.chain(constraints.moorings.iter().flat_map(|line| &line.ends));
     let joints = constraints.joints.iter().filter(|other| other.between.contains(&Some(i))).count();
     let free = joint.between.into_iter().flatten().filter(|j| context.solids()[*j].body.is_some());
     joint.kind == JointKind::Hinge
         && joint.limits.is_none()
         && free.eq([i])
         && joints == 1
-        && !lines.any(|end| end.solid == Some(i))
+        && !constraints.lines().any(|(ends, _)| ends.iter().any(|end| end.solid == Some(i)))
 }
 
 /// Returns the moment (N m) about the hinge on free solid number `i`, turned about it by `turn` (rad).

@@ -26,16 +26,16 @@ use crate::{
 /// speed in that time.
 const LEAST: f64 = 30.0;
 
-/// Force with which the particles resist slow motion under water, over the pressure there and the size of the body (in 3-D its square),
-/// in 2-D and 3-D, and whether it has been measured with h below 2 dp and plain gradients. A disc of ten or twenty rows that swings at
-/// 0.026 to 0.08 m/s under 0.2 to 0.5 m of water finds 0.5 to 1 % of pressure times diameter, and hardly less without viscosity.
+/// Force with which the particles resist slow motion under water, over the pressure there and the size of the body (in 3-D its square), –,
+/// in 2-D and in 3-D, with h below 2 dp. In 2-D a disc of ten or twenty rows that swings at 0.026 to 0.08 m/s under 0.2 to 0.5 m of water
+/// finds 0.5 to 1 % of pressure times diameter, and hardly less without viscosity. All shares are those of the same two motions
+/// (`docs/measurements/slow-disc.toml`, `slow-ball.toml`).
 const RESISTANCE: [f64; 2] = [0.006, 0.008];
 
 /// The same with h of 2 dp or more.
 const RESISTANCE_WIDE: [f64; 2] = [0.003, 0.003];
 
-/// The same with gradients corrected at every depth as well: by
-/// `pontoon run docs/measurements/slow-disc.toml --set 'model={gradient="corrected",h_over_dp=2.0}'`.
+/// The same with gradients corrected at every depth as well.
 const RESISTANCE_CORRECTED: [f64; 2] = [0.0007, 0.0007];
 
 /// The flow about a moving body.
