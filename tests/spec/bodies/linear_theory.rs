@@ -38,6 +38,16 @@ rho0 = 998.2
     )
 }
 
+/// Component `axis` of the force of the water (N/m) on the disc, after each step to 5 s, with its time (s).
+fn forces_on_disc(mut sim: Simulation<2>, axis: usize) -> Result<Vec<(f64, f64)>> {
+    let mut samples = Vec::new();
+    while sim.time() < 5.0 {
+        sim.step_to(5.0)?;
+        samples.push((sim.time(), sim.system().solids()[1].load.force[axis]));
+    }
+    Ok(samples)
+}
+
 /// Coefficients of a constant, sin ω t, cos ω t, sin 2ω t and cos 2ω t in a least-squares fit of `samples` (t, x).
 fn harmonics(samples: &[(f64, f64)], omega: f64) -> [f64; 5] {
     let rows = nalgebra::DMatrix::from_fn(samples.len(), 5, |i, j| {
@@ -55,12 +65,7 @@ fn a_disc_driven_in_heave_meets_the_added_mass_and_damping_of_linear_theory() ->
     let law = format!(
         "at = {{ y = 0.6 }}\ndriven = {{ along = [0.0, 1.0], distance = {{ formula = \"{amplitude}*min(t,1)*sin({omega}*t)\" }} }}"
     );
-    let mut sim = scene_simulation::<2>(&disc(0.03, 6.0, &law))?;
-    let mut samples = Vec::new();
-    while sim.time() < 5.0 {
-        sim.step_to(5.0)?;
-        samples.push((sim.time(), sim.system().solids()[1].load.force[1]));
-    }
+    let mut samples = forces_on_disc(scene_simulation(&disc(0.03, 6.0, &law))?, 1)?;
     // Four whole periods. The first wave that the walls reflect is back at about 8 s.
     samples.retain(|&(t, _)| t > 5.0 - 4.0 * 2.0 * PI / omega);
     let [mean, sine, cosine, ..] = harmonics(&samples, omega);
@@ -81,12 +86,7 @@ fn a_disc_driven_in_sway_meets_the_added_mass_and_damping_of_linear_theory() -> 
     let law = format!(
         "at = {{ y = 0.6 }}\ndriven = {{ along = [1.0, 0.0], distance = {{ formula = \"{amplitude}*min(t,1)*sin({omega}*t)\" }} }}"
     );
-    let mut sim = scene_simulation::<2>(&disc(0.03, 6.0, &law))?;
-    let mut samples = Vec::new();
-    while sim.time() < 5.0 {
-        sim.step_to(5.0)?;
-        samples.push((sim.time(), sim.system().solids()[1].load.force[0]));
-    }
+    let mut samples = forces_on_disc(scene_simulation(&disc(0.03, 6.0, &law))?, 0)?;
     samples.retain(|&(t, _)| t > 5.0 - 4.0 * 2.0 * PI / omega);
     let [_, sine, cosine, ..] = harmonics(&samples, omega);
     let (added_mass, damping) = (sine / amplitude / (omega * omega), -cosine / (omega * amplitude));
@@ -100,12 +100,8 @@ fn a_disc_driven_in_sway_meets_the_added_mass_and_damping_of_linear_theory() -> 
 #[test]
 fn a_slow_disc_under_water_has_the_added_mass_of_potential_flow_with_corrected_gradients() -> Result<()> {
     let sets = [("dp", "0.02"), ("probe", "[]"), ("model", "{ gradient = \"corrected\", h_over_dp = 2.0 }")];
-    let (mut sim, amplitude, omega) = (measurement::<2>("slow-disc", &sets)?, 0.02, 2.56);
-    let mut samples = Vec::new();
-    while sim.time() < 5.0 {
-        sim.step_to(5.0)?;
-        samples.push((sim.time(), sim.system().solids()[1].load.force[1]));
-    }
+    let (amplitude, omega) = (0.02, 2.56);
+    let mut samples = forces_on_disc(measurement("slow-disc", &sets)?, 1)?;
     // Compression waves of the start fade in a second.
     samples.retain(|&(t, _)| t > 1.2);
     let [_, sine, cosine, ..] = harmonics(&samples, omega);

@@ -428,6 +428,13 @@ fn a_slow_body_under_water_is_found_with_the_laws_that_help() {
     assert!(topics(&disc_findings(&law, "")).contains(&"slow_body"));
     let with_help = disc_findings(&law, "gradient = \"corrected\"\nh_over_dp = 2.0");
     assert!(!topics(&with_help).contains(&"slow_body"), "{with_help:?}");
+    // A ball finds 0.8 % of pressure times size squared (measured).
+    let ball = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/measurements/slow-ball.toml");
+    let found = preflight_report(&Scene::read(&ball, &[]).unwrap()).findings;
+    assert!(
+        found.iter().any(|finding| finding.topic == "slow_body" && finding.what.contains(" N, 0.8 %")),
+        "{found:?}"
+    );
     let fast = disc_findings(&driven("0.1*(1-cos(5*t))"), "");
     assert!(!topics(&fast).contains(&"slow_body"), "{fast:?}");
     // A tether keeps a light disc from rising; without it, buoyancy makes it fast.
