@@ -194,7 +194,8 @@ fn a_transform_about_the_box_of_a_shape_is_refused() {
     let refused = refusal(&with("transform-box: fill-box; transform: scale(2)"), None);
     assert!(refused.contains("transform-box \"fill-box\" is not read"), "{refused}");
     assert_200_by_100(&with("transform-box: view-box; transform: scale(2)"), None, Some(LengthUnit::Mm));
-    let moved = drawing("", &RECTANGLE.replace("d=", "style='transform-box: fill-box; transform: translate(5px)' d="));
+    let moved =
+        drawing("", &RECTANGLE.replace(" d=", " style='transform-box: fill-box; transform: translate(5px)' d="));
     assert_200_by_100(&moved, None, Some(LengthUnit::Mm));
 }
 
