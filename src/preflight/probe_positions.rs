@@ -72,7 +72,7 @@ impl<const D: usize> PreflightContext<'_, D> {
                 Some(ProbeLocation::Section([from, to])) if from.len() == D && to.len() == D => {
                     findings.extend([from, to].into_iter().find_map(|at| self.beyond_plane(&probe.name, at)));
                     let ends = [from, to].map(|at| Vector::from_fn(|i, _| at[i]));
-                    findings.extend(self.section(&probe.name, ends, &all));
+                    findings.extend(self.section(&probe.name, ends, all));
                 }
                 _ => {}
             }

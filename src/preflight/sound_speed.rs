@@ -169,12 +169,12 @@ impl<const D: usize> PreflightContext<'_, D> {
         let Role::Free(body) = &self.solids()[i].spec.role else { return false };
         let mut holds = self.system.constraints().holds.iter();
         let is_held = holds.any(|hold| hold.solid == i && hold.until >= self.end_time());
-        is_held || body.locked_translations[D - 1] || self.decks[i].is_some() || self.stands(i)
+        is_held || body.locked_translations[D - 1] || self.decks[i].is_some() || self.is_on_solids(i)
     }
 
     /// Whether solids that are fixed or driven carry free body `i` to the end: they touch it from below, on both sides of its centre of
     /// mass.
-    fn stands(&self, i: usize) -> bool {
+    fn is_on_solids(&self, i: usize) -> bool {
         let Kinematics { pose, centre, .. } = &self.solids()[i].kinematics;
         let below = self.surface_samples[i].iter().filter(|face| (pose.rotation * face.n)[D - 1] < DOWNWARD);
         let carriers = || (0..self.solids().len()).filter(|j| self.is_firm(*j)).map(|j| &self.solids()[j]);

@@ -249,7 +249,7 @@ impl<'a, 'i> Search<'a, 'i> {
 
     /// Visits the element to which a `use` refers.
     fn follow(&mut self, node: Node<'a, 'i>, mut place: Place) -> std::result::Result<(), String> {
-        let mut number = |name: &str| match node.attribute(name).map(|text| element::length(text)) {
+        let mut number = |name: &str| match node.attribute(name).map(element::length) {
             Some(Some(number)) => number,
             Some(None) => {
                 place.unread = place.unread.take().or(Some(format!("the {name} of a <use> is no number or length")));
