@@ -151,7 +151,7 @@ impl TableReader {
         for (line, cells) in self.rows() {
             let at = |error: Error, name: &str| error.at(self.file.as_str(), Some((line, 1)), name);
             if cells.len() != self.layout.count {
-                return Err(at(self.wrong_length(cells.len()), ""));
+                return Err(at(self.wrong_length(&cells), ""));
             }
             let cells = indices.map(|i| cells[i]);
             if cells.iter().any(|cell| cell::is_missing(cell)) {
@@ -271,11 +271,16 @@ impl TableReader {
         lines.map(|(i, line)| (i + 1, self.layout.cells(line)))
     }
 
-    /// The error of a row with `cells` cells.
-    fn wrong_length(&self, cells: usize) -> Error {
+    /// The error of a row with these cells, which are too few or too many.
+    fn wrong_length(&self, cells: &[&str]) -> Error {
         let header = if self.layout.names.is_empty() { "the others" } else { "its header" };
-        let error = Error::scene(format!("a row has {cells} cells, {header} {}", self.layout.count));
-        error.help("leave a cell blank where a value is missing")
+        let (count, plural) = (cells.len(), if cells.len() == 1 { "" } else { "s" });
+        let error = Error::scene(format!("a row has {count} cell{plural}, {header} {}", self.layout.count));
+        let is_text = !cells.iter().any(|cell| cell::number(cell, self.layout.decimal).is_some());
+        error.help(match is_text {
+            true => "write # before a line that is no row",
+            false => "leave a cell blank where a value is missing",
+        })
     }
 
     /// The error of a row that was taken for the names, if the column `name` is in the row above it.

@@ -1,17 +1,28 @@
-//! Gaps between solids that are narrower than the kernel's support radius.
+//! Gaps between solids, and between the faces of one solid, that are narrower than the kernel's support radius.
 
-use super::{Finding, PreflightContext, surface_samples::SurfaceSample};
+use super::{
+    Finding, PreflightContext,
+    hollows::is_kept_dry,
+    surface_samples::{self, SurfaceSample},
+};
 use crate::{
+    geometry::Shape,
     math::{
         Vector,
         format::{coordinates, three_digits, two_digits_down},
     },
     scene::world_bounds,
-    solid::{Role, joint_groups::JointGroups},
+    solid::{Role, Solid, joint_groups::JointGroups},
 };
 
 /// Distance (dp) below which solids are in contact: the engine computes the contact.
 const TOUCH: f64 = 0.1;
+
+/// Largest number of places of a solid that are searched for gaps between its own faces.
+const PLACES_SEEN: usize = 2000;
+
+/// Least number of places that see a gap between the faces of one solid: fewer are a notch or a corner.
+const LEAST_PLACES: usize = 4;
 
 /// Largest cosine between the normals of the two faces of a gap: for solids apart, then for solids in contact, whose faces
 /// diverge slowly beside a round place.
@@ -25,11 +36,35 @@ pub(crate) struct Gaps {
     pub pairs: Vec<[usize; 2]>,
 }
 
-/// The narrowest gap between two solids.
+/// A narrow gap between two faces.
 #[derive(Clone, Copy, Debug)]
 struct Gap<const D: usize> {
     width: f64,
     middle: Vector<D>,
+}
+
+/// The distance (m) from `face` through the space outside of the solid to another face of it, if that is shorter than `most` (m).
+/// `distance` is the signed distance of the solid.
+fn way_across<const D: usize>(
+    face: &SurfaceSample<D>,
+    dp: f64,
+    most: f64,
+    distance: impl Fn(&Vector<D>) -> f64,
+) -> Option<f64> {
+    // Another face in front is nearer to the middle of the way than this one.
+    if distance(&(face.x + face.n * (0.5 * most))) >= 0.5 * most * (1.0 - 1e-6) {
+        return None;
+    }
+    // No face is nearer than the signed distance; the smallest step ends behind the face.
+    let mut way = 0.05 * dp;
+    while way < most {
+        let d = distance(&(face.x + face.n * way));
+        if d < 1e-6 * dp {
+            return Some(way + d);
+        }
+        way += d.max(0.01 * dp);
+    }
+    None
 }
 
 impl<const D: usize> PreflightContext<'_, D> {
@@ -60,7 +95,55 @@ impl<const D: usize> PreflightContext<'_, D> {
                 findings.extend(narrowest.map(|gap| self.gap_finding(gap, j, i)));
             }
         }
+        findings.extend((0..n).filter_map(|i| self.own_gap_finding(i)));
         Gaps { touching, pairs }
+    }
+
+    /// Returns the finding of the narrowest gap between faces of solid `i`, as in a slot, that water does not fill as it is meant to.
+    fn own_gap_finding(&self, i: usize) -> Option<Finding> {
+        let (dp, reach) = (self.dp(), self.system.model().support_radius() * (1.0 - 1e-6));
+        let Solid { spec, kinematics, .. } = &self.solids()[i];
+        let (shape, pose) = (&spec.shape, &kinematics.pose);
+        // The samples of a mesh are costly, and those of the other shapes leave out the faces of gaps below dp/2.
+        let own = match shape {
+            Shape::Polygon { .. } | Shape::Compound(_) => surface_samples::of_shape_beyond(shape, dp, TOUCH),
+            _ => surface_samples::of_inner_faces(shape, dp),
+        };
+        let faces = if own.is_empty() { &self.surface_samples[i] } else { &own };
+        let across = |face: &SurfaceSample<D>| {
+            let width = way_across(face, dp, reach, |x| shape.signed_distance(x))?;
+            let opposite = shape.outward_normal(&(face.x + face.n * width), 0.05 * dp);
+            let middle = face.x + face.n * (0.5 * width);
+            (face.n.dot(&opposite) <= FACING[0] && self.may_be_wet(i, &middle))
+                .then(|| Gap { width, middle: pose.point(&middle) })
+        };
+        let gaps: Vec<Gap<D>> = surface_samples::thinned(faces, PLACES_SEEN).filter_map(across).collect();
+        let gap = gaps.iter().min_by(|a, b| a.width.total_cmp(&b.width)).filter(|_| gaps.len() >= LEAST_PLACES)?;
+        let what = format!(
+            "faces of \"{}\" are {} m apart at {}, {} dp, and the kernel reaches {} dp",
+            spec.name,
+            three_digits(gap.width),
+            coordinates(&gap.middle),
+            three_digits(gap.width / dp),
+            three_digits(self.support_radius_dp())
+        );
+        let why = if gap.width < dp * (1.0 - 1e-6) {
+            "no water particle fits into the gap"
+        } else {
+            "the water between them is not resolved"
+        };
+        let mend = format!(
+            "close the gap, make it {} m wider, or dp = {}",
+            three_digits(reach - gap.width),
+            two_digits_down(gap.width / self.support_radius_dp())
+        );
+        Some(Finding::warning("narrow_gap", format!("{what}: {why}"), mend))
+    }
+
+    /// Whether water is meant to be at `x` (m, own frame) beside solid `i`: below the level around it, and in no hollow that stays dry.
+    fn may_be_wet(&self, i: usize, x: &Vector<D>) -> bool {
+        let height = self.solids()[i].kinematics.pose.point(x)[D - 1];
+        self.level_around(i).is_some_and(|level| height < level) && !is_kept_dry(self, i, x)
     }
 
     /// How far (m) the contact skins of two solids keep their faces apart.

@@ -55,6 +55,14 @@ pub(super) fn hull<'a, const D: usize>(context: &'a PreflightContext<D>, i: usiz
     hull
 }
 
+/// Returns whether the point `x` (m, own frame) of solid number `i` lies in a hollow that is closed, or that the scene keeps dry, and
+/// that has no water of its own.
+pub(super) fn is_kept_dry<const D: usize>(context: &PreflightContext<D>, i: usize, x: &Vector<D>) -> bool {
+    let (spec, Some(own)) = (&context.solids()[i].spec, &context.hollows[i]) else { return false };
+    let Place::Hollow(hollow) = own.enclosure.place(&spec.shape, x) else { return false };
+    own.particles[hollow] == 0 && spec.dry.unwrap_or_else(|| own.enclosure.hollows[hollow].is_closed())
+}
+
 /// Returns whether the point `x` (m, own frame) of solid number `i` lies in a hollow that is dry at the start.
 pub(super) fn is_in_dry_hollow<const D: usize>(context: &PreflightContext<D>, i: usize, x: &Vector<D>) -> bool {
     let Some(own) = &context.hollows[i] else { return false };

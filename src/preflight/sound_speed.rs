@@ -9,7 +9,7 @@ use crate::{
         format::{three_digits, two_digits_down, two_digits_up},
     },
     model::TimeScheme,
-    solid::{Lifetime, LineEnd, Role},
+    solid::{JointKind, Kinematics, Lifetime, LineEnd, Role},
     sph::boundary::Slip,
     system::driven_speeds,
 };
@@ -17,6 +17,15 @@ use crate::{
 /// Least ratio of the speed of sound to the largest speed. Densities vary by the inverse square of this ratio,
 /// here by 1 %.
 const TIMES: f64 = 10.0;
+
+/// Distance (dp) below which a body stands on a solid under it.
+const STANDING: f64 = 0.1;
+
+/// Largest height of the normal of a face on which a body stands, –.
+const DOWNWARD: f64 = -0.9;
+
+/// Largest slope of a level slider, –.
+const LEVEL: f64 = 1e-6;
 
 /// Number of times at which the motion of a driven solid is sampled.
 const TIMES_SEEN: usize = 1000;
@@ -142,35 +151,85 @@ impl<const D: usize> PreflightContext<'_, D> {
         fastest
     }
 
-    /// The speed (m/s) of free body `i` at the start, or with which it will strike the water, if no line holds it above.
+    /// The speed (m/s) of free body `i` at the start, or with which it will strike the water, if nothing holds it above.
     fn impact_speed(&self, i: usize) -> (String, f64) {
         let solid = &self.solids()[i];
         let (name, start) = (&solid.spec.name, solid.kinematics.velocity.norm());
-        let drop = self.lowest_point(solid) - self.draft_level(i);
-        if drop > 0.0 && self.g > 0.0 && self.fall_on_lines(i) >= drop {
+        let level = self.level_around(i).filter(|_| self.g > 0.0 && !self.is_carried(i));
+        let drop = level.map_or(0.0, |level| self.lowest_point(solid) - level);
+        if drop > 0.0 && self.fall_on_joints(i).min(self.fall_on_lines(i)) >= drop {
             let what = format!("\"{name}\" after a fall of {} m", three_digits(drop));
             return (what, (start * start + 2.0 * self.g * drop).sqrt());
         }
         (format!("\"{name}\" at the start"), start)
     }
 
-    /// The depth (m) to which free body `i` falls on the springs, ropes and mooring lines that hold it at the start, as if each
-    /// hung straight down from a support that is not free; ∞ without any.
+    /// Whether free body `i` does not fall during the run: it is released later, its height is locked, or it stands on another solid.
+    fn is_carried(&self, i: usize) -> bool {
+        let Role::Free(body) = &self.solids()[i].spec.role else { return false };
+        let mut holds = self.system.constraints().holds.iter();
+        let is_held = holds.any(|hold| hold.solid == i && hold.until >= self.end_time());
+        is_held || body.locked_translations[D - 1] || self.decks[i].is_some() || self.is_on_solids(i)
+    }
+
+    /// Whether solids that are fixed or driven carry free body `i` to the end: they touch it from below, on both sides of its centre of
+    /// mass.
+    fn is_on_solids(&self, i: usize) -> bool {
+        let Kinematics { pose, centre, .. } = &self.solids()[i].kinematics;
+        let below = self.surface_samples[i].iter().filter(|face| (pose.rotation * face.n)[D - 1] < DOWNWARD);
+        let carriers = || (0..self.solids().len()).filter(|j| self.is_firm(*j)).map(|j| &self.solids()[j]);
+        let touches = |x: &Vector<D>| carriers().any(|solid| solid.distance(x) < STANDING * self.dp());
+        let touched: Vec<Vector<D>> = below.map(|face| pose.point(&face.x)).filter(touches).collect();
+        let has = |axis: usize, sense: f64| touched.iter().any(|x| sense * (x[axis] - centre[axis]) >= 0.0);
+        (0..D - 1).all(|axis| has(axis, 1.0) && has(axis, -1.0))
+    }
+
+    /// Whether solid `i` is not free, and stays to the end.
+    fn is_firm(&self, i: usize) -> bool {
+        let mut removals = self.system.constraints().removals.iter();
+        let is_removed = removals.any(|removal| removal.solid == i && removal.at < self.end_time());
+        !is_removed && !matches!(self.solids()[i].spec.role, Role::Free(_))
+    }
+
+    /// Whether a constraint with these ends holds free body `i` from the start to the end, at something that is not free, under its
+    /// weight.
+    fn holds(&self, i: usize, lifetime: &Lifetime, ends: [Option<usize>; 2]) -> bool {
+        let other = if ends[0] == Some(i) { ends[1] } else { ends[0] };
+        let lasts = lifetime.contains(0.0) && lifetime.until >= self.end_time() && lifetime.strength > self.weight(i);
+        lasts && ends.contains(&Some(i)) && other.is_none_or(|j| self.is_firm(j))
+    }
+
+    /// The weight of free body `i`, N (N/m in 2-D).
+    fn weight(&self, i: usize) -> f64 {
+        self.g * self.solids()[i].body.map_or(0.0, |body| body.mass)
+    }
+
+    /// The depth (m) to which free body `i` falls on the joints that hold it; ∞ without any.
+    fn fall_on_joints(&self, i: usize) -> f64 {
+        let centre = self.solids()[i].kinematics.centre;
+        let joints = self.system.constraints().joints.iter();
+        let joints = joints.filter(|joint| self.holds(i, &joint.lifetime, joint.between));
+        let depth = joints.map(|joint| match joint.kind {
+            JointKind::Fixed => 0.0,
+            JointKind::Slider if joint.axis.normalize()[D - 1].abs() < LEVEL => 0.0,
+            // The centre of mass falls to the lowest point of its circle.
+            JointKind::Hinge | JointKind::Ball => (centre - joint.at).norm() + centre[D - 1] - joint.at[D - 1],
+            _ => f64::INFINITY,
+        });
+        depth.fold(f64::INFINITY, f64::min)
+    }
+
+    /// The depth (m) to which free body `i` falls on the springs, ropes and mooring lines that hold it, as if each hung straight down
+    /// from a support that is not free; ∞ without any.
     fn fall_on_lines(&self, i: usize) -> f64 {
         let links = self.system.constraints();
-        let weight = self.g * self.solids()[i].body.map_or(0.0, |body| body.mass);
-        let holds = |ends: [Option<usize>; 2]| {
-            let other = if ends[0] == Some(i) { ends[1] } else { ends[0] };
-            ends.contains(&Some(i)) && other.is_none_or(|j| !matches!(self.solids()[j].spec.role, Role::Free(_)))
-        };
-        let acts =
-            |lifetime: &Lifetime, ends: &[LineEnd<D>; 2]| lifetime.contains(0.0) && holds(ends.map(|end| end.solid));
+        let acts = |lifetime: &Lifetime, ends: &[LineEnd<D>; 2]| self.holds(i, lifetime, ends.map(|end| end.solid));
         let distance = |ends: &[LineEnd<D>; 2]| (ends[1].at - ends[0].at).norm();
         let springs = links.springs.iter().filter(|spring| acts(&spring.lifetime, &spring.ends)).map(|spring| {
             let start = distance(&spring.ends);
             let stretch = start - spring.rest_length.unwrap_or(start);
             // From rest it swings about its equilibrium.
-            2.0 * (weight / spring.stiffness - stretch).max(0.0)
+            2.0 * (self.weight(i) / spring.stiffness - stretch).max(0.0)
         });
         let ropes = links.ropes.iter().filter(|rope| acts(&rope.lifetime, &rope.ends)).map(|rope| {
             let start = distance(&rope.ends);

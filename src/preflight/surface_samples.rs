@@ -6,6 +6,9 @@ use crate::{
     solid::{Role, Solid},
 };
 
+/// Number of heights at which the walls of a tank are sampled.
+const HEIGHTS: usize = 10;
+
 /// A place on the true face of a solid, in its own frame.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SurfaceSample<const D: usize> {
@@ -28,10 +31,48 @@ pub(crate) fn of_solid<const D: usize>(solid: &Solid<D>, dp: f64, reach: f64) ->
     }
 }
 
+/// Samples of the faces inside a tank or along a polyline, dp (m) apart or, of a tank, on one of two opposite walls; none of other shapes.
+pub(super) fn of_inner_faces<const D: usize>(shape: &Shape<D>, dp: f64) -> Vec<SurfaceSample<D>> {
+    let on_wall = |(axis, part): (usize, f64), size: &Vector<D>| {
+        let x = Vector::from_fn(|i, _| {
+            if i == axis {
+                0.0
+            } else if i + 1 < D {
+                0.5 * size[i]
+            } else {
+                part * size[i]
+            }
+        });
+        SurfaceSample { x, n: Vector::from_fn(|i, _| f64::from(i == axis)) }
+    };
+    match shape {
+        Shape::Tank { size, .. } => {
+            let places =
+                (0..D - 1).flat_map(|axis| (0..HEIGHTS).map(move |k| (axis, (k as f64 + 0.5) / HEIGHTS as f64)));
+            places.map(|place| on_wall(place, size)).collect()
+        }
+        Shape::Polyline { points, .. } => {
+            let along = |ab: &[Vector<D>]| {
+                let (start, way) = (ab[0], ab[1] - ab[0]);
+                let n = Vector::<D>::from_fn(|i, _| if i == 0 { -way[1] } else { way[0] }).normalize();
+                let count = (way.norm() / dp).ceil().max(1.0);
+                (0..count as usize).map(move |k| SurfaceSample { x: start + way * ((k as f64 + 0.5) / count), n })
+            };
+            points.windows(2).flat_map(along).collect()
+        }
+        _ => Vec::new(),
+    }
+}
+
 /// Samples of the faces of `shape`, dp (m) apart, without the faces at which parts of a compound join.
 pub(crate) fn of_shape<const D: usize>(shape: &Shape<D>, dp: f64) -> Vec<SurfaceSample<D>> {
+    of_shape_beyond(shape, dp, 0.5)
+}
+
+/// As [`of_shape`], but only faces nearer to one another than `join` dp count as joined.
+pub(super) fn of_shape_beyond<const D: usize>(shape: &Shape<D>, dp: f64, join: f64) -> Vec<SurfaceSample<D>> {
     let free =
-        |face: &SurfaceSample<D>| face.n.norm() > 0.5 && shape.signed_distance(&(face.x + face.n * (0.5 * dp))) > 0.0;
+        |face: &SurfaceSample<D>| face.n.norm() > 0.5 && shape.signed_distance(&(face.x + face.n * (join * dp))) > 0.0;
     shape
         .boundary_points(dp, 1)
         .into_iter()

@@ -137,6 +137,10 @@ pub(crate) enum ProbeLocation<'a> {
     Points(&'a [Vec<f64>]),
     /// On vertical lines at horizontal places, m.
     Columns(&'a [Vec<f64>]),
+    /// At points in the frame of the solid of this name, m.
+    PointsOn(&'a [Vec<f64>], &'a str),
+    /// On vertical lines through places in the frame of the solid of this name, m.
+    ColumnsOn(&'a [Vec<f64>], &'a str),
     /// Over a section between two points, m.
     Section([&'a [f64]; 2]),
 }

@@ -130,7 +130,10 @@ impl ProbeDefinition for ElevationPlan {
     }
 
     fn location(&self) -> Option<ProbeLocation<'_>> {
-        self.on.is_none().then_some(ProbeLocation::Columns(&self.places))
+        Some(match &self.on {
+            Some(on) => ProbeLocation::ColumnsOn(&self.places, on),
+            None => ProbeLocation::Columns(&self.places),
+        })
     }
 
     fn series(&self, _: usize) -> Vec<(String, Option<Vec<f64>>)> {

@@ -43,7 +43,10 @@ impl ProbeDefinition for PressurePlan {
     }
 
     fn location(&self) -> Option<ProbeLocation<'_>> {
-        self.on.is_none().then_some(ProbeLocation::Points(&self.places))
+        Some(match &self.on {
+            Some(on) => ProbeLocation::PointsOn(&self.places, on),
+            None => ProbeLocation::Points(&self.places),
+        })
     }
 
     fn build<const D: usize>(&self, system: &System<D>) -> Result<Box<dyn Probe<D>>> {

@@ -220,7 +220,7 @@ where
     let BuiltScene { setup, plan, initial_water, file_notes, .. } = parts.fill(&Ranks::default())?;
     // The timing reports the first alarm; a run would return to an earlier state instead.
     let mut sim = Simulation::new(setup).map_err(|e| scene.with_location(e))?.without_rollback();
-    let probes = probe_factory::probes_from_plan(&plan, &mut sim)?;
+    let probes = probe_factory::probes_from_plan(&plan, &mut sim).map_err(|e| scene.with_location(e))?;
     probe_factory::checks_from_plan(&plan, &probes).map_err(|e| scene.with_location(e))?;
     let columns: Vec<usize> = probes.iter().map(|p| p.columns().len()).collect();
     let preflight = preflight::preflight(&sim, &plan, initial_water, &columns);

@@ -44,9 +44,11 @@ fn build_probe<const D: usize>(plan: &ProbePlan, system: &System<D>) -> Result<B
     if plan.name.is_empty() || plan.name.starts_with('.') || plan.name.contains(['/', '\\', ':', '\0']) {
         return Err(Error::scene(format!("{:?} cannot name a file, so no probe either", plan.name)));
     }
-    plan.kind
-        .build_unread(system)
-        .map_err(|e| Error { message: format!("probe \"{}\": {}", plan.name, e.message), ..e })
+    plan.kind.build_unread(system).map_err(|e| {
+        let error = Error { message: format!("probe \"{}\": {}", plan.name, e.message), ..e };
+        let is_placed = error.location.is_some();
+        if is_placed { error } else { error.at("", None, format!("probe.{}", plan.name)) }
+    })
 }
 
 /// The error for a `series` of the check or the statistic at `key` that is none of `known`.

@@ -69,7 +69,7 @@ where
         let BuiltScene { setup, part, plan, initial_water, file_notes } = ranks.agree(built, orders::setup_digest)?;
         let leader = Leader::new(ranks.clone());
         let mut sim = Simulation::set_up(setup, WaterShare { ranks, part }).map_err(|e| scene.with_location(e))?;
-        let probes = probe_factory::probes_from_plan(&plan, &mut sim)?;
+        let probes = probe_factory::probes_from_plan(&plan, &mut sim).map_err(|e| scene.with_location(e))?;
         water_of_ranks::gather_for_checks(&mut sim);
         let checks = probe_factory::checks_from_plan(&plan, &probes).map_err(|e| scene.with_location(e))?;
         let columns: Vec<usize> = probes.iter().map(|p| p.columns().len()).collect();

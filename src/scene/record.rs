@@ -100,11 +100,24 @@ pub(super) fn note_layout(ctx: &Context, key: &str, file: &str, table: &TableRea
     });
 }
 
+impl Context<'_> {
+    /// Returns the error of placed or connected solids, with the warnings about the values of records, which may be its cause.
+    pub(super) fn with_warnings(&self, error: Error) -> Error {
+        let help = error.help.clone().unwrap_or_default();
+        let notes = self.file_notes.borrow();
+        let of_values =
+            |note: &&FileNote| note.is_warning && note.topic.starts_with("record_") && !help.contains(&note.what);
+        let mut lines: Vec<String> = help.lines().map(String::from).collect();
+        lines.extend(notes.iter().filter(of_values).map(|note| format!("warning: {}: {}", note.what, note.remedy)));
+        if lines.is_empty() { error } else { error.help(lines.join("\n")) }
+    }
+}
+
 /// Returns the error of a law from the record at `key`, with the remedies of the notes on the record's units.
 pub(super) fn with_unit_notes(ctx: &Context, key: &str, error: Error) -> Error {
     let place = format!("({})", ctx.shown_key(key));
     let is_of_unit = |note: &&FileNote| match note.topic {
-        "record_unit" => note.is_warning,
+        "record_unit" | "record_missing" => note.is_warning,
         "record_span" => note.remedy.contains("time_factor"),
         _ => false,
     };

@@ -249,11 +249,10 @@ impl<'a, 'i> Search<'a, 'i> {
 
     /// Visits the element to which a `use` refers.
     fn follow(&mut self, node: Node<'a, 'i>, mut place: Place) -> std::result::Result<(), String> {
-        let mut number = |name: &str| match node.attribute(name).map(|text| text.trim().trim_end_matches("px").parse())
-        {
-            Some(Ok(number)) => number,
-            Some(Err(_)) => {
-                place.unread = place.unread.take().or(Some(format!("the {name} of a <use> is not a number")));
+        let mut number = |name: &str| match node.attribute(name).map(element::length) {
+            Some(Some(number)) => number,
+            Some(None) => {
+                place.unread = place.unread.take().or(Some(format!("the {name} of a <use> is no number or length")));
                 0.0
             }
             None => 0.0,
@@ -286,14 +285,16 @@ fn chosen<'s, 'a, 'i>(found: &'s [Drawn<'a, 'i>], id: Option<&str>) -> Vec<&'s D
 
 /// The corners of the closed path within `tolerance`, without repeated points.
 fn flattened(path: &BezPath, tolerance: f64) -> std::result::Result<Vec<[f64; 2]>, String> {
-    let (mut points, mut starts, mut closed) = (Vec::new(), 0, false);
+    let (mut points, mut outlines, mut closed, mut start) = (Vec::new(), 0, false, None);
     kurbo::flatten(path, tolerance, |element| match element {
-        PathEl::MoveTo(p) => {
-            starts += 1;
+        // A start without a line draws nothing.
+        PathEl::MoveTo(p) => start = Some(p),
+        PathEl::LineTo(p) if points.len() < MOST_POINTS => {
+            outlines += usize::from(start.is_some());
+            points.extend(start.take());
             points.push(p);
         }
-        PathEl::LineTo(p) if points.len() < MOST_POINTS => points.push(p),
-        PathEl::ClosePath => closed = true,
+        PathEl::ClosePath => closed |= start.is_none(),
         _ => {}
     });
     let near = |a: &Point, b: &Point| a.distance(*b) < 1e-3 * tolerance;
@@ -302,7 +303,8 @@ fn flattened(path: &BezPath, tolerance: f64) -> std::result::Result<Vec<[f64; 2]
     if meets {
         points.pop();
     }
-    match (starts, closed || meets) {
+    match (outlines, closed || meets) {
+        (0, _) => Err("it draws no line".into()),
         (1, true) => Ok(points.into_iter().map(|p| [p.x, p.y]).collect()),
         (1, false) => Err("it is not closed".into()),
         (n, _) => Err(format!("it has {n} outlines; a polygon is one, without holes")),

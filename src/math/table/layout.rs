@@ -128,6 +128,7 @@ impl Layout {
         let named = lines.first().and_then(|line| named_separator(line.text));
         let (comments, content): (Vec<Line>, Vec<Line>) =
             lines.iter().skip(usize::from(named.is_some())).partition(|line| comment(line.text).is_some());
+        refuse_bars(&content)?;
         let (separator, decimal) = form(&content, named);
         let rows = Rows::of(&content, separator, decimal);
         let mut layout = Self {
@@ -289,6 +290,17 @@ impl Layout {
             return Err(Error::scene(what).help(help));
         }
         Ok(())
+    }
+}
+
+/// Refuses vertical bars between the cells of all rows.
+fn refuse_bars(content: &[Line]) -> Result<()> {
+    match content {
+        [_, rows @ ..] if !rows.is_empty() && rows.iter().all(|line| line.text.contains('|')) => {
+            Err(Error::scene("the character | separates the columns")
+                .help("separate them by commas, semicolons, tabs or blanks"))
+        }
+        _ => Ok(()),
     }
 }
 

@@ -140,7 +140,11 @@ impl ProbeSeries<'_> {
         self.names.iter().position(|known| known == name).ok_or_else(|| {
             let names: Vec<&str> = self.names.iter().map(String::as_str).collect();
             let what = format!("no probe is called \"{name}\"{}", suggestion(name, names.iter().copied()));
-            ctx.error_with_help(key, what, format!("known: {}", names.join(", "))).with_code(ErrorCode::UnknownName)
+            let help = match names.is_empty() {
+                true => "the scene has no probe; one is  [[probe]]  with  motion = \"box\"".into(),
+                false => format!("known: {}", names.join(", ")),
+            };
+            ctx.error_with_help(key, what, help).with_code(ErrorCode::UnknownName)
         })
     }
 

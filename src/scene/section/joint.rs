@@ -1,6 +1,6 @@
 //! `[[joint]]`: joints with their end stops and motors.
 
-use std::{collections::BTreeMap, fmt};
+use std::{collections::BTreeMap, f64::consts::TAU, fmt};
 
 use schemars::JsonSchema;
 use serde::{
@@ -298,7 +298,7 @@ impl JointConfig {
                     let help = "name the motion: limits = { x = [-0.1, 0.2] }, limits_deg = { turn = [-10.0, 10.0] }";
                     return Err(ctx.error_with_help(&key, "which motion is limited?", help));
                 }
-                LimitsConfig::One(pair) if way => verify_stops(ctx, &key, pair)?,
+                LimitsConfig::One(pair) if way => verify_stops(ctx, &key, pair, hinge)?,
                 LimitsConfig::Each(all) if generic => {
                     for (mode, pair) in all {
                         let far = mode.index(ctx.dimension).is_some_and(|number| number < ctx.dimension);
@@ -311,7 +311,7 @@ impl JointConfig {
                             ));
                         }
                         seen.push(*mode);
-                        verify_stops(ctx, &key, pair)?;
+                        verify_stops(ctx, &key, pair, !far)?;
                     }
                 }
                 LimitsConfig::Each(_) if way => {
@@ -477,15 +477,20 @@ impl MotorConfig {
     }
 }
 
-/// Refuses end stops that do not have the start between them, or all of a turn.
-fn verify_stops(ctx: &Context, key: &str, pair: &[f64]) -> Result<()> {
+/// Refuses end stops that do not have the start between them, or of a rotation (`turns`) all of a turn.
+fn verify_stops(ctx: &Context, key: &str, pair: &[f64], turns: bool) -> Result<()> {
     match pair {
         [min, max] if *min <= 0.0 && 0.0 <= *max && min < max => {
-            if last_part(key) != "limits_deg" || max - min < 360.0 {
+            let in_degrees = last_part(key) == "limits_deg";
+            let (turn, unit) = if in_degrees { (360.0, "degrees") } else { (TAU, "rad") };
+            if !turns || max - min < turn {
                 return Ok(());
             }
-            let help = "from stop to stop a turn is less than 360, as in  [-170.0, 170.0]        # degrees";
-            Err(ctx.error_with_help(key, format!("from {min} to {max} degrees it would turn all the way round"), help))
+            let help = match in_degrees {
+                true => "from stop to stop a turn is less than 360, as in  [-170.0, 170.0]        # degrees".into(),
+                false => format!("limits are in rad; in degrees write  limits_deg = [{min:?}, {max:?}]"),
+            };
+            Err(ctx.error_with_help(key, format!("from {min} to {max} {unit} it would turn all the way round"), help))
         }
         _ => {
             let what = format!("{pair:?} does not reach from 0 or less to 0 or more; 0 is where it starts");

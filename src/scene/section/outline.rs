@@ -46,7 +46,10 @@ pub(super) fn verify_drawing(ctx: &Context, key: &str, config: &PolylineConfig) 
     let words_of_one =
         [("id", config.id.is_some()), ("scale", config.scale.is_some()), ("unit", config.unit.is_some())];
     match words_of_one.iter().find(|(_, given)| *given && !config.is_drawing()) {
-        Some((word, _)) => Err(ctx.error_at(&format!("{key}.{word}"), format!("{word} belongs to a drawing (.svg)"))),
+        Some((word, _)) => {
+            let help = format!("remove  {word};  points and tables are in metres, and a table is one outline");
+            Err(ctx.error_with_help(&format!("{key}.{word}"), format!("{word} belongs to a drawing (.svg)"), help))
+        }
         None => Ok(()),
     }
 }
@@ -77,7 +80,7 @@ fn read_points<const D: usize>(ctx: &Context, config: &PolylineConfig) -> Result
     let mut table = files::open_table(ctx.folder(), file)?;
     let names = table.point_columns();
     let is_unnamed = table.header().is_empty() && !matches!(names[0], ColumnName::Number(_));
-    let [x, y] = table.columns(names.clone()).map_err(|e| match is_unnamed {
+    let [x, y] = table.complete_columns(names.clone()).map_err(|e| match is_unnamed {
         true => e.help("a table of points has two columns, x and y in m, or a first line with the names x_m and y_m"),
         false => files::with_line_in_message(e),
     })?;
@@ -95,11 +98,28 @@ fn read_points<const D: usize>(ctx: &Context, config: &PolylineConfig) -> Result
 /// Points nearer than this share of the line's size are the same point: tables are rounded.
 const SAME_POINT: f64 = 1e-6;
 
+/// The points of a polygon; one that repeats the first at the end is left out.
+pub(super) fn polygon_points<const D: usize>(ctx: &Context, config: &PolylineConfig) -> Result<Vec<Vector<D>>> {
+    let mut points = outline_points(ctx, config)?;
+    if meets(&points) {
+        points.pop();
+    }
+    Ok(points)
+}
+
+/// Whether the last point of a line is its first.
+fn meets<const D: usize>(line: &[Vector<D>]) -> bool {
+    match line {
+        [first, .., last] if line.len() > 3 => (last - first).norm() <= SAME_POINT * Bounds::around(line).size().norm(),
+        _ => false,
+    }
+}
+
 /// The points of a wall; the last one equals the first exactly if the wall is closed.
 pub(super) fn wall_points<const D: usize>(ctx: &Context, config: &PolylineConfig) -> Result<Vec<Vector<D>>> {
     let mut line = outline_points(ctx, config)?;
-    let (Some(first), Some(last)) = (line.first().copied(), line.last().copied()) else { return Ok(line) };
-    let meets = line.len() > 3 && (last - first).norm() <= SAME_POINT * Bounds::around(&line).size().norm();
+    let Some(first) = line.first().copied() else { return Ok(line) };
+    let meets = meets(&line);
     match config.closed.unwrap_or(meets) {
         true if line.len() < 3 => {
             let key = format!("a closed polyline of {} points", line.len());

@@ -9,7 +9,7 @@ use super::{
     meshed_shape::{
         ConeConfig, EllipsoidConfig, FrustumConfig, MeshedShape, PrismConfig, TorusConfig, WedgeConfig, fill_axis,
     },
-    outline::{outline_points, verify_drawing, verify_line, wall_points},
+    outline::{polygon_points, verify_drawing, verify_line, wall_points},
 };
 use crate::{
     error::Result,
@@ -336,7 +336,7 @@ impl ShapeConfig {
                 Shape::Cylinder { length: *length, radius: *radius, axis: number(*axis) }
             }
             ShapeConfig::Polygon(config) => {
-                Shape::Polygon { points: outline_points(ctx, config).map_err(|e| e.in_part("polygon"))? }
+                Shape::Polygon { points: polygon_points(ctx, config).map_err(|e| e.in_part("polygon"))? }
             }
             ShapeConfig::Polyline(config) => {
                 let points = wall_points(ctx, config).map_err(|e| e.in_part("polyline"))?;

@@ -42,6 +42,15 @@ pub(super) fn element_path(node: &Node, style: &Style) -> Result<BezPath, String
     }
 }
 
+/// Returns a number or a length in units of the drawing; `None` if the text is neither, or relative to something else.
+pub(super) fn length(text: &str) -> Option<f64> {
+    let length: Length = text.trim().to_ascii_lowercase().parse().ok()?;
+    match length.unit {
+        LengthUnit::None | LengthUnit::Px => Some(length.number),
+        _ => size::metres(length).map(|x| x / size::PIXEL),
+    }
+}
+
 struct Element<'a> {
     node: &'a Node<'a, 'a>,
     style: &'a Style,
@@ -53,11 +62,7 @@ impl Element<'_> {
         let Some(text) = self.style.get(self.node, name).map(str::trim).filter(|text| *text != "auto") else {
             return Ok(None);
         };
-        let length = text.parse::<Length>().ok().and_then(|length| match length.unit {
-            LengthUnit::None | LengthUnit::Px => Some(length.number),
-            _ => size::metres(length).map(|x| x / size::PIXEL),
-        });
-        length.map(Some).ok_or_else(|| format!("its {name} \"{text}\" is not a number or a length"))
+        length(text).map(Some).ok_or_else(|| format!("its {name} \"{text}\" is not a number or a length"))
     }
 
     fn number(&self, name: &str) -> Result<f64, String> {

@@ -18,7 +18,10 @@ pub(super) fn own_unit(root: &Node) -> Result<Option<[f64; 2]>, String> {
         let Some(text) = root.attribute(name).map(str::trim).filter(|text| !text.is_empty() && *text != "auto") else {
             return Ok(None);
         };
-        let length = text.parse::<Length>().map_err(|_| format!("its {name} \"{text}\" is not a length"))?;
+        let length = text
+            .to_ascii_lowercase()
+            .parse::<Length>()
+            .map_err(|_| format!("its {name} \"{text}\" is not a length"))?;
         Ok(Some(length))
     };
     let (width, height) = (length("width")?, length("height")?);

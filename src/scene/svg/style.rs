@@ -40,7 +40,16 @@ pub(super) struct StyleSheets {
 struct Rule {
     specificity: usize,
     selector: Selector,
-    declarations: Vec<(String, String)>,
+    declarations: Vec<Declaration>,
+}
+
+/// The value of a property.
+#[derive(Clone)]
+struct Declaration {
+    /// Name of the property, in lower case.
+    name: String,
+    value: String,
+    is_important: bool,
 }
 
 /// A selector of one element: each given part has to fit.
@@ -51,8 +60,8 @@ struct Selector {
     classes: Vec<String>,
 }
 
-/// The properties of an element.
-pub(super) struct Style(Vec<(String, String)>);
+/// The properties of an element, weakest first.
+pub(super) struct Style(Vec<Declaration>);
 
 impl StyleSheets {
     pub(super) fn of(drawing: &roxmltree::Document) -> Self {
@@ -73,7 +82,7 @@ impl StyleSheets {
             // Rules within a block, as of @media, apply under a condition.
             let is_nested = body.contains('{');
             let declarations: Vec<_> = body.split(['{', '}']).flat_map(declarations).collect();
-            let is_placed = declarations.iter().any(|(name, _)| PROPERTIES.contains(&name.as_str()));
+            let is_placed = declarations.iter().any(|own| PROPERTIES.contains(&own.name.as_str()));
             // A statement such as @import or @charset ends with a semicolon.
             let head = head.rsplit(';').next().unwrap_or(head);
             for selector in head.split(',').map(str::trim).filter(|_| is_placed) {
@@ -90,11 +99,13 @@ impl StyleSheets {
         }
     }
 
-    /// Returns the properties of the element: those of the rules that fit, and its own, which take precedence.
+    /// Returns the properties of the element: those of the rules that fit, and its own, which take precedence; important ones
+    /// take precedence over all others.
     pub(super) fn style(&self, node: &Node) -> Style {
         let fitting = self.rules.iter().filter(|rule| rule.selector.fits(node));
         let mut all: Vec<_> = fitting.flat_map(|rule| rule.declarations.iter().cloned()).collect();
         all.extend(declarations(&without_comments(node.attribute("style").unwrap_or(""))));
+        all.sort_by_key(|own| own.is_important);
         Style(all)
     }
 
@@ -143,7 +154,7 @@ impl Style {
     }
 
     fn own(&self, name: &str) -> Option<&str> {
-        self.0.iter().rev().find(|(own, _)| own == name).map(|(_, value)| value.as_str())
+        self.0.iter().rev().find(|own| own.name == name).map(|own| own.value.as_str())
     }
 
     /// Returns the transform of the element to the frame of its parent.
@@ -165,7 +176,7 @@ impl Style {
             },
             (None, None) => return Ok(Affine::IDENTITY),
         };
-        let Some(origin) = self.get(node, "transform-origin") else { return Ok(transform) };
+        let origin = self.get(node, "transform-origin").unwrap_or("0 0");
         let parts: Vec<&str> = origin.split_ascii_whitespace().collect();
         let number = |word: &str| match word {
             "left" | "top" => Some(0.0),
@@ -175,12 +186,14 @@ impl Style {
             [x, y] | [x, y, _] => number(x).zip(number(y)).map(|(x, y)| Vec2::new(x, y)),
             _ => None,
         };
-        match at {
-            Some(at) if at == Vec2::ZERO => Ok(transform),
-            Some(at) if self.get(node, "transform-box").is_none_or(|value| value == "view-box") => {
-                Ok(Affine::translate(at) * transform * Affine::translate(-at))
-            }
-            _ => Err(format!("the transform-origin \"{origin}\" is not read")),
+        // A shift does not depend on its origin.
+        let [a, b, c, d, ..] = transform.as_coeffs();
+        let is_shift = [a, b, c, d] == [1.0, 0.0, 0.0, 1.0];
+        match (at, self.get(node, "transform-box")) {
+            _ if is_shift => Ok(transform),
+            (_, Some(value)) if value != "view-box" => Err(format!("the transform-box \"{value}\" is not read")),
+            (Some(at), _) => Ok(Affine::translate(at) * transform * Affine::translate(-at)),
+            (None, _) => Err(format!("the transform-origin \"{origin}\" is not read")),
         }
     }
 }
@@ -209,11 +222,18 @@ fn block_length(text: &str) -> usize {
     text.find(closes).unwrap_or(text.len())
 }
 
-/// Returns the names, in lower case, and values of the declarations.
-fn declarations(text: &str) -> Vec<(String, String)> {
+/// Returns the declarations in `text`.
+fn declarations(text: &str) -> Vec<Declaration> {
     let pairs = text.split(';').filter_map(|declaration| declaration.split_once(':'));
-    let value = |value: &str| value.trim().trim_end_matches("!important").trim_end().to_string();
-    pairs.map(|(name, text)| (name.trim().to_ascii_lowercase(), value(text))).collect()
+    let declaration = |(name, text): (&str, &str)| {
+        let (value, mark) = text.split_once('!').unwrap_or((text, ""));
+        Declaration {
+            name: name.trim().to_ascii_lowercase(),
+            value: value.trim().into(),
+            is_important: mark.trim().eq_ignore_ascii_case("important"),
+        }
+    };
+    pairs.map(declaration).collect()
 }
 
 /// Returns a length in px; a number without a unit is one in px.

@@ -374,3 +374,122 @@ fn bodies_that_displace_the_same_water_are_told_with_its_volume() {
     let mast = body("mast", [0.1, 0.4], 100.0, "x = 1.0, bottom = 0.5");
     has_no(&format!("{WATER}{TANK}{tub}{mast}"), "overlapping_bodies");
 }
+
+/// A shape in a tank of water, free at its draft.
+fn floating(shape: &str, more: &str) -> String {
+    format!(
+        "{WATER}{TANK}[[solid]]\nname = \"b\"\nshape = {shape}\nat = {{ x = 1.0, draft = 0.2 }}\nfree = {{ density = 500.0 }}\n{more}"
+    )
+}
+
+/// Water does not fill gaps between faces of one solid that are narrower than the kernel's reach, 3.4 dp, just as between two solids:
+/// such a body turned by 3° for no reason. A gap of 0.75 dp holds no particle.
+#[test]
+fn a_narrow_gap_between_faces_of_one_solid_is_found() {
+    let two = |gap: f64| {
+        let part = |y: f64| format!("{{ shape = {{ box = {{ size = [0.4, 0.1] }} }}, at = {{ y = {y} }} }}");
+        format!("{{ compound = [{}, {}] }}", part(0.0), part(0.1 + gap))
+    };
+    let neck = "{ polygon = [[-0.2, 0.0], [0.2, 0.0], [0.2, 0.1], [0.005, 0.1], [0.005, 0.115], [0.2, 0.115], [0.2, 0.3], \
+                [-0.2, 0.3], [-0.2, 0.115], [-0.005, 0.115], [-0.005, 0.1], [-0.2, 0.1]] }";
+    let slot = "{ polygon = [[-0.2, 0.0], [0.2, 0.0], [0.2, 0.3], [0.02, 0.3], [0.02, 0.05], [-0.02, 0.05], [-0.02, 0.3], \
+                [-0.2, 0.3]] }";
+    for (shape, words) in [
+        (neck, ["0.015 m apart at [", "0.75 dp", "no water particle fits"]),
+        (&two(0.008), ["0.008 m apart at [", "0.4 dp", "no water particle fits"]),
+        (&two(0.03), ["0.03 m apart at [", "1.5 dp", "is not resolved"]),
+        (slot, ["0.04 m apart at [1, ", "2 dp", "is not resolved"]),
+    ] {
+        let found = finding(&floating(shape, ""), "narrow_gap");
+        assert_eq!(found.severity, Severity::Warning);
+        words.iter().for_each(|word| assert!(found.what.contains(word), "{word}: {}", found.what));
+    }
+    // Between walls: of a channel and of a tank.
+    let channel = "{ polyline = { points = [[0.2, 0.6], [0.2, 0.1], [0.25, 0.1], [0.25, 0.6]] } }";
+    let well = "{ tank = { size = [0.05, 0.5] } }";
+    for shape in [channel, well] {
+        let walls = format!("{WATER}{TANK}[[solid]]\nname = \"b\"\nfixed = true\nshape = {shape}\nat = [0.6, 0.1]\n");
+        assert!(finding(&walls, "narrow_gap").what.contains("0.05 m apart at ["), "{shape}");
+        has_no(&walls.replace("0.25", "0.27").replace("[0.05, 0.5]", "[0.07, 0.5]"), "narrow_gap");
+    }
+    // 0.068 m is the reach; parts that touch have no gap; a hollow that stays dry holds no water; above the level there is none.
+    has_no(&floating(&two(0.07), ""), "narrow_gap");
+    has_no(&floating(&two(0.0), ""), "narrow_gap");
+    has_no(&floating(slot, "dry = true\n"), "narrow_gap");
+    has_no(&floating(&two(0.03), "").replace("draft = 0.2", "bottom = 0.65"), "narrow_gap");
+    let notch =
+        "{ polygon = [[-0.2, 0.0], [0.2, 0.0], [0.2, 0.3], [0.15, 0.3], [0.0, 0.1], [-0.15, 0.3], [-0.2, 0.3]] }";
+    has_no(&floating(notch, ""), "narrow_gap");
+}
+
+/// A probe in the solid that carries it read the pressure 0 without a word, and a gauge through a floating body the height of its bottom.
+#[test]
+fn probes_in_the_solid_that_carries_them_are_found() {
+    let shape = "{ box = { size = [0.4, 0.3] } }";
+    let probe = |words: &str| floating(shape, &format!("[[probe]]\n{words}\n"));
+    for (words, place) in [
+        ("pressure = [0.05, 0.0]\non = \"b\"", "at [0.05, 0] m on \"b\" is inside solid \"b\""),
+        (
+            "velocity = { from = [0.0, -0.1], to = [0.0, -0.4], count = 2 }\non = \"b\"",
+            "at [0, -0.1] m on \"b\" is inside",
+        ),
+        ("pressure = [1.0, -0.02]\non = \"tank\"", "at [1, -0.02] m on \"tank\" is inside solid \"tank\""),
+    ] {
+        let found = finding(&probe(words), "probe_inside_solid");
+        assert!(found.severity == Severity::Warning && found.what.contains(place), "{}", found.what);
+    }
+    // In the frame of the body, whose middle is at 0.55 m: the water under its bottom.
+    let found = finding(&probe("pressure = [0.05, 0.0]\non = \"b\""), "probe_inside_solid");
+    assert_eq!(found.mend, "the nearest water is at [0.05, -0.16]");
+    for words in ["pressure = [0.0, -0.15]\non = \"b\"", "pressure = [0.3, 0.0]\non = \"b\""] {
+        has_no(&probe(words), "probe_inside_solid");
+    }
+    for words in ["elevation = { x = 0.1, on = \"b\" }", "elevation = { x = 0.95 }"] {
+        let found = finding(&probe(words), "gauge_under_solid");
+        assert!(found.severity == Severity::Note && found.what.contains("stands in solid \"b\""), "{}", found.what);
+    }
+    for words in
+        ["elevation = { x = 0.3, on = \"b\" }", "elevation = { x = 0.3 }", "elevation = { x = 1.0, on = \"tank\" }"]
+    {
+        let found = report(&probe(words));
+        let is_under = find(&found, "gauge_under_solid").is_some();
+        assert_eq!(is_under, words.contains("tank"), "{words}: {:#?}", found.findings);
+    }
+}
+
+/// A body above the water that something holds to the end does not strike the water; one that is released does.
+#[test]
+fn the_fall_of_a_body_ends_where_joints_and_solids_hold_it() {
+    let body = |more: &str| {
+        let own = "[[solid]]\nname = \"b\"\nshape = { box = { size = [0.4, 0.4] } }\nat = { x = 1.0, y = 2.0 }\n";
+        format!("{WATER}{TANK}{own}free = {{ density = 500.0 }}\n{more}")
+    };
+    let joint = |words: &str| body(&format!("[[joint]]\nname = \"j\"\nbetween = [\"b\"]\n{words}\n"));
+    let table = "[[solid]]\nname = \"table\"\nfixed = true\nshape = { box = { size = [0.6, 0.2] } }\n";
+    let on = |x: f64, more: &str| body(&format!("{table}at = {{ x = {x}, y = 1.7 }}\n{more}"));
+    let locked = |words: &str| body("").replace("density = 500.0", &format!("density = 500.0, {words}"));
+    for text in [
+        joint("kind = \"fixed\"\nat = [1.0, 2.0]"),
+        joint("kind = \"hinge\"\nat = [1.0, 2.0]"),
+        joint("kind = \"slider\"\nalong = [1.0, 0.0]\nat = [1.0, 2.0]"),
+        on(1.0, ""),
+        locked("locked = [\"y\"]"),
+        locked("release = 5.0"),
+        body("").replace("x = 1.0, y = 2.0", "x = 5.0, y = 2.0"),
+    ] {
+        has_no(&text, "slow_sound");
+    }
+    for text in [
+        body(""),
+        joint("kind = \"fixed\"\nat = [1.0, 2.0]\nuntil = 0.5"),
+        // The middle of the body falls by 2 m about the hinge below it, and the water is 1.2 m under the body.
+        joint("kind = \"hinge\"\nat = [1.0, 1.0]"),
+        joint("kind = \"slider\"\nalong = [0.0, 1.0]\nat = [1.0, 2.0]"),
+        on(1.4, ""),
+        on(1.0, "until = 0.5\n"),
+        locked("release = 0.5"),
+        body("[[rope]]\nname = \"r\"\nbetween = [\"b\"]\nfrom = [1.0, 2.2]\nto = [1.0, 3.0]\nuntil = 0.5\n"),
+    ] {
+        assert!(finding(&text, "slow_sound").what.contains("\"b\" after a fall"), "{text}");
+    }
+}

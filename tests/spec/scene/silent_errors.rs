@@ -673,3 +673,79 @@ fn a_tie_that_begins_after_the_removal_of_its_solid_is_refused_with_both() {
         assert_refused(word, &format!("{scene}{named}"), &[], &words);
     }
 }
+
+/// A corner without one of its coordinates was left out, and the outline became another one.
+#[test]
+fn an_outline_with_a_corner_without_a_coordinate_is_refused() {
+    let shape = "[[solid]]\nname = \"hull\"\nfixed = true\nat = { x = 1.0, bottom = 1.5 }\nshape = { polygon = { file = \"a.csv\" } }\n";
+    let polygon = scene(REST, shape);
+    let file = |rows: &str| format!("x_m,y_m\n0,0\n0.4,0\n{rows}0.4,0.4\n0,0.4\n");
+    for rows in ["0.6,\n", ",0.2\n", "0.6,NaN\n", "NaN,NaN\n"] {
+        let words = ["a row has no value", "line 4", "solid.hull.shape.polygon.file", "remove the row"];
+        assert_refused("corner", &polygon, &[("a.csv", &file(rows))], &words);
+    }
+    assert_not_found("corners", &polygon, &[("a.csv", &file(",\n"))], "no value");
+    // Many tables repeat the first point at the end.
+    assert_not_found("closed", &polygon, &[("a.csv", &(file("") + "0,0\n"))], "the same");
+    let scaled = polygon.replace("\"a.csv\"", "\"a.csv\", scale = 0.001");
+    assert_refused("scaled", &scaled, &[("a.csv", &file(""))], &["belongs to a drawing", "in metres"]);
+}
+
+/// An error that follows from the values of a record names what is strange about them.
+#[test]
+fn an_error_of_a_body_comes_with_the_warnings_about_its_records() {
+    let ballast =
+        "free = { density = 500.0, ballast = [{ at = [0.0, 0.0], mass = { file = \"m.csv\", column = \"m_g\" } }] }";
+    let heavy = scene(REST, "").replace("free = { density = 500.0 }", ballast);
+    let grams = "t_s,m_g\n0,2000\n1,2000\n2,2000\n";
+    assert_refused(
+        "grams",
+        &heavy,
+        &[("m.csv", grams)],
+        &["sinks", "is in g, and is used as if in kg", "scale = 0.001"],
+    );
+    // A code for a missing value makes a wave that breaks.
+    let paddle = "{ formula = \"0*t\" }";
+    let wave = scene(REST, "").replace(
+        &format!("driven = {{ along = [0.0, 1.0], distance = {paddle} }}"),
+        "driven = { along = [1.0, 0.0], wave = { elevation = { file = \"e.csv\", column = \"eta_m\" } } }",
+    );
+    let wave = wave.replace("at = { x = 1.0, bottom = 1.2 }", "at = { x = -0.1, bottom = 0.0 }");
+    let wave = wave
+        .replace("size = [0.2, 0.2]", "size = [0.2, 0.8]")
+        .replace("tank = { size = [2.0, 1.0] }", "polyline = [[-0.5, 0.0], [2.0, 0.0], [2.0, 1.0]]");
+    let eta = |i: usize| if i == 30 { -999.0 } else { 0.02 * (4.2 * 0.05 * i as f64).sin() };
+    let rows: String = (0..80).map(|i| format!("{},{}\n", 0.05 * i as f64, eta(i))).collect();
+    let record = format!("t_s,eta_m\n{rows}");
+    assert_refused("code", &wave, &[("e.csv", &record)], &["breaks", "has the value -999", "remove the lines with it"]);
+}
+
+/// Errors of probes had neither line nor key.
+#[test]
+fn an_error_of_a_probe_names_its_line_and_its_key() {
+    let patch = "[[probe]]\ncontacts = true\n[[probe]]\npatch = { solid = \"box\", box = { min = [0.0, 0.0], max = [0.1, 0.1] } }\n";
+    assert_refused("patch", &scene(REST, patch), &[], &["no face of solid \"box\"", "scene.toml:23", "probe.1"]);
+}
+
+/// Limits in degrees that are written as radians are told with the key for degrees.
+#[test]
+fn limits_of_more_than_a_turn_propose_degrees() {
+    let hinge = |limits: &str| {
+        let joint = "[[joint]]\nname = \"j\"\nkind = \"hinge\"\nbetween = [\"box\"]\nat = [1.0, 0.5]\n";
+        scene(REST, &format!("{joint}limits = {limits}\n"))
+    };
+    let words = ["from -30 to 30 rad it would turn all the way round", "joint.0.limits", "limits_deg = [-30.0, 30.0]"];
+    assert_refused("turn", &hinge("[-30, 30]"), &[], &words);
+    assert_not_found("part", &hinge("[-3.0, 3.0]"), &[], "rad");
+    // A slider may move by metres.
+    let slider = hinge("[-30, 30]").replace("kind = \"hinge\"", "kind = \"slider\"\nalong = [0.0, 1.0]");
+    assert_not_found("slider", &slider, &[], "all the way round");
+    let generic = hinge("{ turn = [-10, 10] }").replace("kind = \"hinge\"", "kind = \"generic\"\nfree = [\"turn\"]");
+    assert_refused("generic", &generic, &[], &["all the way round", "limits_deg = [-10.0, 10.0]"]);
+}
+
+#[test]
+fn a_statistic_in_a_scene_without_probes_is_refused_with_the_remedy() {
+    let statistic = scene(REST, "[[statistic]]\nwaves = \"g\"\n");
+    assert_refused("no-probe", &statistic, &[], &["no probe is called \"g\"", "the scene has no probe", "[[probe]]"]);
+}

@@ -64,7 +64,7 @@ fn errors_name_the_file_the_line_and_the_column() -> Result<()> {
     std::fs::write(&file.0, "t_s,x_m\n0.0,inf\n").unwrap();
     assert!(refused(["t_s", "x_m"]).contains("\"inf\" is not a number"));
     std::fs::write(&file.0, "t_s,x_m\n0.0,1.0\n0.1\n").unwrap();
-    assert!(refused(["t_s", "x_m"]).contains(&format!("a row has 1 cells, its header 2\n  in {name}:3:1")));
+    assert!(refused(["t_s", "x_m"]).contains(&format!("a row has 1 cell, its header 2\n  in {name}:3:1")));
     std::fs::write(&file.0, "t_s,x_m\n# two\n0.1,1.0\n0.1,2.0\n").unwrap();
     let error = file.open()?.series("t_s", "x_m").unwrap_err().to_string();
     assert!(error.starts_with(&format!("times must increase: 0.1 follows 0.1\n  in {name}:4:1, t_s")), "{error}");
@@ -233,12 +233,23 @@ fn numbers_with_several_readings_and_other_cells_are_refused_with_the_reason() {
         ("html", "<!DOCTYPE html>\n<html></html>", "a web page", "download"),
         ("lfs", "version https://git-lfs.github.com/spec/v1\noid sha256:1\nsize 3\n", "Git LFS", "git lfs pull"),
         ("binary", "t\0\0\0\0x", "it is binary", "text"),
-        ("footer", "t_s,x_m\n0.0,1\n0.5,2\nend of record\n", "a row has 1 cells", "blank"),
+        ("footer", "t_s,x_m\n0.0,1\n0.5,2\nend of record\n", "a row has 1 cell, its header 2", "write # before"),
+        ("short", "t_s,x_m\n0.0,1\n0.5\n", "a row has 1 cell, its header 2", "blank"),
+        ("long", "t_s,x_m\n0.0,1\n0.5,2,\"x\"\n", "a row has 3 cells, its header 2", "blank"),
+        ("bars", "t_s|x_m\n0.0|1\n0.5|2\n", "the character | separates the columns", "semicolons, tabs or blanks"),
+        ("bars-wide", "| t_s | x_m |\n| --- | --- |\n| 0.0 | 1 |\n", "the character | separates", "semicolons"),
     ];
     for (name, text, what, help) in refused {
         let error = read(name, text, "x_m").map(|read| format!("{read:?}")).unwrap_err().to_string();
         assert!(error.contains(what) && error.contains(help), "{name}: {error}");
     }
+}
+
+/// A bar in a name or in a comment separates nothing.
+#[test]
+fn bars_in_names_are_part_of_them() -> Result<()> {
+    assert_eq!(read("bar", "t_s,|x|_m\n# a | b\n0.0,1.5\n0.5,2.5\n", "|x|_m")?.1, [1.5, 2.5]);
+    Ok(())
 }
 
 #[test]

@@ -66,6 +66,7 @@ fn a_drawing_with_units_has_its_own_size() {
         ("width='1000px' height='500px' viewBox='0 0 1000 500'", 755.9055, 377.9528),
         ("width='720pt' viewBox='0 0 720 500'", 566.9291, 283.4646),
         ("height='60pc' viewBox='0 0 600 600'", 472.4409, 236.2205),
+        ("width='54CM' height='120Mm' viewBox='0 0 540 120'", 200.0, 100.0),
         // Without a viewBox the unit is the px.
         ("width='300mm' height='200mm'", 755.9055, 377.9528),
         // The smaller of both scales holds, unless the aspect ratio is free.
@@ -147,6 +148,57 @@ fn transforms_of_styles_and_attributes_apply() {
     assert_200_by_100(&drawing(size, &format!("{sheet}<path class='big' {half}/>")), None, None);
 }
 
+/// A start without a line and a second "close" draw nothing: exporters leave them behind. A line after "close" is a second outline.
+#[test]
+fn parts_of_a_path_that_draw_nothing_are_no_outline() {
+    for rest in ["", " z", " M 3,3", " m 0,0 z", " Z M 5,5 m 1,1"] {
+        let path = format!("<path d='M 10,10 h 200 v 100 h -200 z{rest}'/>");
+        assert_200_by_100(&drawing("", &path), None, Some(LengthUnit::Mm));
+    }
+    for (d, word) in [
+        ("M 0,0 h 200 v 100 z l 5,5 h 3 z", "it has 2 outlines"),
+        ("M 0,0 h 200 v 100 h -200 z m 10,10 h 9 v 9 z", "it has 2 outlines"),
+        ("M 0,0 h 200 v 100", "it is not closed"),
+        ("M 3,3", "it draws no line"),
+        ("M 3,3 z", "it draws no line"),
+    ] {
+        let refused = refusal(&drawing("", &format!("<path d='{d}'/>")), None);
+        assert!(refused.contains(word), "{d}: {refused}");
+    }
+}
+
+/// The weaker of two declarations applies if it is marked as important.
+#[test]
+fn important_declarations_take_precedence() {
+    let size = "width='540mm' height='120mm' viewBox='0 0 540 120'";
+    let half = "d='M 50,60 h 100 v 50 h -100 z'";
+    for (sheet, attributes) in [
+        ("path { transform: scale(2) !important }", format!("style='transform:scale(7)' {half}")),
+        (".a { transform: scale(2) ! important } #p { transform: scale(7) }", format!("id='p' class='a' {half}")),
+        ("path { transform: scale(7) !important }", format!("style='transform:scale(2) !important' {half}")),
+        ("path { transform: scale(2) !IMPORTANT }", format!("transform='scale(7)' {half}")),
+    ] {
+        let svg = drawing(size, &format!("<style>{sheet}</style><path {attributes}/>"));
+        assert_200_by_100(&svg, None, None);
+    }
+    let hidden =
+        "<style>.a { display: none !important }</style><path class='a' style='display:inline' d='M 0,0 h 1 v 1 z'/>";
+    assert_200_by_100(&drawing(size, &format!("{hidden}{RECTANGLE}")), None, None);
+}
+
+/// The origin of a transform is a corner of the shape's own box if `transform-box` says so. Without a turn or a factor, it has no effect.
+#[test]
+fn a_transform_about_the_box_of_a_shape_is_refused() {
+    let half = "d='M 50,60 h 100 v 50 h -100 z'";
+    let with = |style: &str| drawing("", &format!("<path style='{style}' {half}/>"));
+    let refused = refusal(&with("transform-box: fill-box; transform: scale(2)"), None);
+    assert!(refused.contains("transform-box \"fill-box\" is not read"), "{refused}");
+    assert_200_by_100(&with("transform-box: view-box; transform: scale(2)"), None, Some(LengthUnit::Mm));
+    let moved =
+        drawing("", &RECTANGLE.replace(" d=", " style='transform-box: fill-box; transform: translate(5px)' d="));
+    assert_200_by_100(&moved, None, Some(LengthUnit::Mm));
+}
+
 #[test]
 fn an_unknown_id_proposes_the_nearest_one() {
     let svg = drawing("width='540mm' height='120mm' viewBox='0 0 540 120'", RECTANGLE);
@@ -185,6 +237,7 @@ fn references_draw_the_path_to_which_they_refer() {
     for svg in [
         format!("{half}<use id='copy' xlink:href='#hull' x='5' transform='scale(2)'/>"),
         format!("{half}<use id='copy' href='#hull' style='transform:scale(2)'/>"),
+        format!("{half}<use id='copy' href='#hull' x='3mm' y='10px' style='transform:scale(2)'/>"),
         format!("<symbol id='s'>{half}</symbol><g transform='scale(2)'><use id='copy' href='#hull'/></g>"),
         format!("{half}<symbol id='s'><use href='#hull'/></symbol><use id='copy' href='#s' transform='scale(2)'/>"),
     ] {
