@@ -201,7 +201,7 @@ pub fn default_viscosity(dimension: usize, water: usize) -> Result<DefaultViscos
         n => return Err(missing_dimension(n)),
     };
     let (c0_mps, h_m) = (model.c0, model.h);
-    let viscosity_m2ps = model.viscosity.effective(c0_mps, h_m, dimension, 1.0);
+    let viscosity_m2ps = model.viscosity.effective(c0_mps, h_m, 9.81, dimension, 1.0);
     Ok(DefaultViscosity { dimension, dp_m: case.dp(), depth_m, c0_mps, h_m, viscosity_m2ps })
 }
 

@@ -135,7 +135,7 @@ fn body_flow<const D: usize>(
 ) -> Option<BodyFlow> {
     let known = speed_mps > 0.0 && size_m.is_finite();
     let model = context.system.model();
-    let nu = model.viscosity.effective(model.c0, model.h, D, speed_mps / size_m);
+    let nu = model.viscosity.effective(model.c0, model.h, context.g, D, speed_mps / size_m);
     let reynolds = (nu > 0.0).then(|| speed_mps * size_m / nu);
     let name = solid.spec.name.clone();
     known.then_some(BodyFlow { name, speed_mps, speed_from, size_m, viscosity_m2ps: nu, reynolds })

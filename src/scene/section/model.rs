@@ -94,7 +94,9 @@ impl ModelConfig {
         let (viscosity, diffusion, shifting) = (self.viscosity, self.diffusion, self.shifting);
         let constants = match viscosity {
             Some(Viscosity::Artificial(law)) => vec![("viscosity.artificial.alpha", law.alpha)],
-            Some(Viscosity::Riemann(law)) => vec![("viscosity.riemann.eta", law.eta)],
+            Some(Viscosity::Riemann(law)) => {
+                vec![("viscosity.riemann.eta", law.eta), ("viscosity.riemann.threshold", law.threshold)]
+            }
             Some(Viscosity::Laminar(law)) => vec![("viscosity.laminar.nu0", law.nu0)],
             Some(Viscosity::Sps(law)) => vec![
                 ("viscosity.sps.nu0", law.nu0),

@@ -85,13 +85,13 @@ impl Viscosity {
     }
 
     /// The effective kinematic viscosity ν (m²/s) of a flow with the shear rate `shear` (1/s), in water with speed of sound `c0`
-    /// (m/s) and smoothing length `h` (m), in `dimension` D. It is ν₀ of a laminar viscosity, α c₀ h/(4 (D + 2)) of the
+    /// (m/s), smoothing length `h` (m) and the acceleration of gravity `g` (m/s²), in `dimension` D. It is ν₀ of a laminar viscosity, α c₀ h/(4 (D + 2)) of the
     /// artificial viscosity, which acts on approaching pairs only @monaghan2005, and [`Riemann::effective`] of the Riemann
     /// dissipation. It excludes the eddy viscosity of SPS.
-    pub fn effective(&self, c0: f64, h: f64, dimension: usize, shear: f64) -> f64 {
+    pub fn effective(&self, c0: f64, h: f64, g: f64, dimension: usize, shear: f64) -> f64 {
         match self {
             Self::None => 0.0,
-            Self::Riemann(law) => law.effective(h, dimension, shear),
+            Self::Riemann(law) => law.effective(h, g, dimension, shear),
             Self::Artificial(law) => law.alpha * c0 * h / (4.0 * (dimension as f64 + 2.0)),
             Self::Laminar(law) => law.nu0,
             Self::Sps(law) => law.nu0,

@@ -36,7 +36,7 @@ fn the_default_viscosity_does_not_grow_with_the_depth() -> Result<()> {
     let nu = |depth: f64, extra: &str| -> Result<f64> {
         let sim = common::scene_simulation::<2>(&scene(depth, 900.0, extra))?;
         let model = sim.system().model();
-        Ok(model.viscosity.effective(model.c0, model.h, 2, 1.0))
+        Ok(model.viscosity.effective(model.c0, model.h, 9.81, 2, 1.0))
     };
     let three = nu(3.0, "")?;
     for depth in [6.0, 12.0] {

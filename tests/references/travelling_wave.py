@@ -1,0 +1,104 @@
+"""A steep wave in a periodic sea, which an ideal fluid keeps for ever: writes its scene, and tells what a run loses.
+
+The start is Stokes's wave of second order (1847) in water 0.2 m deep: surface, velocity and pressure. The amplitude of a period is the
+root of its mean kinetic energy. Energy travels at the group velocity, so that a period's loss divided by group over phase velocity is
+that of a wave length in a flume.
+
+    python3 travelling_wave.py DIR --kd 2.5 --height 0.04 --dp 0.008     (writes DIR/scene.toml and DIR/surface.csv)
+    pontoon run DIR --out RUN
+    python3 travelling_wave.py RUN --judge --kd 2.5 --dp 0.008
+"""
+
+import argparse
+import csv
+import math
+import os
+
+DEPTH, GRAVITY, PERIODS, READINGS = 0.2, 9.81, 12, 80
+
+
+class Wave:
+    def __init__(self, kd, dp):
+        k = kd / DEPTH
+        self.length = round(2 * math.pi / k / dp) * dp
+        self.k = 2 * math.pi / self.length
+        self.omega = math.sqrt(GRAVITY * self.k * math.tanh(self.k * DEPTH))
+        self.period = 2 * math.pi / self.omega
+        self.group = 0.5 * (1 + 2 * self.k * DEPTH / math.sinh(2 * self.k * DEPTH))
+
+
+def write(directory, wave, amplitude, dp):
+    k, omega, length = wave.k, wave.omega, wave.length
+    tanh, sinh, cosh = (f(k * DEPTH) for f in (math.tanh, math.sinh, math.cosh))
+    second = amplitude**2 * k / 4 * (3 - tanh**2) / tanh**3
+    os.makedirs(directory, exist_ok=True)
+    with open(os.path.join(directory, "surface.csv"), "w") as file:
+        file.write(f"x_m,y_m\n0,{-DEPTH}\n{length},{-DEPTH}\n")
+        for i in range(401):
+            x = length * (1 - i / 400)
+            file.write(f"{x:.6f},{amplitude * math.cos(k * x) + second * math.cos(2 * k * x):.6f}\n")
+    parts = [(amplitude * omega / sinh, k), (0.75 * amplitude**2 * k * omega / sinh**4, 2 * k)]
+    velocity = [
+        "+".join(f"{speed}*{down}({n}*(y+{DEPTH}))*{along}({n}*x)" for speed, n in parts)
+        for down, along in (("cosh", "cos"), ("sinh", "sin"))
+    ]
+    pressure = f"{1000 * GRAVITY}*({amplitude}*cos({k}*x)*cosh({k}*(y+{DEPTH}))/{cosh}-{amplitude + second})"
+    every = wave.period / READINGS
+    with open(os.path.join(directory, "scene.toml"), "w") as file:
+        file.write(f"""title = "A wave in a periodic sea"
+dimension = 2
+dp = {dp}
+until = {(PERIODS + 0.1) * wave.period}
+frames = "off"
+periodic = {{ x = [0.0, {length}] }}
+
+[model]                    # the default laws where a paddle makes a named wave
+gradient = "near_surface"
+h_over_dp = 2.0
+viscosity = {{ riemann = {{ threshold = 0.3 }} }}
+
+[[water]]
+fill = {{ shape = {{ polygon = {{ file = "surface.csv" }} }} }}
+velocity = ["{velocity[0]}", "{velocity[1]}"]
+pressure = "{pressure}"
+
+[[solid]]
+name = "bed"
+fixed = true
+shape = {{ box = {{ size = [{length + 0.4}, 0.08] }} }}
+at = {{ x = {length / 2}, y = {-DEPTH - 0.04} }}
+
+[[probe]]
+energy = true
+every = {every}
+
+[[probe]]
+budget = true
+every = {every}
+""")
+
+
+def judge(run, wave):
+    with open(os.path.join(run, "series", "energy.csv")) as file:
+        rows = list(csv.reader(line for line in file if not line.startswith("#")))
+    column = next(i for i, name in enumerate(rows[0]) if name.startswith("water_kinetic"))
+    values = [float(row[column]) for row in rows[1:]]
+    amplitudes = [math.sqrt(sum(values[i * READINGS : (i + 1) * READINGS]) / READINGS) for i in range(PERIODS)]
+    first, last = 2, PERIODS - 1
+    loss = 1 - (amplitudes[last] / amplitudes[first]) ** (1 / (last - first) / wave.group)
+    print("amplitude over that of the third period", *(f"{a / amplitudes[first]:.3f}" for a in amplitudes))
+    print(f"loss a wave length {100 * loss:.2f} %")
+
+
+parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+parser.add_argument("directory")
+parser.add_argument("--judge", action="store_true")
+parser.add_argument("--kd", type=float, default=2.5)
+parser.add_argument("--height", type=float, default=0.04)
+parser.add_argument("--dp", type=float, default=0.008)
+args = parser.parse_args()
+wave = Wave(args.kd, args.dp)
+if args.judge:
+    judge(args.directory, wave)
+else:
+    write(args.directory, wave, 0.5 * args.height, args.dp)
