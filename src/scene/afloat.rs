@@ -20,6 +20,7 @@ use crate::{
     math::{Pose, Vector},
     solid::{
         Constraints, Kinematics, SolidSpec,
+        constraint::links::check_rope_reach,
         decks::{deck_of, may_stand, standing_joint},
         hydrostatics::{HollowWater, Hull},
         mooring::forces_at_rest,
@@ -253,10 +254,17 @@ fn enters<const D: usize>(hollow: &Hollow<D>, pose: &Pose<D>, body: &WaterBody<D
 
 impl<const D: usize> PlacedSolids<D> {
     /// Returns the same constraints, which the scene gives for the solids before they turned to rest, between the solids at rest.
-    pub(super) fn moved(&self, constraints: Constraints<D>) -> Constraints<D> {
+    ///
+    /// # Errors
+    /// `Scene` if a rope is shorter than the distance of its ends there.
+    pub(super) fn moved(&self, ctx: &Context, constraints: Constraints<D>) -> Result<Constraints<D>> {
         let now: Vec<Kinematics<D>> = self.specs.iter().map(SolidSpec::initial_kinematics).collect();
         let has_moved = self.given.iter().zip(&now).any(|(given, now)| given.pose != now.pose);
-        if has_moved { constraints.moved(&self.given, &now) } else { constraints }
+        let made = if has_moved { constraints.moved(&self.given, &now) } else { constraints };
+        for (i, rope) in made.ropes.iter().enumerate() {
+            check_rope_reach(rope).map_err(|e| ctx.with_location(e, &format!("rope.{i}")))?;
+        }
+        Ok(made)
     }
 
     /// Returns the level (m) from which the draft of solid number `i` is measured.

@@ -30,6 +30,9 @@ const CLOSE: f64 = 1e-6;
 /// Way (dp) of a body below which it stays where it is lifted.
 const LEAST: f64 = 1e-3;
 
+/// Turn (rad) below which a body does not turn.
+const LEAST_TURN: f64 = 1e-6;
+
 /// What surrounds the solids while they are brought to rest.
 pub(super) struct RestState<'a, const D: usize> {
     pub(super) scene: &'a Scene,
@@ -80,6 +83,14 @@ pub(super) fn rest_poses<const D: usize>(state: &RestState<D>, placed: &PlacedSo
             tied().for_each(|i| poses[i] = lifted[i]);
         }
     }
+    for ((spec, lifted), pose) in placed.specs.iter().zip(&lifted).zip(&mut poses) {
+        // A body that a rope pulls down does not turn by round-off.
+        if (pose.rotation - lifted.rotation).amax() < LEAST_TURN {
+            let centre = spec.initial_body().map_or_else(Vector::zeros, |body| body.centre);
+            let position = pose.position + (pose.rotation - lifted.rotation) * centre;
+            *pose = Pose { position, rotation: lifted.rotation };
+        }
+    }
     poses
 }
 
@@ -95,14 +106,19 @@ pub(super) fn note_rest<const D: usize>(ctx: &Context, specs: &[SolidSpec<D>], l
         let centre = spec.initial_body().map_or_else(Vector::zeros, |body| body.centre);
         let rise = (spec.pose.point(&centre) - lifted.point(&centre))[D - 1];
         let way = if rise < 0.0 { "lower" } else { "higher" };
+        let turned = match angle.abs() > LEAST_TURN {
+            true => format!("turned by {}°, ", three_digits(angle.to_degrees())),
+            false => String::new(),
+        };
         let what = format!(
-            "\"{}\" starts at rest: turned by {}°, its centre of mass {} m {way} than in its given orientation",
+            "\"{}\" starts at rest, {turned}its centre of mass {} m {way} than without that turn and taut ropes",
             spec.name,
-            three_digits(angle.to_degrees()),
             three_digits(rise.abs())
         );
-        let key = if D == 2 { "angle_deg = 0.0" } else { "turn_deg = [0.0, 0.0, 0.0]" };
-        ctx.add_note(FileNote::note("turned_to_rest", what, format!("at = {{ {key}, .. }} keeps that orientation")));
+        let (turn, height) = if D == 2 { ("angle_deg = 0.0", "y") } else { ("turn_deg = [0.0, 0.0, 0.0]", "z") };
+        let remedy =
+            format!("write  {turn}  to keep its orientation, or  {height}  in place of draft to keep its height");
+        ctx.add_note(FileNote::note("turned_to_rest", what, remedy));
     }
 }
 
@@ -132,8 +148,11 @@ impl<const D: usize> RestState<'_, D> {
         let constraints = self.constraints.moved(&from, &to);
         let specs: Vec<&SolidSpec<D>> = specs.iter().collect();
         let bodies: Vec<Option<FreeBody<D>>> = specs.iter().map(|spec| spec.initial_body()).collect();
-        let water =
-            WaterAtRest { rho0: self.ctx.rho0.unwrap_or_default(), g: self.ctx.gravity_norm(), level: self.pool.still.level };
+        let water = WaterAtRest {
+            rho0: self.ctx.rho0.unwrap_or_default(),
+            g: self.ctx.gravity_norm(),
+            level: self.pool.still.level,
+        };
         let body = |(i, body)| self.static_body(placed, i, (body, &poses[i]), (&specs, poses));
         let system = StaticSystem::new(
             bodies.iter().enumerate().filter_map(|(i, own)| Some(body((i, own.as_ref()?)))).collect(),

@@ -28,7 +28,7 @@ use crate::{
     plan::{ControlPlan, FramesPlan, Plan},
     ranks::{RankPart, Ranks},
     simulation::{Driving, OpenBoundary, Setup, TowedFrame},
-    solid::{Constraints, Role, SolidSpec, TimeFunction, constraint::links::check_rope_reach},
+    solid::{Constraints, Role, SolidSpec, TimeFunction},
     system::{Periodic, buffer_length, check_open_boundary, own_water::allow_division, periodic},
 };
 
@@ -170,10 +170,7 @@ impl Scene {
         let placed = placed_solids::<D>(&scene, ctx, &water, true)?;
         let solids = &placed.specs;
         require_plausible_units(ctx, &self.solid, &water, solids)?;
-        let constraints = placed.moved(build_constraints(&scene, ctx, solids, &placed.levels)?);
-        for (i, rope) in constraints.ropes.iter().enumerate() {
-            check_rope_reach(rope).map_err(|e| ctx.with_location(e, &format!("rope.{i}")))?;
-        }
+        let constraints = placed.moved(ctx, build_constraints(&scene, ctx, solids, &placed.levels)?)?;
         let domain = scene.domain.as_ref().map(|d| Bounds { min: vector(&d.min), max: vector(&d.max) });
         if let Some(domain) = &domain {
             require_inside_domain(ctx, domain, &water, solids)?;

@@ -2,8 +2,8 @@
 
 use super::{
     jacobian::kinematics_of_end,
-    links::Constraints,
     lines::{LineEnd, start_length},
+    links::Constraints,
 };
 use crate::{math::Vector, solid::Kinematics};
 

@@ -346,7 +346,7 @@ impl<'a, const D: usize> TiedBodies<'a, D> {
         let afloat: Vec<Load<D>> = (0..self.members.len()).map(|k| self.load_afloat(k, solids)).collect();
         let (force, rows) = (self.forces(solids, &afloat), self.rows(all, active));
         let held = all.iter().zip(active).filter(|(_, held)| **held).map(|(own, _)| own.off);
-        let off = DVector::from_iterator(rows.nrows(), held.chain(std::iter::repeat(0.0)));
+        let off = DVector::from_iterator(rows.nrows(), held.chain(std::iter::repeat(0.0)).take(rows.nrows()));
         // Conditions that repeat others, as those of a loop in space, have singular values of 0.
         let SymmetricEigen { eigenvectors, eigenvalues } = SymmetricEigen::new(rows.tr_mul(&rows));
         let least = 1e-10 * eigenvalues.amax();
