@@ -12,7 +12,8 @@ use super::{
     world_bounds,
 };
 use crate::{
-    math::{Pose, Vector, format::three_digits},
+    geometry::Shape,
+    math::{Bounds, Pose, Vector, format::three_digits},
     solid::{
         Constraints, FreeBody, Kinematics, Role, SolidSpec,
         decks::supports_of,
@@ -26,6 +27,9 @@ const PASSES: usize = 30;
 
 /// Way of a body (dp) in a search below which its place no longer changes.
 const CLOSE: f64 = 1e-6;
+
+/// Distance (dp) from another solid below which a body touches it.
+const TOUCH: f64 = 0.05;
 
 /// Way (dp) of a body below which it stays where it is lifted.
 const LEAST: f64 = 1e-3;
@@ -47,8 +51,8 @@ pub(super) struct RestState<'a, const D: usize> {
     pub(super) sheltered: &'a [bool],
 }
 
-/// Returns the poses of the lifted solids `placed` at rest: those in which they are lifted, where they need not turn or move, or where no
-/// stable rest is near.
+/// Returns the poses of the lifted solids `placed` at rest: those in which they are lifted, where they need not turn or move, where they
+/// touch others, or where no stable rest is near.
 pub(super) fn rest_poses<const D: usize>(state: &RestState<D>, placed: &PlacedSolids<D>) -> Vec<Pose<D>> {
     let lifted: Vec<Pose<D>> = placed.specs.iter().map(|spec| spec.pose).collect();
     let (mut poses, dp) = (lifted.clone(), state.scene.dp);
@@ -127,6 +131,19 @@ fn way<const D: usize>(spec: &SolidSpec<D>, from: &Pose<D>, to: &Pose<D>) -> f64
     spec.shape.bounds().corners().map(|x| (to.point(&x) - from.point(&x)).norm()).fold(0.0, f64::max)
 }
 
+/// Returns the corners, and the middles of the edges and sides, of the box around a shape that lie on its faces.
+fn places_on_faces<const D: usize>(shape: &Shape<D>) -> Vec<Vector<D>> {
+    let (Bounds { min, max }, size) = (shape.bounds(), shape.bounds().size().max());
+    let place = |n: usize| {
+        Vector::from_fn(|axis, _| {
+            let part = (n / 3usize.pow(axis as u32) % 3) as f64 / 2.0;
+            min[axis] + part * (max[axis] - min[axis])
+        })
+    };
+    let places = (0..3usize.pow(D as u32)).map(place);
+    places.filter(|x| shape.signed_distance(x).abs() < 1e-6 * size).collect()
+}
+
 /// Bodies that are tied together, and their poses at rest by the number of the solid, if there is such a rest.
 type TiedRest<const D: usize> = (Vec<usize>, Option<Vec<(usize, Pose<D>)>>);
 
@@ -171,7 +188,11 @@ impl<const D: usize> RestState<'_, D> {
             tied.iter().for_each(|i| seen[*i] = true);
             let rest = match given_up[tied[0]] {
                 true => None,
-                false => poses_at_rest(&system, number, &|i, axis| self.keeps_turn(specs[i], i, axis)),
+                false if tied.iter().any(|i| self.touches(&specs, *i)) => None,
+                false => {
+                    let stays = |i: usize| self.scene.solid[i].is_afloat();
+                    poses_at_rest(&system, number, &stays, &|i, axis| self.keeps_turn(specs[i], i, axis))
+                }
             };
             found.push((tied, rest));
         }
@@ -196,6 +217,22 @@ impl<const D: usize> RestState<'_, D> {
         });
         let bottom = if is_borne { low } else { low.min(self.pool.still.level - self.pool.still.depth) };
         StaticBody { solid: i, hull, body, pose: *pose, bottom, level }
+    }
+
+    /// Returns whether solid number `i` touches another one that is neither its deck nor on it: then contacts bear a part of its load.
+    fn touches(&self, specs: &[&SolidSpec<D>], i: usize) -> bool {
+        let reach = TOUCH * self.scene.dp;
+        let meets = |a: &SolidSpec<D>, b: &SolidSpec<D>| {
+            let pose = b.initial_kinematics().pose;
+            let near = |x: Vector<D>| b.shape.signed_distance(&pose.local(&a.pose.point(&x))) < reach;
+            places_on_faces(&a.shape).into_iter().any(near)
+        };
+        (0..specs.len()).any(|j| {
+            j != i
+                && self.constraints.can_touch(i, j)
+                && !self.decks.iter().any(|pair| pair.contains(&i) && pair.contains(&j))
+                && (meets(specs[i], specs[j]) || (matches!(specs[j].role, Role::Free(_)) && meets(specs[j], specs[i])))
+        })
     }
 
     /// Returns whether solid number `i` keeps its turn about an axis: the scene gives its tilt, or a symmetry plane cuts it.

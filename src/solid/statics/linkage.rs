@@ -11,8 +11,8 @@
 //! of negative stiffness has the sign of the force, and so leads to a minimum of the energy. A rope that would push, or a stop that would
 //! pull, lets go. The natural frequencies are those of Zᵀ K Z φ = ω² Zᵀ M Z φ. M has no added mass of the water.
 //!
-//! Bodies that are placed at rest keep their place: rows of J with C = 0 hold the horizontal place of their centre of mass, and in 3-D
-//! their common turn about the vertical. The reactions of these rows bear what would make them drift.
+//! Floats that are placed at rest keep their place: rows of J with C = 0 hold the horizontal place of the centre of mass of jointed
+//! bodies, and in 3-D their common turn about the vertical. The reactions of these rows bear what would make them drift.
 
 use nalgebra::{DMatrix, DVector, Dyn, SymmetricEigen};
 
@@ -95,8 +95,9 @@ struct TiedBodies<'a, const D: usize> {
     size: f64,
     /// Weight times size, N m.
     scale: f64,
-    /// Whether their centre of mass keeps its horizontal place, and their common turn about the vertical is held.
-    keeps_place: bool,
+    /// Places in `members` of bodies between which there are joints, whose common centre of mass keeps its horizontal place and whose
+    /// common turn about the vertical is held.
+    staying: Vec<Vec<usize>>,
 }
 
 /// The equations at a place.
@@ -122,18 +123,17 @@ pub(crate) fn free_rest<const D: usize>(system: &StaticSystem<D>, i: usize) -> O
     Some(other.map(|(other, _)| other).filter(|other| other.is_unstable).unwrap_or(found))
 }
 
-/// Returns the poses at rest of body `i` and of all that is tied to it, by the number of the solid. They keep their horizontal place,
-/// and the rotations of the solids about the axes for which `is_kept` holds. `None` if there is no stable rest near the start, if
+/// Returns the poses at rest of body `i` and of all that is tied to it, by the number of the solid. The solids for which `stays` holds,
+/// with those on joints to them, keep their horizontal place, and all keep their turn about the axes for which `is_kept` holds. `None` if there is no stable rest near the start, if
 /// there are two as for a body that heels to one side as well as to the other, or if [`free_rest`] has none.
 pub(crate) fn poses_at_rest<const D: usize>(
     system: &StaticSystem<D>,
     i: usize,
+    stays: &dyn Fn(usize) -> bool,
     is_kept: &dyn Fn(usize, usize) -> bool,
 ) -> Option<Vec<(usize, Pose<D>)>> {
     let mut tied = TiedBodies::of(system, i, is_kept)?;
-    // A joint to a solid that is not free holds the place, or leads along a guide.
-    let is_free = |end: Option<usize>| end.is_some_and(|solid| system.number(solid).is_some());
-    tied.keeps_place = tied.joints.iter().all(|joint| joint.spec.between.into_iter().all(is_free));
+    tied.staying = tied.staying_bodies(stays);
     let stable = |nudge: f64| tied.rest(nudge).filter(|(found, _)| !found.is_unstable);
     let (found, at) = stable(NUDGE)?;
     if found.starts_unstable {
@@ -173,9 +173,27 @@ impl<'a, const D: usize> TiedBodies<'a, D> {
         let joints = joints.map(|joint| Joint::new(joint.clone(), &system.start)).collect();
         let holds = |line: &&Line<D>| line.bodies.into_iter().flatten().any(|j| members.contains(&j));
         let (ropes, springs) = system.lines.iter().filter(holds).partition(|line| line.is_rope);
-        let (scale, keeps_place) = (weight * size, false);
-        let made = Self { system, joints, ropes, springs, coordinates, size, scale, members, keeps_place };
+        let (scale, staying) = (weight * size, Vec::new());
+        let made = Self { system, joints, ropes, springs, coordinates, size, scale, members, staying };
         (!made.coordinates.is_empty()).then_some(made)
+    }
+
+    /// Those between which there are joints, if `stays` holds for one of them and no joint ties them to a solid that is not free: such a
+    /// joint holds the place, or leads along a guide.
+    fn staying_bodies(&self, stays: &dyn Fn(usize) -> bool) -> Vec<Vec<usize>> {
+        let assembly = |k: &usize| self.system.assembly[self.members[*k]];
+        let number = |end: Option<usize>| end.and_then(|solid| self.system.number(solid));
+        let is_grounded = |own: usize| {
+            let ends = self.joints.iter().map(|joint| joint.spec.between.map(number));
+            ends.into_iter()
+                .any(|ends| ends.contains(&None) && ends.into_iter().flatten().any(|j| self.system.assembly[j] == own))
+        };
+        let mut all: Vec<usize> = (0..self.members.len()).map(|k| assembly(&k)).collect();
+        all.sort_unstable();
+        all.dedup();
+        let bodies = |own: &usize| (0..self.members.len()).filter(|k| assembly(k) == *own).collect::<Vec<_>>();
+        all.retain(|own| !is_grounded(*own) && bodies(own).iter().any(|k| stays(self.solid(*k))));
+        all.iter().map(bodies).collect()
     }
 
     fn solid(&self, k: usize) -> usize {
@@ -320,13 +338,11 @@ impl<'a, const D: usize> TiedBodies<'a, D> {
     /// J of the `active` ones of these conditions, and of those that keep the place.
     fn rows(&self, all: &[Condition<D>], active: &[bool]) -> DMatrix<f64> {
         let held: Vec<&Condition<D>> = all.iter().zip(active).filter(|(_, held)| **held).map(|(own, _)| own).collect();
-        let mass: f64 = self.members.iter().map(|j| self.system.bodies[*j].body.mass).sum();
+        let mass = |k: &usize| self.system.bodies[self.members[*k]].body.mass;
         // The horizontal translations; in 3-D, the turn about the vertical.
-        let kept: &[usize] = match (self.keeps_place, D) {
-            (false, _) => &[],
-            (true, 2) => &[0],
-            (true, _) => &[0, 1, 5],
-        };
+        let axes: &[usize] = if D == 2 { &[0] } else { &[0, 1, 5] };
+        let kept: Vec<_> =
+            self.staying.iter().flat_map(|bodies| axes.iter().map(move |axis| (bodies, *axis))).collect();
         DMatrix::from_fn(held.len() + kept.len(), self.coordinates.len(), |row, c| {
             let (k, axis) = self.coordinates[c];
             match held.get(row) {
@@ -334,8 +350,11 @@ impl<'a, const D: usize> TiedBodies<'a, D> {
                     let own = own.loads.iter().filter(|(solid, _)| *solid == Some(self.solid(k)));
                     own.map(|(_, load)| self.component(load, axis)).sum()
                 }
-                None if axis == kept[row - held.len()] => self.system.bodies[self.members[k]].body.mass / mass,
-                None => 0.0,
+                None => {
+                    let (bodies, own) = kept[row - held.len()];
+                    let share = || mass(&k) / bodies.iter().map(mass).sum::<f64>();
+                    if own == axis && bodies.contains(&k) { share() } else { 0.0 }
+                }
             }
         })
     }

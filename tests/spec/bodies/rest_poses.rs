@@ -300,7 +300,7 @@ fn a_guide_keeps_its_body_and_a_symmetric_mooring_its_place() {
 }
 
 #[test]
-fn what_has_no_rest_or_turns_into_a_wall_is_refused() {
+fn what_has_no_rest_is_refused() {
     let refused = |sections: &str, what: &str| {
         let error = scene_simulation::<2>(&flat(sections)).err().unwrap_or_else(|| panic!("{what}")).to_string();
         assert!(error.contains(what), "{error}");
@@ -314,8 +314,27 @@ fn what_has_no_rest_or_turns_into_a_wall_is_refused() {
     let lift = "[[spring]]\nname = \"lift\"\nbetween = [\"b\"]\nfrom = [1.2, 0.5]\nto = [1.2, 1.0]\nlength = 0.1\n\
                 stiffness = 2000.0\n";
     refused(&format!("{buoy}{lift}"), "the body leaves the water: with its loads its mass is −61");
-    let beside = barge("b", [0.5, 0.2], 0.26, "density = 500.0, centre_offset = [-0.05, -0.04]", "");
-    refused(&beside, "inside \"tank\", turned by ");
+}
+
+#[test]
+fn a_body_that_touches_another_or_would_turn_into_it_keeps_its_orientation_and_is_told_its_list() {
+    let off = "density = 500.0, centre_offset = [-0.05, -0.04]";
+    let beside = flat(&barge("b", [0.5, 0.2], 0.26, off, ""));
+    assert_eq!(tilt(&placed::<2>(&beside)[1]), 0.0);
+    assert!(inspected(&beside).findings.iter().any(|own| own.topic == "lists"));
+    // Fenders in touch bear what the line between the boats pulls.
+    let line = "[[spring]]\nname = \"line\"\nbetween = [\"a\", \"b\"]\nfrom = [1.0, 0.45]\nto = [1.4, 0.45]\nlength = 0.35\n\
+                stiffness = 200.0\n";
+    let boats = |gap: f64| {
+        let boat = |name: &str, x: f64| barge(name, [0.4, 0.2], x, "density = 500.0", "");
+        placed::<2>(&flat(&format!("{}{}{line}", boat("a", 1.0), boat("b", 1.4 + gap))))
+    };
+    assert!(boats(0.0)[1..].iter().all(|boat| tilt(boat) == 0.0));
+    // Apart, each heels, and keeps its place.
+    let apart = boats(0.05);
+    let centre = |i: usize| apart[i].initial_kinematics().centre[0];
+    assert!(tilt(&apart[1]) < -0.001 && (tilt(&apart[1]) + tilt(&apart[2])).abs() < 1e-3, "{:?}", apart[1].pose);
+    assert!((centre(1) - 1.0).abs() < 1e-9 && (centre(2) - 1.45).abs() < 1e-9, "{} {}", centre(1), centre(2));
 }
 
 #[test]
