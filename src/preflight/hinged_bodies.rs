@@ -8,7 +8,7 @@ use super::{Finding, PreflightContext, floating_bodies::Tilt, hollows::hull, tur
 use crate::{
     math::{Bivector, Pose, Vector, format::three_digits},
     solid::{
-        Constraints, JointKind, JointSpec,
+        Constraints, JointKind, JointSpec, Kinematics,
         statics::{FreeRest, NO_WATER, StaticSystem, Support, free_rest},
     },
 };
@@ -193,7 +193,9 @@ fn moment<const D: usize>(context: &PreflightContext<D>, i: usize, joint: &Joint
     let of_motor = joint.motor.as_ref().map_or(0.0, |motor| {
         let sign = if joint.between[1] == Some(i) { 1.0 } else { -1.0 };
         let command = motor.command_at(0.0);
-        let drive = command.force + command.stiffness * (command.position - sign * turn);
+        let start: Vec<Kinematics<D>> = context.solids().iter().map(|solid| solid.kinematics).collect();
+        let at = joint.coordinate_at_start(&start) + sign * turn;
+        let drive = command.force + command.stiffness * (command.position - at);
         sign * drive.clamp(-motor.max_force, motor.max_force)
     });
     of_motor + sum.axial().iter().zip(&axis).map(|(t, a)| t * a).sum::<f64>()

@@ -2,6 +2,7 @@
 
 use super::{
     Scene,
+    at_rest::{RestState, note_rest, rest_poses},
     constraints::build_constraints,
     context::{Context, FileNote},
     section::{
@@ -18,7 +19,8 @@ use crate::{
     },
     math::{Pose, Vector},
     solid::{
-        Constraints, SolidSpec,
+        Constraints, Kinematics, SolidSpec,
+        constraint::links::check_rope_reach,
         decks::{deck_of, may_stand, standing_joint},
         hydrostatics::{HollowWater, Hull},
         mooring::forces_at_rest,
@@ -39,6 +41,8 @@ pub(super) struct PlacedSolids<const D: usize> {
     pub(super) levels: Vec<Option<f64>>,
     /// The highest level, m.
     highest: f64,
+    /// The solids where the scene gives their constraints: before they turned to rest.
+    given: Vec<Kinematics<D>>,
 }
 
 /// Returns the solids in their places in `water`. If `all` is true, or a body starts at its equilibrium, the result includes
@@ -55,22 +59,33 @@ pub(super) fn placed_solids<const D: usize>(
         configs.map(|(i, solid)| solid.build(ctx, &format!("solid.{i}"), &pool)).collect::<Result<_>>()?;
     let levels = specs.iter().map(|spec| pool.level_at(&world_bounds(&spec.shape, &spec.pose))).collect();
     let floats = scene.solid.iter().any(SolidConfig::is_afloat);
-    let mut placed = PlacedSolids { specs, enclosures: Vec::new(), levels, highest: pool.still.level };
-    for (i, (config, spec)) in scene.solid.iter().zip(&placed.specs).enumerate() {
+    let (highest, given) = (pool.still.level, Vec::new());
+    let mut placed = PlacedSolids { specs, enclosures: Vec::new(), levels, highest, given };
+    let enclosed = |(i, spec): (usize, &SolidSpec<D>)| -> Result<Option<Enclosure<D>>> {
         let named = water.iter().any(|body| body.inside == Some(i));
         let found = if all || floats { enclosure(spec, named, &pool, scene.dp) } else { None };
-        if all && found.is_none() && (config.dry == Some(true) || named) {
+        if all && found.is_none() && (scene.solid[i].dry == Some(true) || named) {
             let key = if named { "water" } else { &format!("solid.{i}.dry") };
             let what = format!("\"{}\" encloses no space that could be dry or hold water", spec.name);
             let help = "a hull encloses space below its rim, two dp deep or more, as it is placed";
             return Err(ctx.error_with_help(key, what, help));
         }
-        placed.enclosures.push(found);
+        Ok(found)
+    };
+    placed.enclosures = placed.specs.iter().enumerate().map(enclosed).collect::<Result<_>>()?;
+    if !floats {
+        placed.given = placed.specs.iter().map(SolidSpec::initial_kinematics).collect();
+        return Ok(placed);
     }
-    if floats {
-        note_gravity(ctx);
-        float_bodies(scene, ctx, &mut placed, water, &pool)?;
+    note_gravity(ctx);
+    let poses = float_bodies(scene, ctx, &mut placed, water, &pool)?;
+    placed.given = placed.specs.iter().map(SolidSpec::initial_kinematics).collect();
+    let lifted: Vec<Pose<D>> = placed.specs.iter().map(|spec| spec.pose).collect();
+    for (i, pose) in poses.into_iter().enumerate().filter(|(i, pose)| *pose != lifted[*i]) {
+        placed.specs[i].pose = pose;
+        placed.enclosures[i] = enclosed((i, &placed.specs[i]))?;
     }
+    note_rest(ctx, &placed.specs, &lifted);
     Ok(placed)
 }
 
@@ -91,42 +106,47 @@ fn note_gravity(ctx: &Context) {
     ));
 }
 
-/// Lifts the bodies that start at their equilibrium. They carry their constraints in the state at the start: springs, steady
-/// forces, and bodies at given heights that are joined to them, hang on taut ropes or stand on their decks. What lies in a dry
-/// hollow of another body displaces no water; the hollow is known in its place only, so the places are found again with it.
+/// Lifts the bodies that start at their equilibrium, and returns the poses of all solids at rest. They carry their constraints in the
+/// state at the start: springs, steady forces, and bodies at given heights that are joined to them, hang on taut ropes or stand on their
+/// decks. What lies in a dry hollow of another body displaces no water; the hollow is known in its place only, so the places are found
+/// again with it.
 fn float_bodies<const D: usize>(
     scene: &Scene,
     ctx: &Context,
     placed: &mut PlacedSolids<D>,
     water: &[WaterBody<D>],
     pool: &StillWater<D>,
-) -> Result<()> {
-    let constraints = build_constraints(scene, ctx, &placed.specs, &placed.levels)?.at_start();
+) -> Result<Vec<Pose<D>>> {
+    let mut constraints = build_constraints(scene, ctx, &placed.specs, &placed.levels)?.at_start();
     let find = |sheltered: &[bool]| laden_rises(scene, ctx, placed, (water, pool), (&constraints, sheltered));
     let mut sheltered = vec![false; placed.specs.len()];
-    let mut rises = find(&sheltered)?;
+    let (mut rises, mut decks) = find(&sheltered)?;
     for _ in 0..SHELTER_PASSES {
         let found: Vec<bool> = (0..rises.len()).map(|i| placed.is_sheltered(i, &rises, water)).collect();
         if found == sheltered {
             break;
         }
         sheltered = found;
-        rises = find(&sheltered)?;
+        (rises, decks) = find(&sheltered)?;
     }
     for (spec, rise) in placed.specs.iter_mut().zip(rises) {
         spec.pose.position[D - 1] += rise;
     }
-    Ok(())
+    let specs: Vec<&SolidSpec<D>> = placed.specs.iter().collect();
+    constraints.joints.extend(decks.iter().map(|pair| standing_joint(&specs, *pair)));
+    let (constraints, decks, sheltered) = (&constraints, &decks[..], &sheltered[..]);
+    Ok(rest_poses(&RestState { scene, ctx, water, pool, constraints, decks, sheltered }, placed))
 }
 
-/// Returns the rise (m) of each body to its equilibrium with the bodies at given heights that stand on its deck there.
+/// Returns the rise (m) of each body to its equilibrium with the bodies at given heights that stand on its deck there, and pairs of these
+/// bodies and their decks.
 fn laden_rises<const D: usize>(
     scene: &Scene,
     ctx: &Context,
     placed: &PlacedSolids<D>,
     (water, pool): (&[WaterBody<D>], &StillWater<D>),
     (constraints, sheltered): (&Constraints<D>, &[bool]),
-) -> Result<Vec<f64>> {
+) -> Result<(Vec<f64>, Vec<[usize; 2]>)> {
     let specs: Vec<&SolidSpec<D>> = placed.specs.iter().collect();
     let height = |i: usize| world_bounds(&specs[i].shape, &specs[i].pose).min[D - 1];
     let rho0 = ctx.rho0.unwrap_or_default();
@@ -148,10 +168,10 @@ fn laden_rises<const D: usize>(
             Ok(rises) => decks.iter().rposition(|pair| !stands(rises, *pair)),
             Err(_) => Some(decks.len() - 1),
         };
-        let Some(falls) = falls else { return found };
+        let Some(falls) = falls else { return Ok((found?, decks)) };
         decks.remove(falls);
     }
-    equilibrium_rises(scene, ctx, placed, (water, pool), (constraints, sheltered))
+    Ok((equilibrium_rises(scene, ctx, placed, (water, pool), (constraints, sheltered))?, decks))
 }
 
 /// Returns the rise (m) of each body to its equilibrium; 0 for one at a given height. `sheltered` tells which lie in dry hollows.
@@ -233,8 +253,22 @@ fn enters<const D: usize>(hollow: &Hollow<D>, pose: &Pose<D>, body: &WaterBody<D
 }
 
 impl<const D: usize> PlacedSolids<D> {
+    /// Returns the same constraints, which the scene gives for the solids before they turned to rest, between the solids at rest.
+    ///
+    /// # Errors
+    /// `Scene` if a rope is shorter than the distance of its ends there.
+    pub(super) fn moved(&self, ctx: &Context, constraints: Constraints<D>) -> Result<Constraints<D>> {
+        let now: Vec<Kinematics<D>> = self.specs.iter().map(SolidSpec::initial_kinematics).collect();
+        let has_moved = self.given.iter().zip(&now).any(|(given, now)| given.pose != now.pose);
+        let made = if has_moved { constraints.moved(&self.given, &now) } else { constraints };
+        for (i, rope) in made.ropes.iter().enumerate() {
+            check_rope_reach(rope).map_err(|e| ctx.with_location(e, &format!("rope.{i}")))?;
+        }
+        Ok(made)
+    }
+
     /// Returns the level (m) from which the draft of solid number `i` is measured.
-    fn level(&self, i: usize) -> f64 {
+    pub(super) fn level(&self, i: usize) -> f64 {
         self.levels[i].unwrap_or(self.highest)
     }
 

@@ -170,7 +170,9 @@ impl Scene {
         let placed = placed_solids::<D>(&scene, ctx, &water, true).map_err(|e| ctx.with_warnings(e))?;
         let solids = &placed.specs;
         require_plausible_units(ctx, &self.solid, &water, solids)?;
-        let constraints = build_constraints(&scene, ctx, solids, &placed.levels).map_err(|e| ctx.with_warnings(e))?;
+        let constraints = build_constraints(&scene, ctx, solids, &placed.levels)
+            .and_then(|constraints| placed.moved(ctx, constraints))
+            .map_err(|e| ctx.with_warnings(e))?;
         let domain = scene.domain.as_ref().map(|d| Bounds { min: vector(&d.min), max: vector(&d.max) });
         if let Some(domain) = &domain {
             require_inside_domain(ctx, domain, &water, solids)?;

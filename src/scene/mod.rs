@@ -9,6 +9,7 @@
 //! `docs/reference/scene.md` explains every key.
 
 mod afloat;
+mod at_rest;
 mod build;
 mod bundled;
 mod constraints;

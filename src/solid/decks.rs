@@ -32,11 +32,21 @@ pub(crate) fn deck_of<const D: usize>(
     i: usize,
     dp: f64,
 ) -> Option<usize> {
+    let &[deck] = &supports_of(specs, poses, constraints, i, dp)[..] else { return None };
+    matches!(specs[deck].role, Role::Free(_)).then_some(deck)
+}
+
+/// Returns the solids on which solid number `i` stands with the solids at these poses.
+pub(crate) fn supports_of<const D: usize>(
+    specs: &[&SolidSpec<D>],
+    poses: &[Pose<D>],
+    constraints: &Constraints<D>,
+    i: usize,
+    dp: f64,
+) -> Vec<usize> {
     let solid = |k: usize| (&specs[k].shape, &poses[k]);
     let below = |j: &usize| *j != i && constraints.can_touch(i, *j) && stands_on(solid(i), solid(*j), REACH * dp);
-    let mut supports = (0..specs.len()).filter(below);
-    let (deck, None) = (supports.next()?, supports.next()) else { return None };
-    matches!(specs[deck].role, Role::Free(_)).then_some(deck)
+    (0..specs.len()).filter(below).collect()
 }
 
 /// Returns the joint that takes the place of the contact of solid number `upper` with its deck.

@@ -170,7 +170,11 @@ impl<'a, const D: usize> Hull<'a, D> {
     }
 
     fn sinking_error(&self, pose: &Pose<D>, mass: f64, whole: f64) -> Error {
-        let (part, [mass, whole]) = (mass / whole, [mass, whole].map(four_digits));
+        let (part, lifted, [mass, whole]) = (mass / whole, mass <= 0.0, [mass, whole].map(four_digits));
+        if lifted {
+            let what = format!("the body leaves the water: with its loads its mass is {mass}");
+            return Error::scene(what).help("make it heavier, or what lifts it weaker");
+        }
         if self.rim_height(pose).is_finite() {
             let what = format!(
                 "the hull floods: its mass {mass} is {part:.3} of the {whole} of water that it displaces with the water at \

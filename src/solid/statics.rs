@@ -22,7 +22,7 @@ use super::{
 };
 use crate::math::{Bivector, Bounds, Pose, Vector};
 
-pub(crate) use linkage::{FreeRest, free_rest};
+pub(crate) use linkage::{FreeRest, free_rest, poses_at_rest};
 pub(crate) use strength::Overload;
 pub(crate) use support::Support;
 pub(crate) use ties::MooredEnd;
@@ -157,14 +157,14 @@ impl<'a, const D: usize> StaticSystem<'a, D> {
             spec.ends.iter().zip(forces).filter_map(pull).collect::<Vec<_>>()
         });
         let forces = constraints.forces.iter().filter_map(force).chain(moored).collect();
+        let start: Vec<Kinematics<D>> = solids.iter().map(|solid| solid.initial_kinematics()).collect();
         let drive = |joint: &JointSpec<D>| {
             let (along, force, stiffness, largest) = joint.steady_drive()?;
-            let bodies = joint.between.map(number);
+            let (bodies, force) = (joint.between.map(number), force - stiffness * joint.coordinate_at_start(&start));
             (force != 0.0 || stiffness != 0.0).then_some(Drive { bodies, along, force, stiffness, largest })
         };
         let drives = constraints.joints.iter().filter_map(drive).collect();
         let way = rise_directions(solids, constraints, &groups);
-        let start = solids.iter().map(|solid| solid.initial_kinematics()).collect();
         let (rise, held) = (vec![0.0; solids.len()], groups.held);
         let joints = constraints.joints.clone();
         let moored = Vec::new();

@@ -279,6 +279,14 @@ impl SolidConfig {
         self.at.as_ref().is_some_and(|at| at.draft == Some(DraftChoice::Equilibrium))
     }
 
+    /// Whether the scene gives its tilt: an angle that is more than a heading.
+    pub(crate) fn gives_tilt(&self) -> bool {
+        self.at.as_ref().is_some_and(|at| {
+            let is_heading = |turn: &[f64]| turn.len() == 3 && turn[..2] == [0.0, 0.0] && turn[2] != 0.0;
+            at.angle_deg.is_some() || at.turn_deg.as_ref().is_some_and(|turn| !is_heading(turn))
+        })
+    }
+
     /// The solid in the water `pool`. Drafts are measured from the level of the water at its place. One that starts at its equilibrium
     /// is placed with its lowest point at the level.
     pub(crate) fn build<const D: usize>(&self, ctx: &Context, key: &str, pool: &StillWater<D>) -> Result<SolidSpec<D>> {

@@ -87,6 +87,9 @@ pub struct JointSpec<const D: usize> {
     pub contacts_enabled: bool,
     /// When it acts, and the load under which it breaks.
     pub lifetime: Lifetime,
+    /// Its frames in the two solids, if these have moved since `at` and `axis` were given; by default those of `at` and `axis` at the
+    /// start.
+    pub(in crate::solid) moved_frames: Option<[Pose<D>; 2]>,
 }
 
 impl<const D: usize> JointSpec<D> {
@@ -110,6 +113,7 @@ impl<const D: usize> JointSpec<D> {
             motor: None,
             contacts_enabled: false,
             lifetime: Lifetime::default(),
+            moved_frames: None,
         }
     }
 
@@ -306,12 +310,22 @@ impl<const D: usize> Joint<D> {
 impl<const D: usize> JointSpec<D> {
     /// Its frame in both solids, which start as `start`; x is its axis.
     pub(in crate::solid) fn frames(&self, start: &[Kinematics<D>]) -> [Pose<D>; 2] {
+        if let Some(frames) = self.moved_frames {
+            return frames;
+        }
         let axis = if D == 2 && self.kind == JointKind::Hinge { Vector::zeros() } else { self.axis };
         let world = Pose { position: self.at, rotation: frame(&axis) };
         self.between.map(|end| {
             let pose = kinematics_of_end(end, start).pose;
             Pose { position: pose.local(&world.position), rotation: pose.rotation.transpose() * world.rotation }
         })
+    }
+
+    /// Its coordinate (m or rad) between solids that start as `start`: 0 unless they have moved since `at` and `axis` were given.
+    pub(crate) fn coordinate_at_start(&self, start: &[Kinematics<D>]) -> f64 {
+        let Some(frames) = self.moved_frames else { return 0.0 };
+        let joint = Joint { spec: self.clone(), frames };
+        joint.position(&joint.end_kinematics(start))
     }
 
     /// The mode of its one coordinate, if it is of a kind that has one.

@@ -216,7 +216,7 @@ impl<const D: usize> Constraints<D> {
     pub(crate) fn check(&self, solids: &[SolidSpec<D>]) -> Result<()> {
         (0..self.joints.len()).try_for_each(|i| self.check_joint(i, solids))?;
         self.springs.iter().try_for_each(|spring| check_spring(spring, solids))?;
-        self.ropes.iter().try_for_each(|rope| check_rope(rope, solids))?;
+        self.ropes.iter().try_for_each(|rope| check_rope(rope, solids).and_then(|()| check_rope_reach(rope)))?;
         self.moorings.iter().try_for_each(|mooring| check_mooring(mooring, solids))?;
         check_mooring_points(&self.mooring_points, &self.moorings)?;
         self.forces.iter().try_for_each(|force| check_force(force, solids))?;
@@ -336,14 +336,23 @@ pub(crate) fn check_rope<const D: usize>(rope: &RopeSpec<D>, solids: &[SolidSpec
     let who = format!("rope \"{}\"", rope.name);
     check_line(&who, &rope.ends, solids)?;
     rope.lifetime.check(&who)?;
-    let start = start_length(&rope.ends);
-    let length = rope.max_length.unwrap_or(start);
+    let length = rope.max_length.unwrap_or_else(|| start_length(&rope.ends));
     if !(length > 0.0 && length.is_finite()) {
         return Err(Error::scene(format!("{who} is {length} m long")).help("give it a length above 0, m"));
     }
+    Ok(())
+}
+
+/// Refuses a rope that is shorter than the distance of its ends at the start.
+///
+/// # Errors
+/// `Scene`, as [`Constraints::check`].
+pub(crate) fn check_rope_reach<const D: usize>(rope: &RopeSpec<D>) -> Result<()> {
+    let start = start_length(&rope.ends);
+    let length = rope.max_length.unwrap_or(start);
     // Room for the round-off of places written in decimals.
     if rope.lifetime.has_begun(0.0) && start > length * (1.0 + 1e-9) {
-        let what = format!("{who} is {length} m long, and its ends start {start} m apart");
+        let what = format!("rope \"{}\" is {length} m long, and its ends start {start} m apart", rope.name);
         return Err(Error::scene(what).help(format!("write  length = {start:.6}  or more, or start nearer")));
     }
     Ok(())

@@ -8,6 +8,7 @@ pub(crate) mod lifetime;
 pub(crate) mod lines;
 pub(crate) mod links;
 mod motor;
+mod moved;
 mod reactions;
 pub(in crate::solid) mod series;
 

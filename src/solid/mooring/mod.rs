@@ -20,7 +20,7 @@ pub use attached::MooringReading;
 pub(crate) use forces::{BedPlane, NodeSurroundings};
 pub(crate) use line::{LineState, MooringLine};
 pub(crate) use network::{Junctions, LineStep};
-pub(crate) use pretension::forces_at_rest;
+pub(crate) use pretension::{end_stiffness_at_rest, forces_at_rest};
 pub use specification::{ClumpSpec, LineDamping, LineType, MooringPointSpec, MooringSpec};
 pub(crate) use specification::{SHORTEST_SHARE, check_mooring, check_mooring_points, junctions};
 pub use winch::{Winch, WinchTarget};

@@ -6,7 +6,7 @@ use super::{
     specification::{MooringPointSpec, MooringSpec, junctions},
 };
 use crate::{
-    math::Vector,
+    math::{Matrix, Vector},
     solid::{Role, SolidSpec, statics::WaterAtRest},
 };
 
@@ -15,6 +15,9 @@ const NORMAL_STEP: f64 = 1e-4;
 
 /// Depth below the surface at which a node is all wet, over the length of the shortest segment.
 const WET_DEPTH: f64 = 0.1;
+
+/// Half of the displacement that gives a stiffness, over the length of the line.
+const STIFFNESS_STEP: f64 = 1e-3;
 
 /// The force (N) on the support of each end of each line between `solids` at the start. Nodes below the surface are wet.
 pub(crate) fn forces_at_rest<const D: usize>(
@@ -50,4 +53,23 @@ pub(crate) fn forces_at_rest<const D: usize>(
     junctions.attach(&mut all, &bodies);
     junctions.bring_to_rest(&mut all, &around, &gravity);
     lines.into_iter().map(|line| line.state.end_forces).collect()
+}
+
+/// The force (N/m) against a displacement of end `k` of a line in no mooring point, with the line at rest.
+pub(crate) fn end_stiffness_at_rest<const D: usize>(
+    spec: &MooringSpec<D>,
+    k: usize,
+    solids: &[&SolidSpec<D>],
+    water: &WaterAtRest,
+) -> Matrix<D> {
+    let way = STIFFNESS_STEP * spec.length;
+    let column = |axis: usize| {
+        let force = |way: f64| {
+            let mut moved = spec.clone();
+            moved.ends[k].at[axis] += way;
+            forces_at_rest((&[moved], &[]), solids, water)[0][k]
+        };
+        (force(-way) - force(way)) / (2.0 * way)
+    };
+    Matrix::from_columns(&(0..D).map(column).collect::<Vec<_>>())
 }

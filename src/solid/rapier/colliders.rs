@@ -13,7 +13,7 @@ use super::{D, from_point, to_frame, to_point};
 use crate::{
     error::{Error, Result},
     geometry::{Shape, wall::is_closed},
-    math::{Bounds, Pose, Vector},
+    math::{Bounds, Pose, Vector, format::three_digits},
     solid::{
         Constraints, Kinematics, Role, SolidSpec,
         containment::{PlacedSolid, depth_inside_mesh},
@@ -153,7 +153,10 @@ pub(super) fn check_overlap(
                 });
                 let what = format!("\"{}\" starts {depth:.5} m inside \"{}\"", body.0.name, other.0.name);
                 let padded = if skins > 0.0 { ", contact skins counted" } else { "" };
-                return Err(Error::scene(what + padded).help(help).at("", None, format!("solid.{inner}.at")));
+                // It may have turned to its rest.
+                let turn = body.1.rotation_vector().iter().map(|x| x * x).sum::<f64>().sqrt().to_degrees();
+                let turned = if turn > 1e-3 { format!(", turned by {}°", three_digits(turn)) } else { String::new() };
+                return Err(Error::scene(what + padded + &turned).help(help).at("", None, format!("solid.{inner}.at")));
             }
         }
     }

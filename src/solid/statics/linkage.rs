@@ -10,10 +10,13 @@
 //! Newton's method finds it by steps in the null space Z of J, with the stiffness Zᵀ K Z, K = −∂(f + Jᵀ λ)/∂x. A step along an axis
 //! of negative stiffness has the sign of the force, and so leads to a minimum of the energy. A rope that would push, or a stop that would
 //! pull, lets go. The natural frequencies are those of Zᵀ K Z φ = ω² Zᵀ M Z φ. M has no added mass of the water.
+//!
+//! Floats that are placed at rest keep their place: rows of J with C = 0 hold the horizontal place of the centre of mass of jointed
+//! bodies, and in 3-D their common turn about the vertical. The reactions of these rows bear what would make them drift.
 
 use nalgebra::{DMatrix, DVector, Dyn, SymmetricEigen};
 
-use super::{Line, StaticSystem, up};
+use super::{Line, StaticBody, StaticSystem, up};
 use crate::{
     math::{Bivector, Pose, Vector, rotated_tensor},
     solid::{
@@ -92,6 +95,9 @@ struct TiedBodies<'a, const D: usize> {
     size: f64,
     /// Weight times size, N m.
     scale: f64,
+    /// Places in `members` of bodies between which there are joints, whose common centre of mass keeps its horizontal place and whose
+    /// common turn about the vertical is held.
+    staying: Vec<Vec<usize>>,
 }
 
 /// The equations at a place.
@@ -110,34 +116,86 @@ struct Linearised {
 
 /// Returns the rest of body `i` with all that is tied to it. `None` if a body comes to lie on the bottom, or if the search fails.
 pub(crate) fn free_rest<const D: usize>(system: &StaticSystem<D>, i: usize) -> Option<FreeRest> {
-    let members = system.tied_to(i);
-    let size = members.iter().map(|j| system.size(*j)).fold(0.0, f64::max);
-    let weight: f64 = members.iter().map(|j| system.bodies[*j].body.mass * system.water.g).sum();
-    let is_free = |k: usize, axis: usize| {
-        let body = system.bodies[members[k]].body;
-        !if axis < D { body.locked_translations[axis] } else { body.locked_rotations[axis - D] }
-    };
-    let axes = D + Bivector::<D>::COMPONENTS;
-    let coordinates: Vec<(usize, usize)> = (0..members.len())
-        .flat_map(|k| (0..axes).map(move |axis| (k, axis)))
-        .filter(|(k, axis)| is_free(*k, *axis))
-        .collect();
-    let is_member = |solid: usize| system.number(solid).is_some_and(|j| members.contains(&j));
-    let touches = |joint: &&JointSpec<D>| joint.between.into_iter().flatten().any(is_member);
-    let joints = system.joints.iter().filter(touches).map(|joint| Joint::new(joint.clone(), &system.start)).collect();
-    let holds = |line: &&Line<D>| line.bodies.into_iter().flatten().any(|j| members.contains(&j));
-    let (ropes, springs) = system.lines.iter().filter(holds).partition(|line| line.is_rope);
-    let tied = TiedBodies { system, joints, ropes, springs, coordinates, size, scale: weight * size, members };
-    if tied.coordinates.is_empty() {
-        return None;
-    }
-    let found = tied.rest(NUDGE)?;
+    let tied = TiedBodies::of(system, i, &|_, _| false)?;
+    let (found, _) = tied.rest(NUDGE)?;
     // A mast that a stay keeps from falling to one side falls to the other.
     let other = if found.starts_unstable && !found.is_unstable { tied.rest(-NUDGE) } else { None };
-    Some(other.filter(|other| other.is_unstable).unwrap_or(found))
+    Some(other.map(|(other, _)| other).filter(|other| other.is_unstable).unwrap_or(found))
 }
 
-impl<const D: usize> TiedBodies<'_, D> {
+/// Returns the poses at rest of body `i` and of all that is tied to it, by the number of the solid. The solids for which `stays` holds,
+/// with those on joints to them, keep their horizontal place, and all keep their turn about the axes for which `is_kept` holds. `None` if there is no stable rest near the start, if
+/// there are two as for a body that heels to one side as well as to the other, or if [`free_rest`] has none.
+pub(crate) fn poses_at_rest<const D: usize>(
+    system: &StaticSystem<D>,
+    i: usize,
+    stays: &dyn Fn(usize) -> bool,
+    is_kept: &dyn Fn(usize, usize) -> bool,
+) -> Option<Vec<(usize, Pose<D>)>> {
+    let mut tied = TiedBodies::of(system, i, is_kept)?;
+    tied.staying = tied.staying_bodies(stays);
+    let stable = |nudge: f64| tied.rest(nudge).filter(|(found, _)| !found.is_unstable);
+    let (found, at) = stable(NUDGE)?;
+    if found.starts_unstable {
+        let (_, other) = stable(-NUDGE)?;
+        let differs = |k: usize| {
+            let [one, two] = [&at, &other].map(|at| at[tied.solid(k)].pose);
+            (one.rotation - two.rotation).amax() > NEUTRAL.sqrt()
+        };
+        if (0..tied.members.len()).any(differs) {
+            return None;
+        }
+    }
+    Some((0..tied.members.len()).map(|k| (tied.solid(k), at[tied.solid(k)].pose)).collect())
+}
+
+impl<'a, const D: usize> TiedBodies<'a, D> {
+    /// Body `i` with all that is tied to it; `None` if nothing can move. `is_kept` tells about which axes a solid does not turn.
+    fn of(system: &'a StaticSystem<'a, D>, i: usize, is_kept: &dyn Fn(usize, usize) -> bool) -> Option<Self> {
+        let members = system.tied_to(i);
+        let size = members.iter().map(|j| system.size(*j)).fold(0.0, f64::max);
+        let weight: f64 = members.iter().map(|j| system.bodies[*j].body.mass * system.water.g).sum();
+        let is_free = |k: usize, axis: usize| {
+            let StaticBody { body, solid, .. } = &system.bodies[members[k]];
+            match axis.checked_sub(D) {
+                None => !body.locked_translations[axis],
+                Some(axis) => !body.locked_rotations[axis] && !is_kept(*solid, axis),
+            }
+        };
+        let axes = D + Bivector::<D>::COMPONENTS;
+        let coordinates: Vec<(usize, usize)> = (0..members.len())
+            .flat_map(|k| (0..axes).map(move |axis| (k, axis)))
+            .filter(|(k, axis)| is_free(*k, *axis))
+            .collect();
+        let is_member = |solid: usize| system.number(solid).is_some_and(|j| members.contains(&j));
+        let touches = |joint: &&JointSpec<D>| joint.between.into_iter().flatten().any(is_member);
+        let joints = system.joints.iter().filter(touches);
+        let joints = joints.map(|joint| Joint::new(joint.clone(), &system.start)).collect();
+        let holds = |line: &&Line<D>| line.bodies.into_iter().flatten().any(|j| members.contains(&j));
+        let (ropes, springs) = system.lines.iter().filter(holds).partition(|line| line.is_rope);
+        let (scale, staying) = (weight * size, Vec::new());
+        let made = Self { system, joints, ropes, springs, coordinates, size, scale, members, staying };
+        (!made.coordinates.is_empty()).then_some(made)
+    }
+
+    /// Those between which there are joints, if `stays` holds for one of them and no joint ties them to a solid that is not free: such a
+    /// joint holds the place, or leads along a guide.
+    fn staying_bodies(&self, stays: &dyn Fn(usize) -> bool) -> Vec<Vec<usize>> {
+        let assembly = |k: &usize| self.system.assembly[self.members[*k]];
+        let number = |end: Option<usize>| end.and_then(|solid| self.system.number(solid));
+        let is_grounded = |own: usize| {
+            let ends = self.joints.iter().map(|joint| joint.spec.between.map(number));
+            ends.into_iter()
+                .any(|ends| ends.contains(&None) && ends.into_iter().flatten().any(|j| self.system.assembly[j] == own))
+        };
+        let mut all: Vec<usize> = (0..self.members.len()).map(|k| assembly(&k)).collect();
+        all.sort_unstable();
+        all.dedup();
+        let bodies = |own: &usize| (0..self.members.len()).filter(|k| assembly(k) == *own).collect::<Vec<_>>();
+        all.retain(|own| !is_grounded(*own) && bodies(own).iter().any(|k| stays(self.solid(*k))));
+        all.iter().map(bodies).collect()
+    }
+
     fn solid(&self, k: usize) -> usize {
         self.system.bodies[self.members[k]].solid
     }
@@ -277,13 +335,27 @@ impl<const D: usize> TiedBodies<'_, D> {
         locks
     }
 
-    /// J of the `active` ones of these conditions.
+    /// J of the `active` ones of these conditions, and of those that keep the place.
     fn rows(&self, all: &[Condition<D>], active: &[bool]) -> DMatrix<f64> {
         let held: Vec<&Condition<D>> = all.iter().zip(active).filter(|(_, held)| **held).map(|(own, _)| own).collect();
-        DMatrix::from_fn(held.len(), self.coordinates.len(), |row, c| {
+        let mass = |k: &usize| self.system.bodies[self.members[*k]].body.mass;
+        // The horizontal translations; in 3-D, the turn about the vertical.
+        let axes: &[usize] = if D == 2 { &[0] } else { &[0, 1, 5] };
+        let kept: Vec<_> =
+            self.staying.iter().flat_map(|bodies| axes.iter().map(move |axis| (bodies, *axis))).collect();
+        DMatrix::from_fn(held.len() + kept.len(), self.coordinates.len(), |row, c| {
             let (k, axis) = self.coordinates[c];
-            let own = held[row].loads.iter().filter(|(solid, _)| *solid == Some(self.solid(k)));
-            own.map(|(_, load)| self.component(load, axis)).sum()
+            match held.get(row) {
+                Some(own) => {
+                    let own = own.loads.iter().filter(|(solid, _)| *solid == Some(self.solid(k)));
+                    own.map(|(_, load)| self.component(load, axis)).sum()
+                }
+                None => {
+                    let (bodies, own) = kept[row - held.len()];
+                    let share = || mass(&k) / bodies.iter().map(mass).sum::<f64>();
+                    if own == axis && bodies.contains(&k) { share() } else { 0.0 }
+                }
+            }
         })
     }
 
@@ -293,7 +365,7 @@ impl<const D: usize> TiedBodies<'_, D> {
         let afloat: Vec<Load<D>> = (0..self.members.len()).map(|k| self.load_afloat(k, solids)).collect();
         let (force, rows) = (self.forces(solids, &afloat), self.rows(all, active));
         let held = all.iter().zip(active).filter(|(_, held)| **held).map(|(own, _)| own.off);
-        let off = DVector::from_iterator(rows.nrows(), held);
+        let off = DVector::from_iterator(rows.nrows(), held.chain(std::iter::repeat(0.0)).take(rows.nrows()));
         // Conditions that repeat others, as those of a loop in space, have singular values of 0.
         let SymmetricEigen { eigenvectors, eigenvalues } = SymmetricEigen::new(rows.tr_mul(&rows));
         let least = 1e-10 * eigenvalues.amax();
@@ -339,8 +411,8 @@ impl<const D: usize> TiedBodies<'_, D> {
         step
     }
 
-    /// Finds the rest; `nudge` (rad) leads away from an unstable one.
-    fn rest(&self, nudge: f64) -> Option<FreeRest> {
+    /// Finds the rest, with the solids there; `nudge` (rad) leads away from an unstable one.
+    fn rest(&self, nudge: f64) -> Option<(FreeRest, Vec<Kinematics<D>>)> {
         let mut at = self.start();
         let mut active: Vec<bool> = self.conditions(&at).iter().map(|own| !own.is_one_sided).collect();
         let (mut longest, mut last) = (LARGEST, DVector::zeros(self.coordinates.len()));
@@ -364,7 +436,8 @@ impl<const D: usize> TiedBodies<'_, D> {
                     continue;
                 }
                 let is_closed = all.iter().zip(&active).all(|(own, held)| !held || own.off.abs() < NEUTRAL);
-                return if is_closed { self.found(&at, (&all, &active), &here, starts_unstable) } else { None };
+                let found = if is_closed { self.found(&at, (&all, &active), &here, starts_unstable) } else { None };
+                return found.map(|found| (found, at));
             }
             // Where the forces have a kink, steps to and fro become shorter.
             longest = if step.dot(&last) < 0.0 { 0.5 * longest.min(last.amax()) } else { LARGEST.min(1.5 * longest) };
@@ -373,7 +446,7 @@ impl<const D: usize> TiedBodies<'_, D> {
             last = step;
         }
         let none = |is_unstable| FreeRest { is_unstable, starts_unstable: true, ..FreeRest::default() };
-        is_unstable.filter(|is| *is).map(none)
+        is_unstable.filter(|is| *is).map(|is| (none(is), at))
     }
 
     /// The rest with the solids there; `None` if a body lies on the bottom.

@@ -60,7 +60,7 @@ fn a_body_with_an_offset_centre_of_mass_lists_by_the_hydrostatic_angle() -> Resu
     for aside in [0.012, -0.02] {
         let words = format!(
             "[[solid]]\nname = \"barge\"\nshape = {{ box = {{ size = [0.4, 0.2] }} }}\n\
-             free = {{ density = 500, centre_offset = [{aside}, -0.02] }}\nat = {{ x = 0.6, draft = \"equilibrium\" }}"
+             free = {{ density = 500, centre_offset = [{aside}, -0.02] }}\nat = {{ x = 0.6, draft = \"equilibrium\", angle_deg = 0 }}"
         );
         let mut sim = afloat(60.0, 16.0, &words)?;
         let exact = hydrostatic_list(&sim, 1)?.to_degrees();
@@ -99,7 +99,7 @@ fn a_catamaran_floats_on_its_hulls_and_lists_by_the_hydrostatic_angle() -> Resul
     let shape = format!("{{ compound = [{}, {}, {deck}] }}", hull(-0.2), hull(0.2));
     let words = format!(
         "[[solid]]\nname = \"cat\"\nshape = {shape}\nfree = {{ mass = 30, centre_offset = [0.02, 0] }}\n\
-         at = {{ x = 0.6, draft = \"equilibrium\" }}"
+         at = {{ x = 0.6, draft = \"equilibrium\", angle_deg = 0 }}"
     );
     let mut sim = afloat(60.0, 16.0, &words)?;
     let exact = hydrostatic_list(&sim, 1)?;

@@ -20,6 +20,7 @@ mod load_breakdown;
 mod many_bodies;
 mod meshes;
 mod natural_periods;
+mod rest_poses;
 mod shapes;
 mod thin_parts;
 mod trim;

@@ -61,7 +61,7 @@ fn hydrostatic_inclination(hull: &SolidSpec<3>) -> Result<[f64; 2]> {
 #[test]
 fn a_hull_with_a_centre_of_mass_off_both_axes_lists_and_trims_by_the_hydrostatic_angles() -> Result<()> {
     // 12 × 10 × 6 dp, half under water.
-    let words = "shape = { box = { size = [0.6, 0.5, 0.3] } }\nat = { x = 0.45, y = 0.4, draft = \"equilibrium\" }\n\
+    let words = "shape = { box = { size = [0.6, 0.5, 0.3] } }\nat = { x = 0.45, y = 0.4, draft = \"equilibrium\", turn_deg = [0, 0, 0] }\n\
                  free = { density = 500, centre_offset = [0.02, 0.0125, -0.03] }";
     let mut sim = Simulation::new(pool(words)?)?;
     let exact = hydrostatic_inclination(&sim.system().solids()[1].spec)?.map(f64::to_degrees);

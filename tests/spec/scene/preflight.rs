@@ -156,7 +156,7 @@ fn a_body_in_too_viscous_water_is_found_with_the_alpha_that_helps() {
 type Fault =
     (&'static str, &'static [(&'static str, &'static str)], &'static str, &'static [(&'static str, &'static str)]);
 
-const FAULTS: [Fault; 32] = [
+const FAULTS: [Fault; 33] = [
     ("slow_sound", &[("model.c0_factor", "5")], "c0 = 20 ", &[("model.c0", "20")]),
     // A plate with a single row of boundary particles moves water like a thick one: 0.4 m × 2π/s.
     (
@@ -175,7 +175,16 @@ const FAULTS: [Fault; 32] = [
         "by 0.017 m",
         &[("solid.box.shape.box.size", "[0.2, 0.2]"), ("solid.box.free.centre_offset", "[0.0, -0.017]")],
     ),
-    ("lists", &[("solid.box.free.centre_offset", "[0.005, 0.0]")], "angle_deg", &[]),
+    (
+        "lists",
+        &[
+            ("solid.box.free.centre_offset", "[0.005, 0.0]"),
+            ("solid.box.at", "{ x = 1.0, draft = \"equilibrium\", angle_deg = 0.0 }"),
+        ],
+        "angle_deg",
+        &[("solid.box.free.centre_offset", "[0.005, 0.0]")],
+    ),
+    ("turned_to_rest", &[("solid.box.free.centre_offset", "[0.005, 0.0]")], "angle_deg = 0.0", &[]),
     // It can displace 20 kg/m, and has 10 kg/m of its own.
     (
         "ballast_sinks",

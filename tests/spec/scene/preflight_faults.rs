@@ -235,7 +235,7 @@ fn water_of_a_hull_off_the_lattice_or_above_its_rim_is_told() {
 
 #[test]
 fn an_equilibrium_draft_beside_a_load_that_a_joint_lets_through_is_noted() {
-    let float = body("b", [0.8, 0.3], 300.0, "x = 1.0, draft = \"equilibrium\"");
+    let float = body("b", [0.8, 0.3], 300.0, "x = 1.0, draft = \"equilibrium\", angle_deg = 0.0");
     let hinge = "[[joint]]\nname = \"j\"\nkind = \"hinge\"\nbetween = [\"b\"]\nat = [0.6, 0.6]\n";
     let force = "[[force]]\nname = \"f\"\non = \"b\"\nforce = [0.0, -300.0]\n";
     let found = finding(&format!("{WATER}{TANK}{float}{hinge}{force}"), "off_draft");

@@ -240,7 +240,7 @@ fn hinged_barges_are_told_with_the_trim_of_each_part() {
     let (length, mass, g, out) = (0.6, 60.0, 9.81, 0.004);
     let barge = |name: &str, x: f64, shift: f64| {
         let free = format!("density = 500.0, centre_offset = [{shift}, 0.0]");
-        block(name, [length, 0.2], &format!("x = {x}, draft = \"equilibrium\""), &free)
+        block(name, [length, 0.2], &format!("x = {x}, draft = \"equilibrium\", angle_deg = 0.0"), &free)
     };
     let barges = |out: f64| {
         let joint = "[[joint]]\nname = \"j\"\nkind = \"hinge\"\nbetween = [\"left\", \"right\"]\nat = [0.8, 0.5]\n";
@@ -270,7 +270,10 @@ fn hinged_barges_are_told_with_the_trim_of_each_part() {
 fn a_body_on_a_hinge_out_of_balance_is_told_with_its_turn() {
     let hinged = |free: &str, motor: &str| {
         let joint = format!("[[joint]]\nname = \"j\"\nkind = \"hinge\"\nbetween = [\"b\"]\nat = [0.4, 0.4]\n{motor}\n");
-        report(&format!("{TANK}{SEA}{}{joint}", block("b", [0.4, 0.2], "x = 0.8, draft = \"equilibrium\"", free)))
+        report(&format!(
+            "{TANK}{SEA}{}{joint}",
+            block("b", [0.4, 0.2], "x = 0.8, draft = \"equilibrium\", angle_deg = 0.0", free)
+        ))
     };
     let stiffness = 9.81 * (1000.0 * (0.6f64.powi(3) - 0.2f64.powi(3)) / 3.0 - 40.0 * 0.05);
     let off_centre = ("density = 500.0, centre_offset = [0.1, 0.0]", "", -40.0 * 9.81 * 0.1);

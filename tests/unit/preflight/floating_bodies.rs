@@ -178,7 +178,7 @@ fn a_body_out_of_trim_is_told_the_turn_to_its_rest() {
 #[test]
 fn the_heel_of_tied_bodies_is_an_estimate_of_45_degrees_at_most() {
     let force = "[[force]]\nname = \"push\"\non = \"raft\"\nforce = [0.0, -20.0]\nat = [0.9, 0.75]\n";
-    let raft = solid("raft", [0.6, 0.2], 300.0, "x = 0.8, draft = \"equilibrium\"");
+    let raft = solid("raft", [0.6, 0.2], 300.0, "x = 0.8, draft = \"equilibrium\", angle_deg = 0.0");
     let rest = |found: &Preflight| found.bodies[0].afloat.clone().unwrap();
     let found = judged(&format!("{raft}{force}"));
     assert!(rest(&found).heel_is_estimate && finding(&found, "lists").what.contains("estimated for small angles"));
