@@ -29,8 +29,9 @@ impl<const D: usize> Bivector<D> {
     }
 
     /// The torque of a force `f` (N) acting at the arm `r` (m): f rᵀ − r fᵀ.
+    #[inline]
     pub fn torque(r: &Vector<D>, f: &Vector<D>) -> Self {
-        Self(f * r.transpose() - r * f.transpose())
+        Self(Matrix::from_fn(|i, j| f[i] * r[j] - r[i] * f[j]))
     }
 
     /// The velocity that this spin gives at the arm `r` (m): Ω r.
@@ -97,6 +98,7 @@ pub(crate) fn rotated_tensor<const D: usize>(rotation: &Matrix<D>, tensor: &Matr
 
 impl<const D: usize> std::ops::Add for Bivector<D> {
     type Output = Self;
+    #[inline]
     fn add(self, other: Self) -> Self {
         Self(self.0 + other.0)
     }
@@ -208,6 +210,7 @@ impl<const D: usize> Bounds<D> {
     }
 
     /// Whether `x` lies inside (faces included). False for a non-finite point.
+    #[inline]
     pub(crate) fn contains(&self, x: &Vector<D>) -> bool {
         (0..D).all(|i| x[i] >= self.min[i] && x[i] <= self.max[i])
     }
