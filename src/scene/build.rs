@@ -170,13 +170,10 @@ impl Scene {
         let placed = placed_solids::<D>(&scene, ctx, &water, true).map_err(|e| ctx.with_warnings(e))?;
         let solids = &placed.specs;
         require_plausible_units(ctx, &self.solid, &water, solids)?;
-        let constraints = build_constraints(&scene, ctx, solids, &placed.levels)
-            .and_then(|constraints| placed.moved(ctx, constraints))
-            .map_err(|e| ctx.with_warnings(e))?;
+        let constrained = || placed.moved(ctx, build_constraints(&scene, ctx, solids, &placed.levels)?);
+        let constraints = constrained().map_err(|e| ctx.with_warnings(e))?;
         let domain = scene.domain.as_ref().map(|d| Bounds { min: vector(&d.min), max: vector(&d.max) });
-        if let Some(domain) = &domain {
-            require_inside_domain(ctx, domain, &water, solids)?;
-        }
+        domain.iter().try_for_each(|domain| require_inside_domain(ctx, domain, &water, solids))?;
         let periodic = scene.periodic.clone().unwrap_or_default().build();
         let has_planes = scene.symmetry.as_ref().is_some_and(|planes| planes.build::<D>().iter().any(Option::is_some));
         periodic::check(&periodic, has_planes, &model, solids, &constraints)

@@ -124,8 +124,9 @@ pub(crate) fn free_rest<const D: usize>(system: &StaticSystem<D>, i: usize) -> O
 }
 
 /// Returns the poses at rest of body `i` and of all that is tied to it, by the number of the solid. The solids for which `stays` holds,
-/// with those on joints to them, keep their horizontal place, and all keep their turn about the axes for which `is_kept` holds. `None` if there is no stable rest near the start, if
-/// there are two as for a body that heels to one side as well as to the other, or if [`free_rest`] has none.
+/// with those on joints to them, keep their horizontal place, and all keep their turn about the axes for which `is_kept` holds. `None` if
+/// there is no stable rest near the start, if there are two, as for a body that heels to one side as well as to the other, or if
+/// [`free_rest`] has none.
 pub(crate) fn poses_at_rest<const D: usize>(
     system: &StaticSystem<D>,
     i: usize,
