@@ -198,10 +198,6 @@ pub(crate) const DEEP: f64 = 100.0;
 /// Default of h over dp in 2-D where a paddle makes waves, –.
 pub(crate) const WAVES_H_OVER_DP: f64 = 2.0;
 
-/// Default threshold of the Riemann dissipation where a paddle makes waves, –. Without waves there is none: still water, which the
-/// default h disturbs, comes to rest by this dissipation.
-const WAVES_THRESHOLD: f64 = 0.3;
-
 /// Depth over dp at which α = 0.02 gives the viscosity that deep water gets, –: a body of ten rows in water as deep as itself.
 const VISCOUS_ROWS: f64 = 10.0;
 
@@ -243,7 +239,7 @@ impl Model {
     /// The same model with the defaults of scenes in which a paddle or a face makes waves by name: gradients corrected near the surface,
     /// Riemann dissipation with a threshold, and in 2-D h = 2 dp.
     pub fn for_waves(self) -> Self {
-        let viscosity = Viscosity::Riemann(Riemann { threshold: WAVES_THRESHOLD, ..Riemann::default() });
+        let viscosity = Viscosity::Riemann(Riemann { threshold: Some(Riemann::WAVES_THRESHOLD), ..Riemann::default() });
         Self { gradient: PressureGradient::NearSurface, viscosity, ..self.h_in_2d(WAVES_H_OVER_DP) }
     }
 

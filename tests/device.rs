@@ -496,7 +496,7 @@ fn every_choice<const D: usize>(dp: f64) -> Vec<Model> {
     let viscosities = [
         Viscosity::None,
         Viscosity::Artificial(Artificial::default()),
-        Viscosity::Riemann(Riemann { threshold: 0.05, ..Riemann::default() }),
+        Viscosity::Riemann(Riemann { threshold: Some(0.05), ..Riemann::default() }),
         Viscosity::Laminar(Laminar { nu0: 1e-4 }),
         Viscosity::Sps(Sps::default()),
     ];

@@ -143,7 +143,7 @@ fn remarks(exported: &PanelledScene, asked: usize) -> String {
         if let Some(mass) = body.mass_kg.filter(|mass| (displaced / mass - 1.0).abs() > MASS) {
             text += &format!(
                 "note: \"{}\" displaces {displaced:.4} kg where it starts and has {mass:.4} kg: the panels are of its start, not of its \
-                 rest\n  at = {{ draft = \"equilibrium\" }} places it at rest, if no line or joint holds it\n",
+                 rest\n  at = {{ draft = \"equilibrium\" }} places it at rest\n",
                 body.name
             );
         }

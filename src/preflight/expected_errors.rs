@@ -60,7 +60,8 @@ pub(super) fn heights_at_gauges<const D: usize>(
     stand: &WavemakerSite<D>,
 ) -> Vec<WaveAtGauge> {
     let model = context.system.model();
-    let is_measured = D == 2 && model.gradient != PressureGradient::Plain && model.h >= WAVE_SMOOTHING * model.dp;
+    let spares_waves = model.gradient != PressureGradient::Plain && model.viscosity.spares_waves();
+    let is_measured = D == 2 && spares_waves && model.h >= WAVE_SMOOTHING * model.dp;
     if !is_measured || wave.kind != Some("regular") || wave.height_dp < generated_waves::LEAST * (1.0 - 1e-9) {
         return Vec::new();
     }

@@ -177,8 +177,10 @@ impl<const D: usize> PreflightContext<'_, D> {
         let around = |water: &&Bounds<D>| (0..D - 1).all(|i| water.min[i] <= foot[i] && foot[i] <= water.max[i]);
         let level = self.open_water.iter().filter(around).map(|water| water.max[D - 1]).reduce(f64::max)?;
         let solid = self.solids().iter().find(|solid| solid.distance(&column(level)) < -1e-9)?;
-        let beside = |r: &Vector<D>| (0..D - 1).all(|i| (r[i] - foot[i]).abs() <= self.dp());
-        if self.system.fluid().r.iter().any(|r| r[D - 1] > level && beside(r)) {
+        let beside = |r: &&Vector<D>| (0..D - 1).all(|i| (r[i] - foot[i]).abs() <= self.dp());
+        let mut heights = self.system.fluid().r.iter().filter(beside).map(|r| r[D - 1]);
+        // On a beach that is dry at the start, a gauge measures what runs up.
+        if heights.clone().next().is_none() || heights.any(|height| height > level) {
             return None;
         }
         let what = format!(

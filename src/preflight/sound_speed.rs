@@ -206,14 +206,19 @@ impl<const D: usize> PreflightContext<'_, D> {
 
     /// The depth (m) to which free body `i` falls on the joints that hold it; ∞ without any.
     fn fall_on_joints(&self, i: usize) -> f64 {
-        let centre = self.solids()[i].kinematics.centre;
+        let solid = &self.solids()[i];
+        let (lowest, pose) = (self.lowest_point(solid), &solid.kinematics.pose);
+        let corners: Vec<Vector<D>> = solid.spec.shape.bounds().corners().map(|x| pose.point(&x)).collect();
         let joints = self.system.constraints().joints.iter();
         let joints = joints.filter(|joint| self.holds(i, &joint.lifetime, joint.between));
         let depth = joints.map(|joint| match joint.kind {
             JointKind::Fixed => 0.0,
             JointKind::Slider if joint.axis.normalize()[D - 1].abs() < LEVEL => 0.0,
-            // The centre of mass falls to the lowest point of its circle.
-            JointKind::Hinge | JointKind::Ball => (centre - joint.at).norm() + centre[D - 1] - joint.at[D - 1],
+            // The farthest corner falls to the lowest point of its circle.
+            JointKind::Hinge | JointKind::Ball => {
+                let reach = corners.iter().map(|x| (x - joint.at).norm()).fold(0.0, f64::max);
+                reach + lowest - joint.at[D - 1]
+            }
             _ => f64::INFINITY,
         });
         depth.fold(f64::INFINITY, f64::min)

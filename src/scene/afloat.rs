@@ -85,7 +85,7 @@ pub(super) fn placed_solids<const D: usize>(
         placed.specs[i].pose = pose;
         placed.enclosures[i] = enclosed((i, &placed.specs[i]))?;
     }
-    note_rest(ctx, &placed.specs, &lifted);
+    note_rest(scene, ctx, &placed.specs, &lifted);
     Ok(placed)
 }
 

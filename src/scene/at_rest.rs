@@ -8,14 +8,17 @@ use super::{
     Scene,
     afloat::PlacedSolids,
     context::{Context, FileNote},
-    section::water::{StillWater, WaterBody},
+    section::{
+        solid::SolidConfig,
+        water::{StillWater, WaterBody},
+    },
     world_bounds,
 };
 use crate::{
     geometry::Shape,
     math::{Bounds, Pose, Vector, format::three_digits},
     solid::{
-        Constraints, FreeBody, Kinematics, Role, SolidSpec,
+        Constraints, FreeBody, Kinematics, Role, RopeSpec, SolidSpec,
         decks::supports_of,
         mooring::end_stiffness_at_rest,
         statics::{MooredEnd, NO_WATER, StaticBody, StaticSystem, WaterAtRest, poses_at_rest},
@@ -30,6 +33,9 @@ const CLOSE: f64 = 1e-6;
 
 /// Distance (dp) from another solid below which a body touches it.
 const TOUCH: f64 = 0.05;
+
+/// Share of its length by which a rope may be slack and still counts as taut.
+const TAUT: f64 = 1e-6;
 
 /// Way (dp) of a body below which it stays where it is lifted.
 const LEAST: f64 = 1e-3;
@@ -60,8 +66,9 @@ pub(super) fn rest_poses<const D: usize>(state: &RestState<D>, placed: &PlacedSo
     let mut tied_to: Vec<Option<usize>> = vec![None; lifted.len()];
     let mut ways = vec![0.0; lifted.len()];
     let mut given_up = vec![false; lifted.len()];
+    let follows = state.followers(&placed.specs);
     for _ in 0..PASSES {
-        let found = state.search(placed, &lifted, &poses, &given_up);
+        let found = state.search(placed, &lifted, &poses, (&given_up, &follows));
         ways.fill(0.0);
         for (tied, rest) in found {
             let first = tied[0];
@@ -99,8 +106,10 @@ pub(super) fn rest_poses<const D: usize>(state: &RestState<D>, placed: &PlacedSo
 }
 
 /// Adds a note about each body that starts at rest away from its `lifted` pose.
-pub(super) fn note_rest<const D: usize>(ctx: &Context, specs: &[SolidSpec<D>], lifted: &[Pose<D>]) {
-    for (spec, lifted) in specs.iter().zip(lifted).filter(|(spec, lifted)| spec.pose != **lifted) {
+pub(super) fn note_rest<const D: usize>(scene: &Scene, ctx: &Context, specs: &[SolidSpec<D>], lifted: &[Pose<D>]) {
+    let has_moved = |i: &usize| way(&specs[*i], &lifted[*i], &specs[*i].pose) > LEAST * scene.dp;
+    for i in (0..specs.len()).filter(has_moved) {
+        let (spec, lifted) = (&specs[i], &lifted[i]);
         let turn = spec.pose.rotation * lifted.rotation.transpose();
         // In 3-D the angle is that of the vertical.
         let angle = match D {
@@ -115,13 +124,17 @@ pub(super) fn note_rest<const D: usize>(ctx: &Context, specs: &[SolidSpec<D>], l
             false => String::new(),
         };
         let what = format!(
-            "\"{}\" starts at rest, {turned}its centre of mass {} m {way} than without that turn and taut ropes",
+            "\"{}\" starts at rest, {turned}its centre of mass {} m {way} than without that turn and taut ropes; \
+             its horizontal place stays, also where a horizontal force makes it drift",
             spec.name,
             three_digits(rise.abs())
         );
         let (turn, height) = if D == 2 { ("angle_deg = 0.0", "y") } else { ("turn_deg = [0.0, 0.0, 0.0]", "z") };
-        let remedy =
-            format!("write  {turn}  to keep its orientation, or  {height}  in place of draft to keep its height");
+        let remedy = match (scene.solid[i].is_afloat(), turned.is_empty()) {
+            (true, false) => format!("write  {turn}  to keep it upright, or  {height}  in place of draft"),
+            (true, true) => format!("write  {height}  in place of draft to keep another height"),
+            (false, _) => "it is tied to a body with  draft = \"equilibrium\",  and moves with it".into(),
+        };
         ctx.add_note(FileNote::note("turned_to_rest", what, remedy));
     }
 }
@@ -148,13 +161,36 @@ fn places_on_faces<const D: usize>(shape: &Shape<D>) -> Vec<Vector<D>> {
 type TiedRest<const D: usize> = (Vec<usize>, Option<Vec<(usize, Pose<D>)>>);
 
 impl<const D: usize> RestState<'_, D> {
+    /// Returns whether each solid moves to the rest: it starts at its equilibrium, or a joint, a deck or a rope that is taut where the bodies
+    /// are lifted ties it to one that does. Other bodies keep the place that the scene gives, even on a slack rope or a spring.
+    fn followers(&self, specs: &[SolidSpec<D>]) -> Vec<bool> {
+        let is_taut = |rope: &&RopeSpec<D>| {
+            let length = (rope.ends[1].at - rope.ends[0].at).norm();
+            rope.max_length.is_none_or(|most| length >= most * (1.0 - TAUT))
+        };
+        let ropes = self.constraints.ropes.iter().filter(is_taut).map(|rope| rope.ends.each_ref().map(|end| end.solid));
+        let ties = self.constraints.joints.iter().map(|joint| joint.between).chain(ropes);
+        let is_free = |i: usize| matches!(specs[i].role, Role::Free(_));
+        let pairs: Vec<[usize; 2]> = ties
+            .filter_map(|ends| match ends {
+                [Some(a), Some(b)] if is_free(a) && is_free(b) => Some([a, b]),
+                _ => None,
+            })
+            .collect();
+        let mut follows: Vec<bool> = self.scene.solid.iter().map(SolidConfig::is_afloat).collect();
+        while let Some(pair) = pairs.iter().find(|[a, b]| follows[*a] != follows[*b]) {
+            pair.iter().for_each(|i| follows[*i] = true);
+        }
+        follows
+    }
+
     /// Returns the rest, beside the `poses`, of all bodies that start at their equilibrium, with all that is tied to them.
     fn search(
         &self,
         placed: &PlacedSolids<D>,
         lifted: &[Pose<D>],
         poses: &[Pose<D>],
-        given_up: &[bool],
+        (given_up, follows): (&[bool], &[bool]),
     ) -> Vec<TiedRest<D>> {
         let specs_at = |poses: &[Pose<D>]| -> Vec<SolidSpec<D>> {
             placed.specs.iter().zip(poses).map(|(spec, pose)| SolidSpec { pose: *pose, ..spec.clone() }).collect()
@@ -191,7 +227,8 @@ impl<const D: usize> RestState<'_, D> {
                 false if tied.iter().any(|i| self.touches(&specs, *i)) => None,
                 false => {
                     let stays = |i: usize| self.scene.solid[i].is_afloat();
-                    poses_at_rest(&system, number, &stays, &|i, axis| self.keeps_turn(specs[i], i, axis))
+                    let keeps_turn = |i: usize, axis: usize| axis >= D && self.keeps_turn(specs[i], i, axis - D);
+                    poses_at_rest(&system, number, &stays, &|i, axis| !follows[i] || keeps_turn(i, axis))
                 }
             };
             found.push((tied, rest));
@@ -231,7 +268,7 @@ impl<const D: usize> RestState<'_, D> {
             j != i
                 && self.constraints.can_touch(i, j)
                 && !self.decks.iter().any(|pair| pair.contains(&i) && pair.contains(&j))
-                && (meets(specs[i], specs[j]) || (matches!(specs[j].role, Role::Free(_)) && meets(specs[j], specs[i])))
+                && (meets(specs[i], specs[j]) || meets(specs[j], specs[i]))
         })
     }
 

@@ -98,7 +98,7 @@ impl<'de> Deserialize<'de> for AxesConfig {
 #[schemars(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum DraftChoice {
-    /// Where weight and buoyancy balance.
+    /// At rest: where weight, buoyancy and ties balance.
     Equilibrium,
     /// Depth of the lowest point below the still level, m.
     #[schemars(untagged)]

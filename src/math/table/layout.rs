@@ -128,9 +128,11 @@ impl Layout {
         let named = lines.first().and_then(|line| named_separator(line.text));
         let (comments, content): (Vec<Line>, Vec<Line>) =
             lines.iter().skip(usize::from(named.is_some())).partition(|line| comment(line.text).is_some());
-        refuse_bars(&content)?;
         let (separator, decimal) = form(&content, named);
         let rows = Rows::of(&content, separator, decimal);
+        if named.is_none() && rows.count <= 1 {
+            refuse_bars(&content)?;
+        }
         let mut layout = Self {
             separator,
             decimal,

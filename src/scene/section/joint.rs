@@ -487,8 +487,9 @@ fn verify_stops(ctx: &Context, key: &str, pair: &[f64], turns: bool) -> Result<(
                 return Ok(());
             }
             let help = match in_degrees {
-                true => "from stop to stop a turn is less than 360, as in  [-170.0, 170.0]        # degrees".into(),
-                false => format!("limits are in rad; in degrees write  limits_deg = [{min:?}, {max:?}]"),
+                false if max - min < 360.0 => "limits are in rad; those in degrees have the key  limits_deg",
+                false => "from stop to stop a turn is less than 2π, as in  [-3.0, 3.0]        # rad",
+                true => "from stop to stop a turn is less than 360, as in  [-170.0, 170.0]        # degrees",
             };
             Err(ctx.error_with_help(key, format!("from {min} to {max} {unit} it would turn all the way round"), help))
         }

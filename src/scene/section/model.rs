@@ -95,7 +95,10 @@ impl ModelConfig {
         let constants = match viscosity {
             Some(Viscosity::Artificial(law)) => vec![("viscosity.artificial.alpha", law.alpha)],
             Some(Viscosity::Riemann(law)) => {
-                vec![("viscosity.riemann.eta", law.eta), ("viscosity.riemann.threshold", law.threshold)]
+                vec![
+                    ("viscosity.riemann.eta", law.eta),
+                    ("viscosity.riemann.threshold", law.threshold.unwrap_or_default()),
+                ]
             }
             Some(Viscosity::Laminar(law)) => vec![("viscosity.laminar.nu0", law.nu0)],
             Some(Viscosity::Sps(law)) => vec![
@@ -191,6 +194,11 @@ impl ModelConfig {
             _ => "stops impacts and hardly damps waves; it does not grow with the depth",
         };
         defaults.fill("model.viscosity", &mut self.viscosity, usual.viscosity, why);
+        if let Some(Viscosity::Riemann(law)) = &mut self.viscosity {
+            let of_waves = if let Viscosity::Riemann(usual) = usual.viscosity { usual.threshold } else { None };
+            let why = if of_waves.is_some() { "waves keep their height" } else { "still water comes to rest" };
+            defaults.fill("model.viscosity.riemann.threshold", &mut law.threshold, of_waves.unwrap_or(0.0), why);
+        }
         let why = "damps the density's noise and keeps still water still; δ = 0.1 as in the method";
         defaults.fill("model.diffusion", &mut self.diffusion, usual.diffusion, why);
         defaults.fill("model.shifting", &mut self.shifting, usual.shifting, "shifting slowly inflates the water");

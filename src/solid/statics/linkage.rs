@@ -124,9 +124,9 @@ pub(crate) fn free_rest<const D: usize>(system: &StaticSystem<D>, i: usize) -> O
 }
 
 /// Returns the poses at rest of body `i` and of all that is tied to it, by the number of the solid. The solids for which `stays` holds,
-/// with those on joints to them, keep their horizontal place, and all keep their turn about the axes for which `is_kept` holds. `None` if
-/// there is no stable rest near the start, if there are two, as for a body that heels to one side as well as to the other, or if
-/// [`free_rest`] has none.
+/// with those on joints to them, keep their horizontal place, and all keep the translations and, numbered from D on, the turns for
+/// which `is_kept` holds. `None` if there is no stable rest near the start, if there are two, as for a body that heels to one side as
+/// well as to the other, or if [`free_rest`] has none.
 pub(crate) fn poses_at_rest<const D: usize>(
     system: &StaticSystem<D>,
     i: usize,
@@ -151,17 +151,19 @@ pub(crate) fn poses_at_rest<const D: usize>(
 }
 
 impl<'a, const D: usize> TiedBodies<'a, D> {
-    /// Body `i` with all that is tied to it; `None` if nothing can move. `is_kept` tells about which axes a solid does not turn.
+    /// Body `i` with all that is tied to it; `None` if nothing can move. `is_kept` tells along and, from D on, about which axes a solid
+    /// does not move.
     fn of(system: &'a StaticSystem<'a, D>, i: usize, is_kept: &dyn Fn(usize, usize) -> bool) -> Option<Self> {
         let members = system.tied_to(i);
         let size = members.iter().map(|j| system.size(*j)).fold(0.0, f64::max);
         let weight: f64 = members.iter().map(|j| system.bodies[*j].body.mass * system.water.g).sum();
         let is_free = |k: usize, axis: usize| {
             let StaticBody { body, solid, .. } = &system.bodies[members[k]];
-            match axis.checked_sub(D) {
-                None => !body.locked_translations[axis],
-                Some(axis) => !body.locked_rotations[axis] && !is_kept(*solid, axis),
-            }
+            let is_locked = match axis.checked_sub(D) {
+                None => body.locked_translations[axis],
+                Some(axis) => body.locked_rotations[axis],
+            };
+            !is_locked && !is_kept(*solid, axis)
         };
         let axes = D + Bivector::<D>::COMPONENTS;
         let coordinates: Vec<(usize, usize)> = (0..members.len())

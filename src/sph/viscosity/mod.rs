@@ -85,9 +85,9 @@ impl Viscosity {
     }
 
     /// The effective kinematic viscosity ν (m²/s) of a flow with the shear rate `shear` (1/s), in water with speed of sound `c0`
-    /// (m/s), smoothing length `h` (m) and the acceleration of gravity `g` (m/s²), in `dimension` D. It is ν₀ of a laminar viscosity, α c₀ h/(4 (D + 2)) of the
-    /// artificial viscosity, which acts on approaching pairs only @monaghan2005, and [`Riemann::effective`] of the Riemann
-    /// dissipation. It excludes the eddy viscosity of SPS.
+    /// (m/s), smoothing length `h` (m) and the acceleration of gravity `g` (m/s²), in `dimension` D. It is ν₀ of a laminar
+    /// viscosity, α c₀ h/(4 (D + 2)) of the artificial viscosity, which acts on approaching pairs only @monaghan2005, and
+    /// [`Riemann::effective`] of the Riemann dissipation. It excludes the eddy viscosity of SPS.
     pub fn effective(&self, c0: f64, h: f64, g: f64, dimension: usize, shear: f64) -> f64 {
         match self {
             Self::None => 0.0,
@@ -95,6 +95,15 @@ impl Viscosity {
             Self::Artificial(law) => law.alpha * c0 * h / (4.0 * (dimension as f64 + 2.0)),
             Self::Laminar(law) => law.nu0,
             Self::Sps(law) => law.nu0,
+        }
+    }
+
+    /// Whether it hardly damps waves: laminar viscosities, and the Riemann dissipation with the threshold of waves.
+    pub(crate) fn spares_waves(&self) -> bool {
+        match self {
+            Self::Riemann(law) => law.threshold >= Some(Riemann::WAVES_THRESHOLD),
+            Self::Artificial(_) => false,
+            Self::None | Self::Laminar(_) | Self::Sps(_) => true,
         }
     }
 

@@ -236,6 +236,23 @@ fn a_body_that_need_not_turn_or_may_not_or_would_turn_over_keeps_its_orientation
 }
 
 #[test]
+fn a_slack_line_moves_no_body_and_a_post_in_the_way_keeps_the_orientation() {
+    let floats = barge("a", [0.5, 0.2], 0.8, "density = 500.0", "");
+    // A tilted box 0.3 m above its draft, on a painter of 1.5 m over a distance of 0.8 m.
+    let other = "[[solid]]\nname = \"b\"\nshape = { box = { size = [0.2, 0.1] } }\nat = { x = 1.6, y = 0.7, angle_deg = 8.0 }\n\
+                 free = { density = 500.0 }\n";
+    let line = "[[rope]]\nbetween = [\"a\", \"b\"]\nat = [[0.8, 0.45], [1.6, 0.7]]\nmax_length = 1.5\n";
+    let alone = placed::<2>(&flat(&format!("{floats}{other}")));
+    let tied = placed::<2>(&flat(&format!("{floats}{other}{line}")));
+    assert_eq!(alone[2].pose, tied[2].pose);
+    // A deck that would turn by 3° into the corner of a post starts upright.
+    let off = "density = 500.0, ballast = [{ at = [0.1, -0.05], mass = 4.0 }]";
+    let post = "[[solid]]\nname = \"post\"\nfixed = true\nshape = { box = { size = [0.06, 0.2] } }\nat = { x = 1.02, bottom = 0.495 }\n";
+    let beside = placed::<2>(&flat(&format!("{}{post}", barge("b", [0.5, 0.2], 1.2, off, ""))));
+    assert_eq!(tilt(&beside[1]), 0.0);
+}
+
+#[test]
 fn what_stands_on_a_deck_or_hangs_from_it_turns_and_moves_along() {
     let raft = barge("raft", [0.6, 0.1], 1.2, "density = 400.0", "");
     let crate_on = "[[solid]]\nname = \"crate\"\nshape = { box = { size = [0.1, 0.08] } }\nat = { x = 1.3, bottom = 0.46 }\n\

@@ -734,14 +734,14 @@ fn limits_of_more_than_a_turn_propose_degrees() {
         let joint = "[[joint]]\nname = \"j\"\nkind = \"hinge\"\nbetween = [\"box\"]\nat = [1.0, 0.5]\n";
         scene(REST, &format!("{joint}limits = {limits}\n"))
     };
-    let words = ["from -30 to 30 rad it would turn all the way round", "joint.0.limits", "limits_deg = [-30.0, 30.0]"];
+    let words = ["from -30 to 30 rad it would turn all the way round", "joint.0.limits", "limits_deg"];
     assert_refused("turn", &hinge("[-30, 30]"), &[], &words);
     assert_not_found("part", &hinge("[-3.0, 3.0]"), &[], "rad");
     // A slider may move by metres.
     let slider = hinge("[-30, 30]").replace("kind = \"hinge\"", "kind = \"slider\"\nalong = [0.0, 1.0]");
     assert_not_found("slider", &slider, &[], "all the way round");
     let generic = hinge("{ turn = [-10, 10] }").replace("kind = \"hinge\"", "kind = \"generic\"\nfree = [\"turn\"]");
-    assert_refused("generic", &generic, &[], &["all the way round", "limits_deg = [-10.0, 10.0]"]);
+    assert_refused("generic", &generic, &[], &["all the way round", "limits_deg"]);
 }
 
 #[test]

@@ -189,7 +189,7 @@ where
         Viscosity::None,
         Viscosity::Artificial(Artificial { alpha: 0.1 }),
         // Some pairs are faster than the threshold, others are not.
-        Viscosity::Riemann(Riemann { threshold: 0.05, ..Riemann::default() }),
+        Viscosity::Riemann(Riemann { threshold: Some(0.05), ..Riemann::default() }),
         Viscosity::Laminar(Laminar { nu0: 1e-3 }),
         Viscosity::Sps(Sps::default()),
     ];

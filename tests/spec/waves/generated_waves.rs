@@ -10,6 +10,7 @@ use pontoon::{
     math::time_series::TimeSeries,
     scene::Scene,
     simulation::Simulation,
+    sph::viscosity::{Riemann, Viscosity},
     wavemaker::wave_number,
 };
 
@@ -114,6 +115,21 @@ fn a_steep_wave_has_the_amplitude_of_potential_theory() {
         // 5 % is the bound of the project.
         assert!((share / 0.911 - 1.0).abs() < 0.05, "{share} of the height");
     }
+}
+
+#[test]
+fn scenes_that_generate_waves_spare_them_unless_they_say_otherwise() {
+    let piston = "along = [1.0, 0.0], wave = { regular = { height = 0.04, period = 0.8 } }";
+    let threshold = |value: &str| {
+        let viscosity = [("model.viscosity".to_string(), value.to_string())];
+        match flume_under(0.02, [1.0, 0.2], piston, "", &viscosity).system().model().viscosity {
+            Viscosity::Riemann(law) => law.threshold,
+            _ => None,
+        }
+    };
+    // Naming the law, or its η, keeps the threshold of waves.
+    assert_eq!(["riemann", "{ riemann = { eta = 2.0 } }"].map(threshold), [Some(Riemann::WAVES_THRESHOLD); 2]);
+    assert_eq!(threshold("{ riemann = { threshold = 0.1 } }"), Some(0.1));
 }
 
 /// A wave of second order (Stokes 1847) in a periodic sea one wavelength long, with the default laws of scenes that generate waves:
