@@ -98,6 +98,8 @@ struct TiedBodies<'a, const D: usize> {
     /// Places in `members` of bodies between which there are joints, whose common centre of mass keeps its horizontal place and whose
     /// common turn about the vertical is held.
     staying: Vec<Vec<usize>>,
+    /// Whether each of `members` stays where it is given.
+    held: Vec<bool>,
 }
 
 /// The equations at a place.
@@ -177,7 +179,8 @@ impl<'a, const D: usize> TiedBodies<'a, D> {
         let holds = |line: &&Line<D>| line.bodies.into_iter().flatten().any(|j| members.contains(&j));
         let (ropes, springs) = system.lines.iter().filter(holds).partition(|line| line.is_rope);
         let (scale, staying) = (weight * size, Vec::new());
-        let made = Self { system, joints, ropes, springs, coordinates, size, scale, members, staying };
+        let held = members.iter().map(|j| (0..axes).all(|axis| is_kept(system.bodies[*j].solid, axis))).collect();
+        let made = Self { system, joints, ropes, springs, coordinates, size, scale, members, staying, held };
         (!made.coordinates.is_empty()).then_some(made)
     }
 
@@ -203,11 +206,12 @@ impl<'a, const D: usize> TiedBodies<'a, D> {
         self.system.bodies[self.members[k]].solid
     }
 
-    /// The solids at the start, raised by as much as their bodies rise to rest in their orientation.
+    /// The solids at the start. Bodies that are not held are raised by as much as they rise to rest in their orientation.
     fn start(&self) -> Vec<Kinematics<D>> {
         let mut all = self.system.start.clone();
         for (k, j) in self.members.iter().enumerate() {
-            let (pose, body) = (self.system.pose(*j), self.system.bodies[*j].body);
+            let StaticBody { pose, body, .. } = &self.system.bodies[*j];
+            let pose = if self.held[k] { *pose } else { self.system.pose(*j) };
             all[self.solid(k)] = Kinematics { pose, centre: pose.point(&body.centre), ..all[self.solid(k)] };
         }
         all
