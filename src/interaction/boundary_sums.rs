@@ -174,7 +174,7 @@ impl<'a, K: Kernel, const FLOW: bool, const D: usize> SimdTask for BoundarySlabT
                             let theirs = &mut sums[place * rows..][..rows];
                             let mut fit = WallExtrapolation::filled_with(zero);
                             for_each_row(&mut fit, FLOW, |row, x| *x = simd::load(simd, &theirs[row].0));
-                            fit.add(w, p, volume, std::array::from_fn(|k| -r[k]));
+                            fit.add(w, p, volume, r.map(|x| -x));
                             if FLOW {
                                 fit.add_velocity(w, volume, moves);
                             }

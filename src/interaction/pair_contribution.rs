@@ -31,19 +31,19 @@ impl<N: Num, const D: usize> PairContribution<N, D> {
         let pair = Pair::new(geometry, kernel.w(r2), eta2, a, b);
         let along_r = factor * law.along_r(&pair, zero);
         let mut force = [zero; D];
-        for (k, force) in force.iter_mut().enumerate() {
-            *force = along_r * r_ab[k];
+        for (force, r) in force.iter_mut().zip(&r_ab) {
+            *force = along_r * *r;
         }
         if L::ALONG_V {
             let along_v = factor * law.along_v(&pair, zero);
-            for (k, force) in force.iter_mut().enumerate() {
-                *force = along_v.fma(v_ab[k], *force);
+            for (force, v) in force.iter_mut().zip(&v_ab) {
+                *force = along_v.fma(*v, *force);
             }
         }
         if L::STRESS || L::VECTOR && CORRECTED {
             let vector = law.vector(&pair, [zero; D]);
-            for (k, force) in force.iter_mut().enumerate() {
-                *force = factor.fma(vector[k], *force);
+            for (force, vector) in force.iter_mut().zip(&vector) {
+                *force = factor.fma(*vector, *force);
             }
         }
         let rate = law.rate(&pair, (zero, zero));

@@ -155,7 +155,11 @@ impl<const D: usize> SimdPairLoop<D> {
         let rate = 1.0 / self.units.time;
         let acceleration = self.units.length * rate * rate;
         let sum = self.of_slot(slot, D + 1);
-        PairSums { acceleration: Vector::from_fn(|k, _| sum(k) * acceleration), compression_rate: sum(D) * rate }
+        let mut dv = Vector::<D>::zeros();
+        for (k, dv) in dv.iter_mut().enumerate() {
+            *dv = sum(k) * acceleration;
+        }
+        PairSums { acceleration: dv, compression_rate: sum(D) * rate }
     }
 
     /// Sets `sums` to those auxiliary sums of the particle in `slot` that `needs` names, in SI.

@@ -11,7 +11,6 @@ use crate::{
 };
 
 /// The lists of clusters.
-#[inline]
 pub(super) fn clusters<const D: usize>(neighbours: &NeighbourLists<D>) -> &Clusters {
     match neighbours.pair_lists() {
         PairLists::Clusters(clusters, _) => clusters,
@@ -87,7 +86,7 @@ impl<const D: usize> PackedParticles<D> {
 
     /// Where the slab's first cluster of water, its first of boundary particles, and its end are packed.
     pub(super) fn clusters_of(&self, slab: &Slab) -> [usize; 3] {
-        [slab.first - self.first, slab.middle - self.first, slab.end - self.first]
+        [slab.first, slab.middle, slab.end].map(|c| c - self.first)
     }
 
     /// Appends the words of cluster `c`.
@@ -178,8 +177,8 @@ fn state<const D: usize>(
     }
     for (l, &i) in source[..n].iter().enumerate() {
         let i = i as usize;
-        for (k, out) in cluster.v.iter_mut().enumerate() {
-            out[l] = (v[i][k] * speed) as f32;
+        for (out, v) in cluster.v.iter_mut().zip(v[i].iter()) {
+            out[l] = (v * speed) as f32;
         }
         let x = (rho[i] - rho0) * inv_rho0;
         cluster.s[0][l] = x as f32;

@@ -29,9 +29,8 @@ impl<const D: usize> Bivector<D> {
     }
 
     /// The torque of a force `f` (N) acting at the arm `r` (m): f rᵀ − r fᵀ.
-    #[inline]
     pub fn torque(r: &Vector<D>, f: &Vector<D>) -> Self {
-        Self(Matrix::from_fn(|i, j| f[i] * r[j] - r[i] * f[j]))
+        Self(f * r.transpose() - r * f.transpose())
     }
 
     /// The velocity that this spin gives at the arm `r` (m): Ω r.
@@ -98,7 +97,6 @@ pub(crate) fn rotated_tensor<const D: usize>(rotation: &Matrix<D>, tensor: &Matr
 
 impl<const D: usize> std::ops::Add for Bivector<D> {
     type Output = Self;
-    #[inline]
     fn add(self, other: Self) -> Self {
         Self(self.0 + other.0)
     }
@@ -210,7 +208,6 @@ impl<const D: usize> Bounds<D> {
     }
 
     /// Whether `x` lies inside (faces included). False for a non-finite point.
-    #[inline]
     pub(crate) fn contains(&self, x: &Vector<D>) -> bool {
         (0..D).all(|i| x[i] >= self.min[i] && x[i] <= self.max[i])
     }

@@ -65,15 +65,12 @@ impl Slab {
     /// The list of a slot of this slab, in parts.
     #[inline(always)]
     pub fn list(&self, slot: usize) -> impl Iterator<Item = ListPart<'_>> {
-        (0..self.parts).map(
-            #[inline(always)]
-            move |part| {
-                let at = slot * self.parts + part;
-                let [start, middle] = self.spans[at];
-                let (start, middle, end) = (start as usize, middle as usize, self.spans[at + 1][0] as usize);
-                ListPart { base: part * PART, water: &self.index[start..middle], boundary: &self.index[middle..end] }
-            },
-        )
+        (0..self.parts).map(move |part| {
+            let at = slot * self.parts + part;
+            let [start, middle] = self.spans[at].map(|k| k as usize);
+            let end = self.spans[at + 1][0] as usize;
+            ListPart { base: part * PART, water: &self.index[start..middle], boundary: &self.index[middle..end] }
+        })
     }
 
     /// Whether a slot of this slab has no list.
@@ -269,8 +266,8 @@ pub(crate) fn fill_positions<const D: usize>(
 ) {
     let n = occupied_lanes(source);
     for (l, &i) in source[..n].iter().enumerate() {
-        for (k, x) in x.iter_mut().enumerate() {
-            x[l] = to_integer(r[i as usize][k], inv_unit);
+        for (x, r) in x.iter_mut().zip(r[i as usize].iter()) {
+            x[l] = to_integer(*r, inv_unit);
         }
     }
     for x in x {

@@ -104,13 +104,9 @@ impl<const D: usize> SimdTask for OfSlab<'_, '_, D> {
                     slab.index.reserve_exact(most + most / 8 - slab.index.len());
                     slab.index.resize(most + most / 8, 0);
                 }
-                let mut at = [i32x8::splat(simd, 0); D];
-                for (k, at) in at.iter_mut().enumerate() {
-                    *at = i32x8::splat(simd, search.given.x[c][k][l]);
-                }
+                let at: [i32x8<S>; D] = std::array::from_fn(|k| i32x8::splat(simd, search.given.x[c][k][l]));
                 for base in (0..slab.parts).map(|part| first + part * PART) {
-                    let [water, skin] =
-                        if pad { [&[][..]; 2] } else { [part_from(base, kinds[0]), part_from(base, kinds[1])] };
+                    let [water, skin] = kinds.map(|clusters| if pad { &[][..] } else { part_from(base, clusters) });
                     let begin = used;
                     if !pad && c < middle_of_slab && (base..base + PART).contains(&c) {
                         slab.index[used] = (c - base) as u16;

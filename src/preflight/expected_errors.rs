@@ -67,7 +67,7 @@ pub(super) fn heights_at_gauges<const D: usize>(
     }
     let reach = wave.damping_m.unwrap_or(f64::INFINITY).min(wave.reach_m);
     let gauge = |probe: &ProbePlan| {
-        let Some(ProbeLocation::Columns(places)) = probe.kind.location() else { return None };
+        let Some(ProbeLocation::Columns(places, None)) = probe.kind.location() else { return None };
         let place = places.first()?;
         let at = Vector::from_fn(|i, _| place.get(i).copied().unwrap_or(context.still_water.level));
         let distance_m = stand.distance_ahead(&at).filter(|way| (0.5 * wave.length_m..reach).contains(way))?;

@@ -127,19 +127,12 @@ pub(super) fn summaries<const D: usize>(
     (lines, surges)
 }
 
-/// Returns the stiffness of the mooring lines at their ends on free bodies. A line between two free bodies has none to the ground.
+/// Returns the ends of the mooring lines on free bodies, with their stiffness.
 pub(super) fn moored_ends<const D: usize>(context: &PreflightContext<'_, D>, sim: &Simulation<D>) -> Vec<MooredEnd<D>> {
     let is_free = |solid: usize| matches!(context.solids()[solid].spec.role, Role::Free(_));
-    let mut ends = Vec::new();
-    for (i, spec) in context.system.constraints().moorings.iter().enumerate().filter(|(i, _)| sim.mooring_acts(*i)) {
-        for (k, end) in spec.ends.iter().enumerate() {
-            let Some(solid) = end.solid.filter(|solid| is_free(*solid)) else { continue };
-            if !spec.ends[1 - k].solid.is_some_and(is_free) {
-                ends.push(MooredEnd { solid, at: end.at, stiffness: sim.mooring_end_stiffness(i, k) });
-            }
-        }
-    }
-    ends
+    let moorings = context.system.constraints().moorings.iter().enumerate();
+    let ends = |(i, spec)| MooredEnd::of(spec, is_free, |k| sim.mooring_end_stiffness(i, k));
+    moorings.filter(|(i, _)| sim.mooring_acts(*i)).flat_map(ends).collect()
 }
 
 /// A warning about a line with nodes deep in a fixed solid or behind it: deeper than a bed yields.

@@ -15,28 +15,30 @@ use crate::{
 /// Height above its level that water can reach, over its depth, –: that of a dam break at a wall.
 const SPLASH: f64 = 2.0;
 
-/// The frame of the place of a probe: that of the solid that carries it, else the world.
-#[derive(Clone, Copy)]
-struct Frame<'a, const D: usize> {
-    pose: Pose<D>,
-    /// Name of the solid.
+/// A place (m) of a probe.
+struct Place<'a, const D: usize> {
+    probe: &'a str,
+    at: &'a [f64],
+    /// Name of the solid in whose frame it is given, if it is not the world.
     on: Option<&'a str>,
+    /// Pose of this frame.
+    frame: Pose<D>,
 }
 
-impl<const D: usize> Frame<'_, D> {
-    fn world() -> Self {
-        Self { pose: Pose::identity(), on: None }
+impl<const D: usize> Place<'_, D> {
+    /// Describes a point (m) of the world in this frame.
+    fn described(&self, x: &Vector<D>) -> String {
+        self.named(&self.frame.local(x).as_slice()[..])
     }
 
-    /// Describes a place in this frame.
-    fn place(&self, at: &[f64]) -> String {
+    fn named(&self, at: &[f64]) -> String {
         let on = self.on.map_or(String::new(), |name| format!(" on \"{name}\""));
-        format!("at {} m{on}", coordinates(at))
+        format!("{} m{on}", coordinates(at))
     }
 
-    /// Returns the world point (m) of a place (m) with `D` coordinates, or with `D` − 1 and the height 0.
-    fn point(&self, at: &[f64]) -> Vector<D> {
-        self.pose.point(&Vector::from_fn(|i, _| at.get(i).copied().unwrap_or(0.0)))
+    /// Returns the point (m) of the world; a place with `D` − 1 coordinates has the height 0.
+    fn point(&self) -> Vector<D> {
+        self.frame.point(&Vector::from_fn(|i, _| self.at.get(i).copied().unwrap_or(0.0)))
     }
 }
 
@@ -47,32 +49,31 @@ impl<const D: usize> PreflightContext<'_, D> {
         let all = &solids.fold(Bounds::around(self.system.fluid().r), |a, b| a.union(&b));
         for probe in &self.plan.probes {
             let name = &probe.name;
-            let on = |on| self.solids().iter().find(|solid| solid.spec.name == on);
-            let on =
-                |name| on(name).map_or_else(Frame::world, |own| Frame { pose: own.kinematics.pose, on: Some(name) });
+            let frame_of =
+                |on: &str| self.solids().iter().find(|own| own.spec.name == on).map(|own| own.kinematics.pose);
+            let place = |at, on: Option<_>| Place {
+                probe: name,
+                at,
+                on,
+                frame: on.and_then(frame_of).unwrap_or_else(Pose::identity),
+            };
             match probe.kind.location() {
-                Some(ProbeLocation::Points(places)) => {
-                    findings.extend(places.iter().filter_map(|at| self.beyond_plane(name, at)));
+                Some(ProbeLocation::Points(places, on)) => {
+                    let in_world = places.iter().filter(|_| on.is_none());
+                    findings.extend(in_world.filter_map(|at| self.beyond_plane(name, at)));
                     let points = places.iter().filter(|at| at.len() == D);
-                    findings.extend(points.filter_map(|at| self.point(name, at, &Frame::world(), (all, sound))));
+                    findings.extend(points.filter_map(|at| self.point(&place(at, on), all, sound)));
                 }
-                Some(ProbeLocation::PointsOn(places, solid)) => {
-                    let points = places.iter().filter(|at| at.len() == D);
-                    findings.extend(points.filter_map(|at| self.point(name, at, &on(solid), (all, sound))));
-                }
-                Some(ProbeLocation::Columns(places)) => {
-                    findings.extend(places.iter().filter_map(|at| self.beyond_plane(name, at)));
-                    let places = places.iter().filter(|at| at.len() == D - 1);
-                    findings.extend(places.filter_map(|at| self.gauge(name, at, &Frame::world(), (all, sound))));
-                }
-                Some(ProbeLocation::ColumnsOn(places, solid)) => {
-                    let places = places.iter().filter(|at| at.len() == D - 1);
-                    findings.extend(places.filter_map(|at| self.gauge(name, at, &on(solid), (all, sound))));
+                Some(ProbeLocation::Columns(places, on)) => {
+                    let in_world = places.iter().filter(|_| on.is_none());
+                    findings.extend(in_world.filter_map(|at| self.beyond_plane(name, at)));
+                    let columns = places.iter().filter(|at| at.len() == D - 1);
+                    findings.extend(columns.filter_map(|at| self.gauge(&place(at, on), all, sound)));
                 }
                 Some(ProbeLocation::Section([from, to])) if from.len() == D && to.len() == D => {
-                    findings.extend([from, to].into_iter().find_map(|at| self.beyond_plane(&probe.name, at)));
+                    findings.extend([from, to].into_iter().find_map(|at| self.beyond_plane(name, at)));
                     let ends = [from, to].map(|at| Vector::from_fn(|i, _| at[i]));
-                    findings.extend(self.section(&probe.name, ends, all));
+                    findings.extend(self.section(name, ends, all));
                 }
                 _ => {}
             }
@@ -108,7 +109,11 @@ impl<const D: usize> PreflightContext<'_, D> {
             coordinates(&to)
         );
         let topic = if outside { "probe_outside" } else { "probe_inside_solid" };
-        Some(Finding::warning(topic, what, self.nearest_water(&((from + to) * 0.5), &Frame::world())))
+        Some(Finding::warning(
+            topic,
+            what,
+            self.nearest_water(&((from + to) * 0.5), |r| format!("{} m", coordinates(r))),
+        ))
     }
 
     /// The height (m) above which no water is expected; infinite without gravity.
@@ -119,31 +124,25 @@ impl<const D: usize> PreflightContext<'_, D> {
         self.still_water.level + SPLASH * self.still_water.depth + sound.fastest().powi(2) / (2.0 * self.g)
     }
 
-    fn point(
-        &self,
-        name: &str,
-        at: &[f64],
-        frame: &Frame<D>,
-        (all, sound): (&Bounds<D>, &SoundSpeed),
-    ) -> Option<Finding> {
-        let (x, place) = (frame.point(at), frame.place(at));
+    fn point(&self, own: &Place<D>, all: &Bounds<D>, sound: &SoundSpeed) -> Option<Finding> {
+        let (x, name, place) = (own.point(), own.probe, own.named(own.at));
         let inside = |solid: &&Solid<D>| {
             // A probe may lie on a face.
             solid.distance(&x) < -1e-9
         };
-        let nearest = || self.nearest_water(&x, frame);
+        let nearest = || self.nearest_water(&x, |r| own.described(r));
         if let Some(solid) = self.solids().iter().find(inside) {
-            let what = format!("probe \"{name}\" {place} is inside solid \"{}\"", solid.spec.name);
+            let what = format!("probe \"{name}\" at {place} is inside solid \"{}\"", solid.spec.name);
             return Some(Finding::warning("probe_inside_solid", what, nearest()));
         }
         if !all.contains(&x) && x[D - 1] <= all.max[D - 1] {
-            let what = format!("probe \"{name}\" {place} is outside of everything: no water comes there");
+            let what = format!("probe \"{name}\" at {place} is outside of everything: no water comes there");
             return Some(Finding::warning("probe_outside", what, nearest()));
         }
         let highest = self.highest(sound);
         (x[D - 1] > highest).then(|| {
             let what = format!(
-                "probe \"{name}\" {place} is {} m above the still level: no water comes there",
+                "probe \"{name}\" at {place} is {} m above the still level: no water comes there",
                 three_digits(x[D - 1] - self.still_water.level)
             );
             let reach = format!("{}; water may come to {} m", nearest(), three_digits(highest));
@@ -153,24 +152,18 @@ impl<const D: usize> PreflightContext<'_, D> {
 
     /// A gauge needs a height between the lowest water and the highest at which there is no fixed solid. Where a solid fills the place
     /// at the level of the water, the gauge measures the water under that solid.
-    fn gauge(
-        &self,
-        name: &str,
-        at: &[f64],
-        frame: &Frame<D>,
-        (all, sound): (&Bounds<D>, &SoundSpeed),
-    ) -> Option<Finding> {
-        let (foot, place) = (frame.point(at), frame.place(at));
+    fn gauge(&self, own: &Place<D>, all: &Bounds<D>, sound: &SoundSpeed) -> Option<Finding> {
+        let (foot, name, place) = (own.point(), own.probe, own.named(own.at));
         let column = |z: f64| Vector::from_fn(|i, _| if i + 1 < D { foot[i] } else { z });
         let (low, high) = (all.min[D - 1], self.highest(sound).min(all.max[D - 1]));
         let outside = !all.contains(&column(low));
         let steps = ((high - low) / self.dp()).ceil().clamp(1.0, 10_000.0) as usize;
         let step = (high - low) / steps as f64;
         let free = |k: usize| self.signed_distance(&column(low + (k as f64 + 0.5) * step), |_| true) > 0.0;
-        let nearest = |level: f64| self.nearest_water(&column(level), frame);
+        let nearest = |level: f64| self.nearest_water(&column(level), |r| own.described(r));
         if outside || !(0..steps).any(free) {
             let why = if outside { "is outside of everything" } else { "stands inside a solid" };
-            let what = format!("gauge \"{name}\" {place} {why}: no water comes there");
+            let what = format!("gauge \"{name}\" at {place} {why}: no water comes there");
             let topic = if outside { "probe_outside" } else { "probe_inside_solid" };
             return Some(Finding::warning(topic, what, nearest(self.still_water.level)));
         }
@@ -184,17 +177,17 @@ impl<const D: usize> PreflightContext<'_, D> {
             return None;
         }
         let what = format!(
-            "gauge \"{name}\" {place} stands in solid \"{}\" at the still level: it measures the water under that, which has \
+            "gauge \"{name}\" at {place} stands in solid \"{}\" at the still level: it measures the water under that, which has \
              no free surface",
             solid.spec.name
         );
         Some(Finding::note("gauge_under_solid", what, nearest(level)))
     }
 
-    /// Describes the place of the water nearest to `x` (m) in `frame`.
-    fn nearest_water(&self, x: &Vector<D>, frame: &Frame<D>) -> String {
+    /// Tells the place of the water nearest to `x` (m), as `described`.
+    fn nearest_water(&self, x: &Vector<D>, described: impl Fn(&Vector<D>) -> String) -> String {
         let distance = |r: &&Vector<D>| (**r - x).norm_squared();
         let nearest = self.system.fluid().r.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
-        nearest.map_or_else(String::new, |r| format!("the nearest water is at {}", coordinates(&frame.pose.local(r))))
+        nearest.map_or_else(String::new, |r| format!("the nearest water is at {}", described(r)))
     }
 }

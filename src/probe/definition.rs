@@ -133,14 +133,10 @@ pub(crate) trait ProbeScope {
 /// The place at which a probe measures.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum ProbeLocation<'a> {
-    /// At points, m.
-    Points(&'a [Vec<f64>]),
-    /// On vertical lines at horizontal places, m.
-    Columns(&'a [Vec<f64>]),
-    /// At points in the frame of the solid of this name, m.
-    PointsOn(&'a [Vec<f64>], &'a str),
-    /// On vertical lines through places in the frame of the solid of this name, m.
-    ColumnsOn(&'a [Vec<f64>], &'a str),
+    /// At points (m) in the frame of the solid of this name, or of the world.
+    Points(&'a [Vec<f64>], Option<&'a str>),
+    /// On vertical lines through horizontal places (m) in the frame of the solid of this name, or of the world.
+    Columns(&'a [Vec<f64>], Option<&'a str>),
     /// Over a section between two points, m.
     Section([&'a [f64]; 2]),
 }

@@ -130,10 +130,7 @@ impl ProbeDefinition for ElevationPlan {
     }
 
     fn location(&self) -> Option<ProbeLocation<'_>> {
-        Some(match &self.on {
-            Some(on) => ProbeLocation::ColumnsOn(&self.places, on),
-            None => ProbeLocation::Columns(&self.places),
-        })
+        Some(ProbeLocation::Columns(&self.places, self.on.as_deref()))
     }
 
     fn series(&self, _: usize) -> Vec<(String, Option<Vec<f64>>)> {

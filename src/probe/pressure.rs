@@ -43,10 +43,7 @@ impl ProbeDefinition for PressurePlan {
     }
 
     fn location(&self) -> Option<ProbeLocation<'_>> {
-        Some(match &self.on {
-            Some(on) => ProbeLocation::PointsOn(&self.places, on),
-            None => ProbeLocation::Points(&self.places),
-        })
+        Some(ProbeLocation::Points(&self.places, self.on.as_deref()))
     }
 
     fn build<const D: usize>(&self, system: &System<D>) -> Result<Box<dyn Probe<D>>> {

@@ -226,7 +226,9 @@ impl SceneGeometry {
     pub(crate) fn gauges(&self) -> impl Iterator<Item = (&str, &'static str, &[f64])> {
         self.plan.probes.iter().flat_map(|probe| {
             let (what, places) = match probe.kind.location() {
-                Some(ProbeLocation::Points(places) | ProbeLocation::Columns(places)) => (probe.kind.key(), places),
+                Some(ProbeLocation::Points(places, None) | ProbeLocation::Columns(places, None)) => {
+                    (probe.kind.key(), places)
+                }
                 _ => ("", &[][..]),
             };
             // Only the first gauge of an array carries the name.

@@ -67,8 +67,9 @@ pub(super) fn rest_poses<const D: usize>(state: &RestState<D>, placed: &PlacedSo
     let mut ways = vec![0.0; lifted.len()];
     let mut given_up = vec![false; lifted.len()];
     let follows = state.followers(&placed.specs);
+    let given: Vec<Kinematics<D>> = placed.specs.iter().map(SolidSpec::initial_kinematics).collect();
     for _ in 0..PASSES {
-        let found = state.search(placed, &lifted, &poses, (&given_up, &follows));
+        let found = state.search(placed, &given, &poses, (&given_up, &follows));
         ways.fill(0.0);
         for (tied, rest) in found {
             let first = tied[0];
@@ -184,21 +185,19 @@ impl<const D: usize> RestState<'_, D> {
         follows
     }
 
-    /// Returns the rest, beside the `poses`, of all bodies that start at their equilibrium, with all that is tied to them.
+    /// Returns the rest, beside the `poses`, of all bodies that start at their equilibrium, with all that is tied to them. The places of
+    /// constraints are those for the solids `given`.
     fn search(
         &self,
         placed: &PlacedSolids<D>,
-        lifted: &[Pose<D>],
+        given: &[Kinematics<D>],
         poses: &[Pose<D>],
         (given_up, follows): (&[bool], &[bool]),
     ) -> Vec<TiedRest<D>> {
-        let specs_at = |poses: &[Pose<D>]| -> Vec<SolidSpec<D>> {
-            placed.specs.iter().zip(poses).map(|(spec, pose)| SolidSpec { pose: *pose, ..spec.clone() }).collect()
-        };
-        let kinematics = |specs: &[SolidSpec<D>]| specs.iter().map(SolidSpec::initial_kinematics).collect::<Vec<_>>();
-        let specs = specs_at(poses);
-        let (from, to): (Vec<Kinematics<D>>, Vec<Kinematics<D>>) = (kinematics(&specs_at(lifted)), kinematics(&specs));
-        let constraints = self.constraints.moved(&from, &to);
+        let at = |(spec, pose): (&SolidSpec<D>, &Pose<D>)| SolidSpec { pose: *pose, ..spec.clone() };
+        let specs: Vec<SolidSpec<D>> = placed.specs.iter().zip(poses).map(at).collect();
+        let now: Vec<Kinematics<D>> = specs.iter().map(SolidSpec::initial_kinematics).collect();
+        let constraints = self.constraints.moved(given, &now);
         let specs: Vec<&SolidSpec<D>> = specs.iter().collect();
         let bodies: Vec<Option<FreeBody<D>>> = specs.iter().map(|spec| spec.initial_body()).collect();
         let water = WaterAtRest {
@@ -248,9 +247,9 @@ impl<const D: usize> RestState<'_, D> {
         let level = if floats && !self.sheltered[i] { placed.level(i) } else { NO_WATER };
         let hull = placed.hull_at(i, pose, placed.level(i), self.water);
         let low = hull.extent(pose)[0];
-        let is_borne = supports_of(specs, poses, self.constraints, i, self.scene.dp).iter().any(|j| {
+        let is_borne = supports_of(specs, poses, self.constraints, i, self.scene.dp).any(|j| {
             // A deck moves along.
-            !self.decks.contains(&[i, *j]) && !self.decks.contains(&[*j, i])
+            !self.decks.contains(&[i, j]) && !self.decks.contains(&[j, i])
         });
         let bottom = if is_borne { low } else { low.min(self.pool.still.level - self.pool.still.depth) };
         StaticBody { solid: i, hull, body, pose: *pose, bottom, level }
@@ -284,22 +283,13 @@ impl<const D: usize> RestState<'_, D> {
     }
 }
 
-/// Returns the stiffness of the mooring lines at their ends on free bodies. A line to another free body has none to the ground, and one in
-/// a mooring point has none of its own.
+/// Returns the ends of the mooring lines on free bodies, with their stiffness. A line in a mooring point has none of its own.
 fn moored_ends<const D: usize>(
     specs: &[&SolidSpec<D>],
     constraints: &Constraints<D>,
     water: &WaterAtRest,
 ) -> Vec<MooredEnd<D>> {
     let is_free = |solid: usize| matches!(specs[solid].role, Role::Free(_));
-    let mut ends = Vec::new();
-    for spec in constraints.moorings.iter().filter(|spec| !spec.is_joined()) {
-        for (k, end) in spec.ends.iter().enumerate() {
-            let Some(solid) = end.solid.filter(|solid| is_free(*solid)) else { continue };
-            if !spec.ends[1 - k].solid.is_some_and(is_free) {
-                ends.push(MooredEnd { solid, at: end.at, stiffness: end_stiffness_at_rest(spec, k, specs, water) });
-            }
-        }
-    }
-    ends
+    let ends = |spec| MooredEnd::of(spec, is_free, |k| end_stiffness_at_rest(spec, k, specs, water));
+    constraints.moorings.iter().filter(|spec| !spec.is_joined()).flat_map(ends).collect()
 }

@@ -32,7 +32,8 @@ pub(crate) fn deck_of<const D: usize>(
     i: usize,
     dp: f64,
 ) -> Option<usize> {
-    let &[deck] = &supports_of(specs, poses, constraints, i, dp)[..] else { return None };
+    let mut supports = supports_of(specs, poses, constraints, i, dp);
+    let (deck, None) = (supports.next()?, supports.next()) else { return None };
     matches!(specs[deck].role, Role::Free(_)).then_some(deck)
 }
 
@@ -43,10 +44,10 @@ pub(crate) fn supports_of<const D: usize>(
     constraints: &Constraints<D>,
     i: usize,
     dp: f64,
-) -> Vec<usize> {
+) -> impl Iterator<Item = usize> {
     let solid = |k: usize| (&specs[k].shape, &poses[k]);
-    let below = |j: &usize| *j != i && constraints.can_touch(i, *j) && stands_on(solid(i), solid(*j), REACH * dp);
-    (0..specs.len()).filter(below).collect()
+    let below = move |j: &usize| *j != i && constraints.can_touch(i, *j) && stands_on(solid(i), solid(*j), REACH * dp);
+    (0..specs.len()).filter(below)
 }
 
 /// Returns the joint that takes the place of the contact of solid number `upper` with its deck.

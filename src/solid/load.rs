@@ -23,7 +23,6 @@ impl<const D: usize> Load<D> {
     }
 
     /// `force` (N) alone, at the arm `r` (m) from the centre.
-    #[inline]
     pub(crate) fn from_force_at(r: &Vector<D>, force: Vector<D>) -> Self {
         Self { force, torque: Bivector::torque(r, &force) }
     }
@@ -47,7 +46,6 @@ pub(crate) struct LoadContext<const D: usize> {
 impl<const D: usize> Add for Load<D> {
     type Output = Self;
 
-    #[inline]
     fn add(self, other: Self) -> Self {
         Self { force: self.force + other.force, torque: self.torque + other.torque }
     }

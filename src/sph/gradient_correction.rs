@@ -43,20 +43,15 @@ pub fn correction<N: Num, const D: usize>(moment: &[[N; D]; D]) -> [[N; D]; D] {
     // correction.
     let of = |x: f64| moment[0][0].constant(x);
     let unit = |i: usize, j: usize| of(f64::from(u8::from(i == j)));
-    let (mut left, mut inverse) = (*moment, *moment);
-    for (i, j) in (0..D * D).map(|n| (n / D, n % D)) {
-        (left[i][j], inverse[i][j]) = (moment[i.max(j)][i.min(j)], unit(i, j));
-    }
+    let mut left: [[N; D]; D] = std::array::from_fn(|i| std::array::from_fn(|j| moment[i.max(j)][i.min(j)]));
+    let mut inverse: [[N; D]; D] = std::array::from_fn(|i| std::array::from_fn(|j| unit(i, j)));
     let (mut det, mut regular) = (of(1.0), of(1.0));
     for k in 0..D {
         let pivot = left[k][k];
         det = det * pivot;
         regular = of(0.0).select_below(pivot, regular, of(0.0));
         regular = of(SINGULAR).select_below(det, regular, of(0.0));
-        let (mut row, mut inverse_row) = (left[k], inverse[k]);
-        for j in 0..D {
-            (row[j], inverse_row[j]) = (row[j] / pivot, inverse_row[j] / pivot);
-        }
+        let (row, inverse_row) = (left[k].map(|x| x / pivot), inverse[k].map(|x| x / pivot));
         for i in 0..D {
             let factor = left[i][k];
             for j in 0..D {
@@ -66,10 +61,8 @@ pub fn correction<N: Num, const D: usize>(moment: &[[N; D]; D]) -> [[N; D]; D] {
         }
     }
     let weight = (det * of((1 << (D - 1)) as f64)).min(of(1.0));
-    for (i, j) in (0..D * D).map(|n| (n / D, n % D)) {
-        inverse[i][j] = of(0.5).select_below(regular, weight * (inverse[i][j] - unit(i, j)), of(0.0));
-    }
-    inverse
+    let entry = |i: usize, j: usize| of(0.5).select_below(regular, weight * (inverse[i][j] - unit(i, j)), of(0.0));
+    std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j)))
 }
 
 /// The moments M of the neighbours, water and solids alike.

@@ -26,7 +26,6 @@ impl Default for Shift {
 impl Shift {
     /// Displacement (m) in a step `dt` (s) of a particle of speed `speed` (m/s), from its finished sums; each component is
     /// limited to 0.1 dp, so that no shift can move a particle past another.
-    #[inline]
     pub fn displacement<N: Num, const D: usize>(
         &self,
         sums: &AuxiliarySums<N, D>,
@@ -39,9 +38,7 @@ impl Shift {
         let surface = (sums.position_divergence - of(threshold)) / of(D as f64 - threshold);
         let factor = of(-self.a * medium.h) * speed * dt * surface.max(of(0.0)).min(of(1.0));
         let limit = of(0.1 * medium.dp);
-        let mut displacement = sums.concentration_gradient;
-        displacement.iter_mut().for_each(|component| *component = (factor * *component).max(-limit).min(limit));
-        displacement
+        sums.concentration_gradient.map(|gradient| (factor * gradient).max(-limit).min(limit))
     }
 }
 

@@ -352,10 +352,8 @@ impl<const D: usize> System<D> {
         for place in 0..own.map_or(near.len(), <[u32]>::len) {
             let k = own.map_or(place, |own| own[place] as usize);
             let i = near[k];
-            while targets.peek().is_some_and(|target| target.particle < i) {
-                targets.next();
-            }
-            let target = if targets.peek().is_some_and(|target| target.particle == i) { targets.next() } else { None };
+            while targets.next_if(|target| target.particle < i).is_some() {}
+            let target = targets.next_if(|target| target.particle == i);
             let i = i as usize;
             let bare = rho([place, k, i], particles.rho[i]);
             particles.rho[i] = match target {

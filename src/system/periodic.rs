@@ -155,9 +155,9 @@ impl<const D: usize> Images<D> {
     }
 
     /// Whether `x` (m) lies between the sides.
-    #[inline]
     pub(super) fn is_inside(&self, x: &Vector<D>) -> bool {
-        (0..D).all(|k| self.periodic[k].is_none_or(|[from, to]| (from..to).contains(&x[k])))
+        let inside = |(x, side): (&f64, &Option<[f64; 2]>)| side.is_none_or(|[from, to]| (from..to).contains(x));
+        x.iter().zip(&self.periodic).all(inside)
     }
 }
 

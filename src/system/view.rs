@@ -308,7 +308,6 @@ impl<const D: usize> System<D> {
     }
 
     /// Whether `x` (m) lies between the periodic sides.
-    #[inline]
     pub(crate) fn is_between_sides(&self, x: &Vector<D>) -> bool {
         self.fluid.images.is_inside(x)
     }

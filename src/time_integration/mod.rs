@@ -120,7 +120,6 @@ impl<const D: usize> Shifts<D> {
     }
 
     /// Displacement (m) of water particle `i` of velocity `v` (m/s).
-    #[inline]
     fn displacement(&self, rates: &FluidRates<'_, D>, i: usize, v: &Vector<D>) -> Vector<D> {
         let mut sums = AuxiliarySums::filled_with(0.0);
         rates.read_auxiliary_of(i, &mut sums);

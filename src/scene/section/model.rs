@@ -95,10 +95,8 @@ impl ModelConfig {
         let constants = match viscosity {
             Some(Viscosity::Artificial(law)) => vec![("viscosity.artificial.alpha", law.alpha)],
             Some(Viscosity::Riemann(law)) => {
-                vec![
-                    ("viscosity.riemann.eta", law.eta),
-                    ("viscosity.riemann.threshold", law.threshold.unwrap_or_default()),
-                ]
+                let threshold = law.threshold.map(|threshold| ("viscosity.riemann.threshold", threshold));
+                [("viscosity.riemann.eta", law.eta)].into_iter().chain(threshold).collect()
             }
             Some(Viscosity::Laminar(law)) => vec![("viscosity.laminar.nu0", law.nu0)],
             Some(Viscosity::Sps(law)) => vec![

@@ -1,6 +1,9 @@
 //! What ties bodies at rest: lines, motors of sliders, mooring lines as linear springs, and steady forces.
 
-use crate::math::{Bivector, Matrix, Vector};
+use crate::{
+    math::{Bivector, Matrix, Vector},
+    solid::mooring::MooringSpec,
+};
 
 /// A line between two bodies, or a body and the ground.
 pub(super) struct Line<const D: usize> {
@@ -71,6 +74,23 @@ pub(crate) struct MooredEnd<const D: usize> {
     pub(crate) at: Vector<D>,
     /// Force (N/m) against a displacement of this end, with the line at rest.
     pub(crate) stiffness: Matrix<D>,
+}
+
+impl<const D: usize> MooredEnd<D> {
+    /// The ends of a line on free bodies; `stiffness` gives that of an end by its number. A line between two free bodies has none to the
+    /// ground.
+    pub(crate) fn of(
+        spec: &MooringSpec<D>,
+        is_free: impl Fn(usize) -> bool,
+        stiffness: impl Fn(usize) -> Matrix<D>,
+    ) -> Vec<Self> {
+        let free = spec.ends.each_ref().map(|end| end.solid.filter(|solid| is_free(*solid)));
+        let own = |k: usize| {
+            let solid = free[k].filter(|_| free[1 - k].is_none())?;
+            Some(Self { solid, at: spec.ends[k].at, stiffness: stiffness(k) })
+        };
+        (0..2).filter_map(own).collect()
+    }
 }
 
 /// Returns the force (N) of a line at `at` towards its fixed end: for a spring by its length, for a rope as at rest.

@@ -76,8 +76,8 @@ impl<N: Num, const D: usize> WallExtrapolation<N, D> {
         let share = w * s;
         self.weight_sum = self.weight_sum + share;
         self.pressure_sum = share.fma(p, self.pressure_sum);
-        for (k, arm) in self.offset_sum.iter_mut().enumerate() {
-            *arm = w.fma(r_wf[k], *arm);
+        for (arm, r) in self.offset_sum.iter_mut().zip(r_wf) {
+            *arm = w.fma(r, *arm);
         }
     }
 
@@ -85,8 +85,8 @@ impl<N: Num, const D: usize> WallExtrapolation<N, D> {
     #[inline(always)]
     pub fn add_velocity(&mut self, w: N, s: N, v: [N; D]) {
         let share = w * s;
-        for (k, flow) in self.velocity_sum.iter_mut().enumerate() {
-            *flow = share.fma(v[k], *flow);
+        for (flow, v) in self.velocity_sum.iter_mut().zip(v) {
+            *flow = share.fma(v, *flow);
         }
     }
 }

@@ -43,25 +43,15 @@ impl Sps {
         medium: &FluidProperties<D>,
     ) -> [[N; D]; D] {
         let of = |x: f64| s.constant(x);
-        let mut symmetric = *strain;
-        for (i, row) in symmetric.iter_mut().enumerate() {
-            for (j, entry) in row.iter_mut().enumerate() {
-                *entry = strain[i.max(j)][i.min(j)];
-            }
-        }
-        let strain = symmetric;
+        let strain: [[N; D]; D] = std::array::from_fn(|i| std::array::from_fn(|j| strain[i.max(j)][i.min(j)]));
         let length2 = medium.dp * medium.dp / D as f64;
         let norm2 = of(2.0) * strain.iter().flatten().fold(of(0.0), |sum, &x| sum + x * x);
         let nu_t = of(self.smagorinsky * self.smagorinsky * length2) * norm2.sqrt();
         let trace = (0..D).fold(of(0.0), |sum, i| sum + strain[i][i]);
         let isotropic = of(2.0 / 3.0) * (nu_t * trace + of(self.isotropic * length2) * norm2);
-        let mut stress = strain;
-        for (i, row) in stress.iter_mut().enumerate() {
-            for (j, entry) in row.iter_mut().enumerate() {
-                *entry = s * (of(2.0) * nu_t * *entry - if i == j { isotropic } else { of(0.0) });
-            }
-        }
-        stress
+        std::array::from_fn(|i| {
+            std::array::from_fn(|j| s * (of(2.0) * nu_t * strain[i][j] - if i == j { isotropic } else { of(0.0) }))
+        })
     }
 }
 

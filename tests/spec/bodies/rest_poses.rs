@@ -241,7 +241,8 @@ fn a_slack_line_moves_no_body_and_a_post_in_the_way_keeps_the_orientation() {
     // A tilted box 0.3 m above its draft, on a painter of 1.5 m over a distance of 0.8 m.
     let other = "[[solid]]\nname = \"b\"\nshape = { box = { size = [0.2, 0.1] } }\nat = { x = 1.6, y = 0.7, angle_deg = 8.0 }\n\
                  free = { density = 500.0 }\n";
-    let line = "[[rope]]\nname = \"line\"\nbetween = [\"a\", \"b\"]\nfrom = [0.8, 0.45]\nto = [1.6, 0.7]\nlength = 1.5\n";
+    let line =
+        "[[rope]]\nname = \"line\"\nbetween = [\"a\", \"b\"]\nfrom = [0.8, 0.45]\nto = [1.6, 0.7]\nlength = 1.5\n";
     let alone = placed::<2>(&flat(&format!("{floats}{other}")));
     let tied = placed::<2>(&flat(&format!("{floats}{other}{line}")));
     assert_eq!(alone[2].pose, tied[2].pose);
