@@ -1,8 +1,8 @@
 """A steep wave in a periodic sea, which an ideal fluid keeps for ever: writes its scene, and tells what a run loses.
 
-The start is Stokes's wave of second order (1847) in water 0.2 m deep: surface, velocity and pressure. The amplitude of a period is the
-root of its mean kinetic energy. Energy travels at the group velocity, so that a period's loss divided by group over phase velocity is
-that of a wave length in a flume.
+The start is Stokes's wave of second order (1847) in water 0.2 m deep: surface, velocity and pressure. The amplitude of a period is that
+of the first harmonic along the surface; the root of the kinetic energy, which includes motions beside the wave, is printed as well.
+Energy travels at the group velocity, so that a period's loss divided by group over phase velocity is that of a wave length in a flume.
 
     python3 travelling_wave.py DIR --kd 2.5 --height 0.04 --dp 0.008     (writes DIR/scene.toml and DIR/surface.csv)
     pontoon run DIR --out RUN
@@ -10,11 +10,12 @@ that of a wave length in a flume.
 """
 
 import argparse
+import cmath
 import csv
 import math
 import os
 
-DEPTH, GRAVITY, PERIODS, READINGS = 0.2, 9.81, 12, 80
+DEPTH, GRAVITY, PERIODS, READINGS, GAUGES = 0.2, 9.81, 12, 80, 40
 
 
 class Wave:
@@ -73,21 +74,40 @@ energy = true
 every = {every}
 
 [[probe]]
+name = "row"
+elevation = {{ from = {length / GAUGES / 2}, to = {length * (1 - 0.5 / GAUGES)}, count = {GAUGES} }}
+every = {every}
+
+[[probe]]
 budget = true
 every = {every}
 """)
 
 
-def judge(run, wave):
-    with open(os.path.join(run, "series", "energy.csv")) as file:
+def table(run, name):
+    with open(os.path.join(run, "series", name + ".csv")) as file:
         rows = list(csv.reader(line for line in file if not line.startswith("#")))
-    column = next(i for i, name in enumerate(rows[0]) if name.startswith("water_kinetic"))
-    values = [float(row[column]) for row in rows[1:]]
-    amplitudes = [math.sqrt(sum(values[i * READINGS : (i + 1) * READINGS]) / READINGS) for i in range(PERIODS)]
-    first, last = 2, PERIODS - 1
-    loss = 1 - (amplitudes[last] / amplitudes[first]) ** (1 / (last - first) / wave.group)
-    print("amplitude over that of the third period", *(f"{a / amplitudes[first]:.3f}" for a in amplitudes))
-    print(f"loss a wave length {100 * loss:.2f} %")
+    return rows[0], [[float(x) for x in row] for row in rows[1:]]
+
+
+def judge(run, wave):
+    names, rows = table(run, "energy")
+    column = next(i for i, name in enumerate(names) if name.startswith("water_kinetic"))
+    names, heights = table(run, "row")
+    gauges = [i for i, name in enumerate(names) if name.startswith("level")]
+
+    def along(row):
+        wave_along = (row[i] * cmath.exp(-2j * math.pi * n / len(gauges)) for n, i in enumerate(gauges))
+        return 2 * abs(sum(wave_along)) / len(gauges)
+
+    kinds = {"kinetic energy": [math.sqrt(row[column]) for row in rows], "surface": [along(row) for row in heights]}
+    for kind, values in kinds.items():
+        means = [sum(values[i * READINGS : (i + 1) * READINGS]) / READINGS for i in range(PERIODS)]
+        # Of the third to the twelfth period, by a line through their logarithms.
+        x, y = range(2, PERIODS), [math.log(mean) for mean in means[2:]]
+        middle, level = sum(x) / len(x), sum(y) / len(y)
+        slope = sum((a - middle) * (b - level) for a, b in zip(x, y)) / sum((a - middle) ** 2 for a in x)
+        print(f"{kind:15}", *(f"{mean / means[0]:.3f}" for mean in means), f"loss a wave length {-100 * slope / wave.group:.2f} %")
 
 
 parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)

@@ -135,7 +135,7 @@ fn scenes_that_generate_waves_spare_them_unless_they_say_otherwise() {
 /// A wave of second order (Stokes 1847) in a periodic sea one wavelength long, with the default laws of scenes that generate waves:
 /// an ideal fluid keeps its energy for ever. kd = 2.5, k a = 0.25, five particles in the height.
 #[test]
-fn a_steep_wave_in_a_periodic_sea_loses_less_than_one_per_cent_a_length() -> Result<()> {
+fn a_steep_wave_in_a_periodic_sea_keeps_its_kinetic_energy_and_most_of_its_height() -> Result<()> {
     let (dp, depth, amplitude, length) = (0.008, 0.2, 0.02, 0.504);
     let k = TAU / length;
     let (tanh, sinh, cosh) = ((k * depth).tanh(), (k * depth).sinh(), (k * depth).cosh());
@@ -169,23 +169,39 @@ fn a_steep_wave_in_a_periodic_sea_loses_less_than_one_per_cent_a_length() -> Res
         -depth - 0.04,
     ))?;
     let period = TAU / omega;
-    let mut energies = Vec::new();
+    // The amplitude of the first harmonic along the surface.
+    let harmonic_along = |sim: &Simulation<2>| {
+        let at = |i: i32| length * (f64::from(i) + 0.5) / 40.0;
+        let level = |x: f64| sim.system().surface_heights(&Vector::from([x, 0.0])).next().expect("water");
+        let part = |law: fn(f64) -> f64| (0..40).map(|i| level(at(i)) * law(k * at(i))).sum::<f64>();
+        part(f64::cos).hypot(part(f64::sin)) / 20.0
+    };
+    let (mut energies, mut amplitudes) = (Vec::new(), Vec::new());
     for start in [2.0, 7.0] {
         common::run_to(&mut sim, start * period)?;
-        let (mut sum, mut n) = (0.0, 0.0);
+        let (mut energy, mut surface, mut n) = (0.0, Vec::new(), 0.0);
         while sim.time() < (start + 1.0) * period {
             sim.step()?;
-            sum += sim.system().kinetic_energy();
+            energy += sim.system().kinetic_energy();
             n += 1.0;
+            if sim.time() >= (start + 0.05 * surface.len() as f64) * period {
+                surface.push(harmonic_along(&sim));
+            }
         }
-        energies.push(sum / n);
+        energies.push(energy / n);
+        amplitudes.push(surface.iter().sum::<f64>() / surface.len() as f64);
     }
     // The wave passes its length in a period; energy travels at the share `group` of that speed, so that a flume's wave has 1/group
     // periods for each length.
     let group = 0.5 * (1.0 + 2.0 * k * depth / (2.0 * k * depth).sinh());
-    let loss = 1.0 - (energies[1] / energies[0]).powf(0.5 / 5.0 / group);
+    let loss = |ratio: f64| 1.0 - ratio.powf(1.0 / 5.0 / group);
     // Measured 0.7 %; without the threshold of the Riemann dissipation 4 %. A gain would be an error, too.
-    assert!((0.0..0.01).contains(&loss), "{loss} of its amplitude a length");
+    let of_energy = loss((energies[1] / energies[0]).sqrt());
+    assert!((0.0..0.01).contains(&of_energy), "{of_energy} of the root of the kinetic energy a length");
+    // The kinetic energy includes motions beside the wave. Measured 1.6 % of the surface, without the threshold 4.1 %; the target of the
+    // project, 1 %, is missed.
+    let of_surface = loss(amplitudes[1] / amplitudes[0]);
+    assert!((0.0..0.02).contains(&of_surface), "{of_surface} of the amplitude a length");
     Ok(())
 }
 
