@@ -28,7 +28,7 @@ struct Place<'a, const D: usize> {
 impl<const D: usize> Place<'_, D> {
     /// Describes a point (m) of the world in this frame.
     fn described(&self, x: &Vector<D>) -> String {
-        self.named(&self.frame.local(x).as_slice()[..])
+        self.named(self.frame.local(x).as_slice())
     }
 
     fn named(&self, at: &[f64]) -> String {
