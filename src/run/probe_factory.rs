@@ -21,8 +21,7 @@ where
     Dim<D>: Dimension<D>,
 {
     plan.probes.iter().for_each(|probe| probe.kind.enable_records(sim));
-    let mut probes: Vec<_> =
-        plan.probes.iter().enumerate().map(|own| build_probe(own, sim.system())).collect::<Result<_>>()?;
+    let mut probes: Vec<_> = plan.probes.iter().map(|probe| build_probe(probe, sim.system())).collect::<Result<_>>()?;
     match water_ranges(probes.iter().map(|probe| &**probe), sim.system()) {
         Some(ranges) => water_of_ranks::know_within(sim, &ranges),
         None => sim.gather_water(false),
@@ -41,14 +40,14 @@ pub(crate) fn water_ranges<'a, const D: usize>(
     ranges.map(|ranges| ranges.concat())
 }
 
-fn build_probe<const D: usize>((number, plan): (usize, &ProbePlan), system: &System<D>) -> Result<Box<dyn Probe<D>>> {
+fn build_probe<const D: usize>(plan: &ProbePlan, system: &System<D>) -> Result<Box<dyn Probe<D>>> {
     if plan.name.is_empty() || plan.name.starts_with('.') || plan.name.contains(['/', '\\', ':', '\0']) {
         return Err(Error::scene(format!("{:?} cannot name a file, so no probe either", plan.name)));
     }
     plan.kind.build_unread(system).map_err(|e| {
         let error = Error { message: format!("probe \"{}\": {}", plan.name, e.message), ..e };
         let is_placed = error.location.is_some();
-        if is_placed { error } else { error.at("", None, format!("probe.{number}")) }
+        if is_placed { error } else { error.at("", None, format!("probe.{}", plan.name)) }
     })
 }
 

@@ -437,9 +437,16 @@ impl Scene {
     /// any.
     pub fn with_location(&self, mut error: Error) -> Error {
         match error.location.take() {
-            Some(place) if place.file.is_empty() => self.origin.with_location(error, &place.key),
+            Some(place) if place.file.is_empty() => self.origin.with_location(error, &self.numbered(place.key)),
             place => Error { location: place, ..error },
         }
+    }
+
+    /// Returns the key of a probe by its number in place of its name; other keys unchanged.
+    fn numbered(&self, key: String) -> String {
+        let name = key.strip_prefix("probe.").filter(|name| name.parse::<usize>().is_err());
+        let number = name.and_then(|name| self.probe_names().iter().position(|own| own == name));
+        number.map_or(key.clone(), |number| format!("probe.{number}"))
     }
 
     /// Returns the scene as TOML, for a file or a manifest.

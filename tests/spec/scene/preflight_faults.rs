@@ -440,7 +440,7 @@ fn probes_in_the_solid_that_carries_them_are_found() {
     }
     // In the frame of the body, whose middle is at 0.55 m: the water under its bottom.
     let found = finding(&probe("pressure = [0.05, 0.0]\non = \"b\""), "probe_inside_solid");
-    assert_eq!(found.mend, "the nearest water is at [0.05, -0.16]");
+    assert_eq!(found.mend, "the nearest water is at [0.05, -0.16] m on \"b\"");
     for words in ["pressure = [0.0, -0.15]\non = \"b\"", "pressure = [0.3, 0.0]\non = \"b\""] {
         has_no(&probe(words), "probe_inside_solid");
     }
