@@ -115,6 +115,18 @@ fn unwind(
     Vec::new()
 }
 
+/// Friction of bodies that move in a plane: in 2-D every body does.
+mod planar_friction {
+    use super::rapier::{
+        dynamics::{LockedAxes, RigidBodyHandle},
+        pipeline::PhysicsWorld,
+    };
+
+    pub(super) fn free_normals(_world: &mut PhysicsWorld, _bodies: &[RigidBodyHandle], _locks: &[LockedAxes]) {}
+
+    pub(super) fn hold_normals(_world: &mut PhysicsWorld, _freed: &()) {}
+}
+
 /// Does nothing: no parameter exists in 2-D only.
 fn tune(_parameters: &mut IntegrationParameters) {}
 
