@@ -195,8 +195,11 @@ pub(crate) const C0_FACTOR: f64 = 10.0;
 /// Depth of the water over dp beyond which scenes with free bodies get [`Model::deep_water`], –.
 pub(crate) const DEEP: f64 = 100.0;
 
-/// Default of h over dp in 2-D where a paddle makes waves, –.
-pub(crate) const WAVES_H_OVER_DP: f64 = 2.0;
+/// Defaults of h over dp in 2-D and 3-D where a paddle makes waves, –.
+pub(crate) const WAVES_H_OVER_DP: [f64; 2] = [2.4, 1.8];
+
+/// The same in 2-D scenes with free bodies, –.
+pub(crate) const BODIES_IN_WAVES_H_OVER_DP: f64 = 2.0;
 
 /// Depth over dp at which α = 0.02 gives the viscosity that deep water gets, –: a body of ten rows in water as deep as itself.
 const VISCOUS_ROWS: f64 = 10.0;
@@ -237,10 +240,16 @@ impl Model {
     }
 
     /// The same model with the defaults of scenes in which a paddle or a face makes waves by name: gradients corrected near the surface,
-    /// Riemann dissipation with a threshold, and in 2-D h = 2 dp.
+    /// Riemann dissipation with a threshold, and h = 2.4 dp (1.8 dp in 3-D).
     pub fn for_waves(self) -> Self {
         let viscosity = Viscosity::Riemann(Riemann { threshold: Some(Riemann::WAVES_THRESHOLD), ..Riemann::default() });
-        Self { gradient: PressureGradient::NearSurface, viscosity, ..self.h_in_2d(WAVES_H_OVER_DP) }
+        Self { gradient: PressureGradient::NearSurface, viscosity, ..self.h_over_dp(WAVES_H_OVER_DP) }
+    }
+
+    /// As [`Self::for_waves`], with free bodies: in 2-D h = 2 dp. A wider kernel takes more from the added mass and adds more to the
+    /// damping in roll.
+    pub fn for_bodies_in_waves(self) -> Self {
+        self.for_waves().h_over_dp([BODIES_IN_WAVES_H_OVER_DP, WAVES_H_OVER_DP[1]])
     }
 
     /// The same model with the defaults of scenes with free bodies, without waves by name: artificial viscosity, α = 0.02. With the
@@ -260,13 +269,14 @@ impl Model {
         if let Viscosity::Artificial(law) = &mut self.viscosity {
             law.alpha *= (VISCOUS_ROWS * self.dp / depth).sqrt();
         }
-        self.h_in_2d(DEEP_H_OVER_DP)
+        let in_3d = self.h / self.dp;
+        self.h_over_dp([DEEP_H_OVER_DP, in_3d])
     }
 
-    /// The same model with this h over dp (–), if it is 2-D.
-    fn h_in_2d(self, ratio: f64) -> Self {
-        let h = if self.gravity.len() == 2 { ratio * self.dp } else { self.h };
-        Self { h, ..self }
+    /// The same model with these h over dp (–) in 2-D and in 3-D.
+    fn h_over_dp(self, [in_2d, in_3d]: [f64; 2]) -> Self {
+        let ratio = if self.gravity.len() == 2 { in_2d } else { in_3d };
+        Self { h: ratio * self.dp, ..self }
     }
 
     /// The same model with this kernel.

@@ -7,9 +7,9 @@
 //!
 //! A steep regular wave has less than the height that the second-order theory of its paddle promises: in potential theory without the
 //! assumption of small waves the amplitude at its period lacks the share c (kH/2)², where c depends on kd
-//! (`tests/references/steep_waves.py`). In runs in 2-D, with gradients corrected near the surface, h = 2 dp and a height of 5 dp, waves
-//! have the share s of this amplitude half a wavelength from the paddle. In every wavelength from there on they lose the share e. Both
-//! depend on the wavelength over dp; e is known within 0.01 (`docs/explanation/decisions/0106-wave-resolution.md`).
+//! (`tests/references/steep_waves.py`). In runs in 2-D, with gradients corrected near the surface, h of 2 or 2.4 dp and a height of 5 dp,
+//! waves have the share s of this amplitude half a wavelength from the paddle. In every wavelength from there on they lose the share e.
+//! Both depend on the wavelength over dp; e is known within 0.01 (`docs/explanation/decisions/0106-wave-resolution.md`).
 
 use serde::Serialize;
 
@@ -23,16 +23,21 @@ use crate::{
 /// Share of the first swing in heave that is lost, times N, –.
 const HEAVE: f64 = 0.8;
 
-/// Smoothing length over dp with which the waves were measured, less rounding.
-const WAVE_SMOOTHING: f64 = 2.0 - 1e-9;
+/// Smoothing lengths over dp with which the waves were measured, less rounding.
+const WAVE_SMOOTHING: [f64; 2] = [2.0 - 1e-9, 2.4 - 1e-9];
 
 /// kd, and the share of the amplitude that a wave lacks over (kH/2)² (c), –.
 const STEEPNESS: [[f64; 2]; 6] = [[0.7, 3.3], [1.0, 1.3], [1.4, 0.95], [2.0, 1.2], [2.5, 1.4], [3.0, 1.6]];
 
 /// Wavelength over dp, amplitude at half a wavelength from the paddle over that of potential theory (s), and loss in a wavelength
 /// (e), –. The theory's amplitudes are 0.2 % higher than those that the reference prints, which is its error for small waves.
-const WAVES: [[f64; 3]; 5] =
-    [[63.0, 1.039, 0.036], [79.0, 1.026, 0.020], [112.0, 1.011, 0.018], [157.0, 1.007, 0.009], [224.0, 1.006, 0.008]];
+type Waves = [[f64; 3]; 5];
+
+/// The waves for each of [`WAVE_SMOOTHING`].
+const WAVES: [Waves; 2] = [
+    [[63.0, 1.039, 0.036], [79.0, 1.026, 0.020], [112.0, 1.011, 0.018], [157.0, 1.007, 0.009], [224.0, 1.006, 0.008]],
+    [[63.0, 1.024, -0.007], [79.0, 1.020, 0.002], [112.0, 1.013, 0.004], [157.0, 1.007, 0.0], [224.0, 1.006, 0.0]],
+];
 
 /// The height of waves that is to be expected at a gauge.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -61,8 +66,9 @@ pub(super) fn heights_at_gauges<const D: usize>(
 ) -> Vec<WaveAtGauge> {
     let model = context.system.model();
     let spares_waves = model.gradient != PressureGradient::Plain && model.viscosity.spares_waves();
-    let is_measured = D == 2 && spares_waves && model.h >= WAVE_SMOOTHING * model.dp;
-    if !is_measured || wave.kind != Some("regular") || wave.height_dp < generated_waves::LEAST * (1.0 - 1e-9) {
+    let measured = WAVE_SMOOTHING.iter().rposition(|ratio| D == 2 && spares_waves && model.h >= ratio * model.dp);
+    let Some(smoothing) = measured else { return Vec::new() };
+    if wave.kind != Some("regular") || wave.height_dp < generated_waves::LEAST * (1.0 - 1e-9) {
         return Vec::new();
     }
     let reach = wave.damping_m.unwrap_or(f64::INFINITY).min(wave.reach_m);
@@ -72,8 +78,8 @@ pub(super) fn heights_at_gauges<const D: usize>(
         let at = Vector::from_fn(|i, _| place.get(i).copied().unwrap_or(context.still_water.level));
         let distance_m = stand.distance_ahead(&at).filter(|way| (0.5 * wave.length_m..reach).contains(way))?;
         let steepness = std::f64::consts::PI * wave.height_m / wave.length_m;
-        let height_share =
-            amplitude_share(wave.kd?, steepness) * resolved_share(wave.length_dp, distance_m / wave.length_m);
+        let height_share = amplitude_share(wave.kd?, steepness)
+            * resolved_share(&WAVES[smoothing], wave.length_dp, distance_m / wave.length_m);
         Some(WaveAtGauge { probe: probe.name.clone(), distance_m, height_share })
     };
     context.plan.probes.iter().filter_map(gauge).collect()
@@ -85,9 +91,10 @@ fn amplitude_share(kd: f64, steepness: f64) -> f64 {
     (1.0 - missing * steepness * steepness).max(0.0)
 }
 
-/// Amplitude (–) of waves of the length `length_dp` (dp), at the `distance` (wavelengths) from the paddle, over that of potential theory.
-fn resolved_share(length_dp: f64, distance: f64) -> f64 {
-    let [_, start, loss] = interpolated(&WAVES, length_dp);
+/// Amplitude (–) of waves of the length `length_dp` (dp), at the `distance` (wavelengths) from the paddle, over that of potential theory,
+/// as `waves` were measured.
+fn resolved_share(waves: &Waves, length_dp: f64, distance: f64) -> f64 {
+    let [_, start, loss] = interpolated(waves, length_dp);
     start * (1.0 - loss).powf(distance - 0.5)
 }
 

@@ -143,7 +143,8 @@ impl Scene {
         let weightless = self.context().gravity.is_some_and(|gravity| gravity.strongest == 0.0);
         let free = self.solid.iter().any(|solid| solid.free.is_some());
         let mut usual = match (self.makes_waves() && !weightless, free) {
-            (true, _) => usual.for_waves(),
+            (true, true) => usual.for_bodies_in_waves(),
+            (true, false) => usual.for_waves(),
             (false, true) => usual.for_free_bodies(),
             (false, false) => usual,
         };

@@ -55,7 +55,7 @@ periodic = {{ x = [0.0, {length}] }}
 
 [model]                    # the default laws where a paddle makes a named wave
 gradient = "near_surface"
-h_over_dp = 2.0
+h_over_dp = 2.4
 viscosity = {{ riemann = {{ threshold = 0.3 }} }}
 
 [[water]]

@@ -7,8 +7,8 @@ use super::water::StillWaterLevel;
 use crate::{
     error::Result,
     model::{
-        C0_FACTOR, Diffusion, KernelKind, Model, PairLoopKind, PressureGradient, Shifting, Slip, TimeScheme, Viscosity,
-        WAVES_H_OVER_DP, Walls,
+        BODIES_IN_WAVES_H_OVER_DP, C0_FACTOR, Diffusion, KernelKind, Model, PairLoopKind, PressureGradient, Shifting,
+        Slip, TimeScheme, Viscosity, WAVES_H_OVER_DP, Walls,
     },
     scene::context::{Context, Defaults},
     sph::viscosity::Artificial,
@@ -162,9 +162,11 @@ impl ModelConfig {
             let ratio = usual.h / usual.dp;
             let dimension = usual.gravity.len();
             let why = match dimension {
-                3 => "waves lose height below 1.5 dp and keep no more above; about 110 neighbours",
-                _ if ratio == WAVES_H_OVER_DP => {
-                    "short waves keep most height, and still water is quiet; about 50 neighbours"
+                3 if ratio == WAVES_H_OVER_DP[1] => "waves keep their height; about 190 neighbours",
+                3 => "less noise than below; about 110 neighbours",
+                _ if ratio == WAVES_H_OVER_DP[0] => "waves keep their height; about 72 neighbours",
+                _ if ratio == BODIES_IN_WAVES_H_OVER_DP => {
+                    "waves keep most height, and bodies move as in theory; about 50 neighbours"
                 }
                 _ if ratio > default_h_over_dp(dimension) => {
                     "free bodies in water deeper than 100 dp: below, the pressure's errors slow them; about 55 neighbours"

@@ -4,21 +4,23 @@ use super::*;
 /// length beyond.
 #[test]
 fn expected_amplitudes_are_those_measured() {
-    for [length, start, loss] in WAVES {
-        assert!((resolved_share(length, 0.5) - start).abs() < 1e-12);
-        assert!((resolved_share(length, 2.5) - start * (1.0 - loss).powi(2)).abs() < 1e-12);
+    for waves in &WAVES {
+        for &[length, start, loss] in waves {
+            assert!((resolved_share(waves, length, 0.5) - start).abs() < 1e-12);
+            assert!((resolved_share(waves, length, 2.5) - start * (1.0 - loss).powi(2)).abs() < 1e-12);
+        }
+        for pair in waves.windows(2) {
+            let [[a, low, _], [b, high, _]] = [pair[0], pair[1]];
+            let middle = resolved_share(waves, (a * b).sqrt(), 0.5);
+            assert!((middle - 0.5 * (low + high)).abs() < 1e-12, "{middle}");
+        }
+        let [first, last] = [waves[0][0], waves[waves.len() - 1][0]].map(|length| resolved_share(waves, length, 1.0));
+        assert_eq!([resolved_share(waves, 20.0, 1.0), resolved_share(waves, 500.0, 1.0)], [first, last]);
     }
-    for pair in WAVES.windows(2) {
-        let [[a, low, _], [b, high, _]] = [pair[0], pair[1]];
-        let middle = resolved_share((a * b).sqrt(), 0.5);
-        assert!((middle - 0.5 * (low + high)).abs() < 1e-12, "{middle}");
-    }
-    let [first, last] = [WAVES[0][0], WAVES[WAVES.len() - 1][0]].map(|length| resolved_share(length, 1.0));
-    assert_eq!([resolved_share(20.0, 1.0), resolved_share(500.0, 1.0)], [first, last]);
 }
 
-/// The five waves that were measured: 0.2 m deep, 0.04 m high, dp 8 mm; their amplitudes over 0.02 m at half a wavelength and at two
-/// wavelengths from the paddle (`docs/measurements/wave-resolution.csv`). Single gauges scatter by 0.007 about the fit.
+/// The five waves that were measured: 0.2 m deep, 0.04 m high, dp 8 mm, h = 2 dp; their amplitudes over 0.02 m at half a wavelength and at
+/// two wavelengths from the paddle (`docs/measurements/wave-resolution.csv`). Single gauges scatter by 0.007 about the fit.
 #[test]
 fn steep_waves_have_less_than_the_specified_height() {
     let measured =
@@ -27,7 +29,7 @@ fn steep_waves_have_less_than_the_specified_height() {
         let (k, height) = (kd / 0.2, 0.04);
         let length_dp = std::f64::consts::TAU / k / 0.008;
         for (distance, measured) in [(0.5, near), (2.0, far)] {
-            let share = amplitude_share(kd, 0.5 * k * height) * resolved_share(length_dp, distance);
+            let share = amplitude_share(kd, 0.5 * k * height) * resolved_share(&WAVES[0], length_dp, distance);
             assert!((share - measured).abs() < 0.007, "kd {kd}, {distance} lengths: {share}, measured {measured}");
         }
     }
