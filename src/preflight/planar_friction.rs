@@ -6,8 +6,8 @@
 use super::{Finding, PreflightContext};
 use crate::{math::Bivector, solid::Role};
 
-/// Distance (m) of both ends of a rope across the plane up to which the rope lies in the plane.
-const IN_PLANE: f64 = 1e-9;
+/// Distance of both ends of a rope across the plane over their distance, up to which the rope lies in the plane, –.
+const IN_PLANE: f64 = 1e-3;
 
 /// Adds a note for each free body on such a rope that can neither move along an axis nor turn out of the plane normal to it.
 pub(super) fn check<const D: usize>(context: &PreflightContext<D>, findings: &mut Vec<Finding>) {
@@ -24,7 +24,8 @@ pub(super) fn check<const D: usize>(context: &PreflightContext<D>, findings: &mu
         let Some(axis) = (0..D).find(is_normal).filter(|_| can_move) else { continue };
         let leaves = context.system.constraints().ropes.iter().find(|rope| {
             let [a, b] = &rope.ends;
-            [a, b].iter().any(|end| end.solid == Some(i)) && (a.at[axis] - b.at[axis]).abs() > IN_PLANE
+            [a, b].iter().any(|end| end.solid == Some(i))
+                && (a.at[axis] - b.at[axis]).abs() > IN_PLANE * (a.at - b.at).norm()
         });
         let Some(rope) = leaves else { continue };
         let what = format!(

@@ -163,7 +163,7 @@ impl ModelConfig {
             let dimension = usual.gravity.len();
             let why = match dimension {
                 3 if ratio == WAVES_H_OVER_DP[1] => "waves keep their height; about 190 neighbours",
-                3 => "less noise than below; about 110 neighbours",
+                3 => "waves lose height below 1.5 dp; about 110 neighbours",
                 _ if ratio == WAVES_H_OVER_DP[0] => "waves keep their height; about 72 neighbours",
                 _ if ratio == BODIES_IN_WAVES_H_OVER_DP => {
                     "waves keep most height, and bodies move as in theory; about 50 neighbours"

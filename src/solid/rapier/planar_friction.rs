@@ -4,7 +4,8 @@
 //! one of the two directions only, this matrix is singular, and the engine takes the friction as zero. This is so where
 //! the normal of the contact lies in the plane of motion. There the direction across this plane does not act on the
 //! others: the body gets back its translation across the plane for the step of the engine, without a load along it.
-//! Friction then has the inverse mass 1/m in this direction, and no sliding to act against.
+//! Friction then has the inverse mass 1/m in this direction, and no sliding to act against. Where a contact oblique to the
+//! plane presses as well, the body stays locked, and its contacts in the plane have no friction.
 
 use super::{
     D,
@@ -15,8 +16,9 @@ use super::{
     },
 };
 
-/// Largest component of a unit vector across the plane of motion at which the vector lies in the plane, –.
-const IN_PLANE: f64 = 1e-9;
+/// Largest component of a unit vector across the plane of motion at which the vector counts as one in the plane, –. Its square is
+/// the error of what acts along the vector.
+const IN_PLANE: f64 = 1e-3;
 
 /// Locks of translation and rotation along each axis.
 const LOCKS: [[LockedAxes; 2]; D] = [
@@ -80,11 +82,19 @@ pub(super) fn hold_normals(world: &mut PhysicsWorld, freed: &[Freed]) {
     }
 }
 
-/// Returns whether the normals of all contact points of a body after the last step lie in its plane of motion.
+/// Returns whether all contacts of a body after the last step act in its plane of motion. A face beside the plane does
+/// not act until it is pressed into the body, an oblique face not until it touches.
 fn touches_in_plane(world: &PhysicsWorld, body: &RigidBody, axis: usize) -> bool {
     let pairs = |&collider: &ColliderHandle| world.narrow_phase.contact_pairs_with(collider);
-    let mut manifolds = body.colliders().iter().flat_map(pairs).flat_map(|pair| pair.manifolds());
-    manifolds.all(|manifold| manifold.points.is_empty() || manifold.data.normal[axis].abs() <= IN_PLANE)
+    body.colliders().iter().flat_map(pairs).all(|pair| {
+        let skins = [pair.collider1, pair.collider2].map(|collider| world.colliders[collider].contact_skin());
+        let may_overlap = world.integration_parameters.allowed_linear_error();
+        pair.manifolds().iter().all(|manifold| {
+            let across = manifold.data.normal[axis].abs();
+            let allowed = if across >= 1.0 - IN_PLANE { may_overlap } else { 0.0 };
+            across <= IN_PLANE || manifold.points.iter().all(|point| point.dist - skins[0] - skins[1] > -allowed)
+        })
+    })
 }
 
 /// Returns whether both ends of each rope of a body are at the same coordinate across its plane of motion.

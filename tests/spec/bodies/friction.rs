@@ -66,6 +66,13 @@ fn acceleration_in_3d(slope: f64, yaw: f64, share: f64, planar: bool) -> Result<
         *body = body.clone().lock_translation(1).lock_rotation(0).lock_rotation(2);
     }
     let mut solids = vec![pool, common::solid("slab", under, on([0.0, 0.0, -0.05], 0.0), Role::Fixed), block];
+    if planar && yaw == 0.0 {
+        // Rails that touch both sides of the block do not press it.
+        for y in [-0.15, 0.15] {
+            let rail = Shape::Box { size: Vector::from([1.0, 0.1, 0.2]) };
+            solids.push(common::solid("rail", rail, on([0.0, y, 0.1], 0.0), Role::Fixed));
+        }
+    }
     solids.iter_mut().for_each(|solid| solid.friction = share * slope.tan());
     let water = common::lattice([-3.0, 0.0, 0.0], [0.2, 0.2, depth], dp);
     let model = Model::water(3, dp, depth).dt_max(1e-3);
