@@ -146,8 +146,8 @@ fn preflight_reports_the_absorbing_paddles() {
     let absorbers = |end: &str| common::preflight_report(&scene(end).unwrap()).absorbers;
     assert!(absorbers("fixed = true").is_empty());
     let own = &absorbers(ABSORBER)[0];
-    // The gauge stands one support radius before the face: 2 · 2 dp.
-    assert!((own.period_s - 1.175).abs() < 1e-12 && (own.gauge_m - 0.04).abs() < 1e-12, "{own:?}");
+    // The gauge stands one support radius before the face: 2 · 2.4 dp.
+    assert!((own.period_s - 1.175).abs() < 1e-12 && (own.gauge_m - 0.048).abs() < 1e-12, "{own:?}");
     assert!(own.sends_back.iter().all(|(_, share)| (1e-4..0.1).contains(share)), "{own:?}");
     let flap = "driven = { hinge = [0.0, 0.0], wave = { regular = { height = 0.02, period = 1.2 }, absorb = { stroke = 0.2 } } }";
     let own = &absorbers(flap)[0];
