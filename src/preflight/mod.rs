@@ -12,7 +12,6 @@ mod moorings;
 mod open_boundaries;
 mod overlapping_bodies;
 mod periodic_sides;
-mod planar_friction;
 mod floating_bodies;
 mod hinged_bodies;
 mod hollows;
@@ -257,7 +256,6 @@ pub fn preflight<const D: usize>(
     look.check_thickness(&mut findings);
     thin_parts::check_parts(&look, &mut findings);
     periodic_sides::check(&look, &mut findings);
-    planar_friction::check(&look, &mut findings);
     initial_water::check(&look, &mut findings);
     open_boundaries::check(&look, &mut findings);
     look.check_probes(&sound, &mut findings);

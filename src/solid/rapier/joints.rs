@@ -33,7 +33,7 @@ use crate::{
 
 /// Frequency of the spring that represents a lock, Hz: the lock is rigid at any step, with a relative error of 1/(2π f
 /// Δt)².
-const LOCK: f64 = 1e9;
+pub(super) const LOCK: f64 = 1e9;
 
 /// Sweeps of the engine over all rows in a step.
 pub(super) const SWEEPS: usize = 4;

@@ -1,33 +1,28 @@
 //! Friction of bodies in 3-D that move in a plane, by their locks or because a symmetry plane cuts them.
 //!
 //! rapier solves both directions of friction at once, with the inverse of a 2 × 2 matrix. If a contact point can move in
-//! one of the two directions only, this matrix is singular, and the engine takes the friction as zero. This is so where
-//! the normal of the contact lies in the plane of motion. There the direction across this plane does not act on the
-//! others: the body gets back its translation across the plane for the step of the engine, without a load along it.
-//! Friction then has the inverse mass 1/m in this direction, and no sliding to act against. Where a contact oblique to the
-//! plane presses as well, the body stays locked, and its contacts in the plane have no friction.
+//! one of the two directions only, this matrix is singular, and the engine takes the friction as zero. During the step of
+//! the engine a joint to the ground therefore holds such a body in its plane, in place of the lock. Friction then has the
+//! inverse mass 1/m across the plane, and no sliding to act against. Contacts and ropes oblique to the plane act on the
+//! body as with the lock.
 
 use super::{
     D,
     rapier::{
-        dynamics::{LockedAxes, RigidBody, RigidBodyHandle},
-        geometry::ColliderHandle,
+        dynamics::{GenericJoint, JointAxesMask, LockedAxes, RigidBodyBuilder, RigidBodyHandle, SpringCoefficients},
+        math::Pose as Frame,
         pipeline::PhysicsWorld,
     },
 };
 
-/// Largest component of a unit vector across the plane of motion at which the vector counts as one in the plane, –. Its square is
-/// the error of what acts along the vector.
-const IN_PLANE: f64 = 1e-3;
-
-/// Locks of translation and rotation along each axis.
-const LOCKS: [[LockedAxes; 2]; D] = [
-    [LockedAxes::TRANSLATION_LOCKED_X, LockedAxes::ROTATION_LOCKED_X],
-    [LockedAxes::TRANSLATION_LOCKED_Y, LockedAxes::ROTATION_LOCKED_Y],
-    [LockedAxes::TRANSLATION_LOCKED_Z, LockedAxes::ROTATION_LOCKED_Z],
+/// Locks of translation and rotation along each axis, and of a joint.
+const LOCKS: [(LockedAxes, LockedAxes, JointAxesMask); D] = [
+    (LockedAxes::TRANSLATION_LOCKED_X, LockedAxes::ROTATION_LOCKED_X, JointAxesMask::LIN_X),
+    (LockedAxes::TRANSLATION_LOCKED_Y, LockedAxes::ROTATION_LOCKED_Y, JointAxesMask::LIN_Y),
+    (LockedAxes::TRANSLATION_LOCKED_Z, LockedAxes::ROTATION_LOCKED_Z, JointAxesMask::LIN_Z),
 ];
 
-/// A body that may move across its plane of motion in the step of the engine.
+/// A body that a joint holds in its plane in the step of the engine.
 pub(super) struct Freed {
     body: RigidBodyHandle,
     locks: LockedAxes,
@@ -38,38 +33,45 @@ pub(super) struct Freed {
 
 /// Returns the axis across the plane in which a body with these locks moves.
 fn normal_axis(locks: LockedAxes) -> Option<usize> {
-    let holds = |axis: usize| {
-        let turns = (0..D).filter(|&turn| turn != axis).map(|turn| LOCKS[turn][1]);
-        locks.contains(LOCKS[axis][0]) && turns.into_iter().all(|turn| locks.contains(turn))
-    };
+    let holds =
+        |axis: usize| locks.contains(LOCKS[axis].0) && (0..D).all(|turn| turn == axis || locks.contains(LOCKS[turn].1));
     (0..D).find(|&axis| locks != LockedAxes::all() && holds(axis))
 }
 
-/// Frees the translation of each body across its plane of motion, if all contacts and ropes of the body lie in this plane.
-/// `locks` are those of each body. A contact that begins in this step shows its normal in the next.
+/// Adds the joint of a body that moves in a plane, as stiff as `lock`.
+pub(super) fn hold_in_plane(world: &mut PhysicsWorld, handle: RigidBodyHandle, lock: SpringCoefficients<f64>) {
+    let body = &world.bodies[handle];
+    let Some(axis) = normal_axis(body.locked_axes()).filter(|_| body.is_dynamic()) else { return };
+    let (place, centre) = (body.center_of_mass(), body.mass_properties().local_mprops.local_com);
+    let ground = world.insert_body(RigidBodyBuilder::fixed().translation(place));
+    let mut joint = GenericJoint::new(LOCKS[axis].2);
+    joint.local_frame2 = Frame::from_translation(centre);
+    joint.softness = lock;
+    world.insert_impulse_joint(ground, handle, joint);
+}
+
+/// Takes the lock across its plane off each body that moves in a plane. `locks` are those of each body. What acts on the
+/// body along this axis, the joint would take; it is left out.
 pub(super) fn free_normals(world: &mut PhysicsWorld, bodies: &[RigidBodyHandle], locks: &[LockedAxes]) -> Vec<Freed> {
     let mut freed = Vec::new();
     for (&handle, &locks) in bodies.iter().zip(locks) {
         let Some(axis) = normal_axis(locks) else { continue };
-        let body = &world.bodies[handle];
-        if body.locked_axes() != locks || !touches_in_plane(world, body, axis) || !is_tied_in_plane(world, handle, axis)
-        {
+        let weight = world.gravity[axis];
+        let body = &mut world.bodies[handle];
+        if body.locked_axes() != locks {
             continue;
         }
-        let weight = world.gravity[axis] * body.gravity_scale() * body.mass();
-        let before = [body.center_of_mass()[axis], body.linvel()[axis]];
-        freed.push(Freed { body: handle, locks, axis, before });
-        let body = &mut world.bodies[handle];
+        freed.push(Freed { body: handle, locks, axis, before: [body.center_of_mass()[axis], body.linvel()[axis]] });
         let mut force = body.user_force();
-        force[axis] = -weight;
+        force[axis] = -weight * body.gravity_scale() * body.mass();
         body.reset_forces(false);
         body.add_force(force, false);
-        body.set_locked_axes(locks.difference(LOCKS[axis][0]), false);
+        body.set_locked_axes(locks.difference(LOCKS[axis].0), false);
     }
     freed
 }
 
-/// Locks the bodies again, and takes back what round-off moved them across their planes.
+/// Locks the bodies again, and takes back what moved them across their planes.
 pub(super) fn hold_normals(world: &mut PhysicsWorld, freed: &[Freed]) {
     for &Freed { body, locks, axis, before: [place, velocity] } in freed {
         let body = &mut world.bodies[body];
@@ -80,28 +82,4 @@ pub(super) fn hold_normals(world: &mut PhysicsWorld, freed: &[Freed]) {
         body.set_linvel(linear, false);
         body.set_translation(translation, false);
     }
-}
-
-/// Returns whether all contacts of a body after the last step act in its plane of motion. A face beside the plane does
-/// not act until it is pressed into the body, an oblique face not until it touches.
-fn touches_in_plane(world: &PhysicsWorld, body: &RigidBody, axis: usize) -> bool {
-    let pairs = |&collider: &ColliderHandle| world.narrow_phase.contact_pairs_with(collider);
-    body.colliders().iter().flat_map(pairs).all(|pair| {
-        let skins = [pair.collider1, pair.collider2].map(|collider| world.colliders[collider].contact_skin());
-        let may_overlap = world.integration_parameters.allowed_linear_error();
-        pair.manifolds().iter().all(|manifold| {
-            let across = manifold.data.normal[axis].abs();
-            let allowed = if across >= 1.0 - IN_PLANE { may_overlap } else { 0.0 };
-            across <= IN_PLANE || manifold.points.iter().all(|point| point.dist - skins[0] - skins[1] > -allowed)
-        })
-    })
-}
-
-/// Returns whether both ends of each rope of a body are at the same coordinate across its plane of motion.
-fn is_tied_in_plane(world: &PhysicsWorld, handle: RigidBodyHandle, axis: usize) -> bool {
-    world.impulse_joints.attached_joints(handle).all(|(_, _, _, joint)| {
-        let ends = [(joint.body1(), joint.data.local_frame1), (joint.body2(), joint.data.local_frame2)];
-        let [a, b] = ends.map(|(body, frame)| (world.bodies[body].position() * frame).translation);
-        joint.data.coupled_axes.is_empty() || (a - b)[axis].abs() <= IN_PLANE * (a - b).length()
-    })
 }

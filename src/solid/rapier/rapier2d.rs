@@ -118,9 +118,11 @@ fn unwind(
 /// Friction of bodies that move in a plane: in 2-D every body does.
 mod planar_friction {
     use super::rapier::{
-        dynamics::{LockedAxes, RigidBodyHandle},
+        dynamics::{LockedAxes, RigidBodyHandle, SpringCoefficients},
         pipeline::PhysicsWorld,
     };
+
+    pub(super) fn hold_in_plane(_world: &mut PhysicsWorld, _handle: RigidBodyHandle, _lock: SpringCoefficients<f64>) {}
 
     pub(super) fn free_normals(_world: &mut PhysicsWorld, _bodies: &[RigidBodyHandle], _locks: &[LockedAxes]) {}
 

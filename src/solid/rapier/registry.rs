@@ -2,16 +2,16 @@
 //! a run, and removes them. The module is compiled for each dimension with its world.
 
 use super::super::rapier::{
-    dynamics::{RigidBodyBuilder, RigidBodyHandle},
+    dynamics::{RigidBodyBuilder, RigidBodyHandle, SpringCoefficients},
     geometry::ColliderBuilder,
     math::Vector as Point,
     parry::query::contact,
     pipeline::{ActiveHooks, PhysicsWorld},
 };
 use super::{
-    D, HOOKS, RapierWorld,
+    D, HOOKS, LOCK, RapierWorld,
     colliders::{ConvexParts, collect_parts, thickness},
-    lock, mass_properties, to_angular, to_frame, to_point,
+    lock, mass_properties, planar_friction, to_angular, to_frame, to_point,
 };
 use crate::{
     error::Result,
@@ -125,5 +125,6 @@ pub(super) fn insert_solid(
         world.insert_collider(collider, Some(handle));
     }
     world.bodies[handle].recompute_mass_properties_from_colliders(&world.colliders);
+    planar_friction::hold_in_plane(world, handle, SpringCoefficients::new(LOCK, 1.0));
     handle
 }

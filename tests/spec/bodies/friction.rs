@@ -152,3 +152,84 @@ fn a_body_that_a_symmetry_plane_cuts_has_the_friction_of_the_whole() -> Result<(
     }
     Ok(())
 }
+
+/// A scene of a pool far away, a floor with friction 0.3 at z = 0 that is turned by `turn` (°), and `more`.
+fn on_floor(turn: [f64; 3], more: &str) -> String {
+    format!(
+        "dimension = 3\ndp = 0.05\nuntil = 0.4\n\
+         water = [{{ fill = {{ box = {{ min = [6.0, 0.0, 0.0], max = [6.2, 0.2, 0.2] }} }} }}]\n\
+         [[solid]]\nname = \"pool\"\nfixed = true\nshape = {{ tank = {{ size = [0.2, 0.2, 0.4] }} }}\nat = {{ x = 6.0 }}\n\
+         [[solid]]\nname = \"floor\"\nfixed = true\nfriction = 0.3\nshape = {{ compound = [{{ shape = {{ box = {{ size = [4.0, 2.0, 0.2] }} }}, at = {{ z = -0.1 }} }}] }}\n\
+         at = {{ z = 2.0, turn_deg = {turn:?} }}\n{more}"
+    )
+}
+
+/// Velocity (m/s) along x of the solid `name` of this scene at 0.4 s.
+fn speed_of(scene: &str, name: &str) -> Result<f64> {
+    let mut sim = common::scene_simulation::<3>(scene)?;
+    while sim.time() < 0.4 {
+        sim.step_to(0.4)?;
+    }
+    let body = sim.system().solids().iter().find(|solid| solid.spec.name == name).expect("a body");
+    Ok(body.kinematics.velocity[0])
+}
+
+const PLANAR: &str = "locked = [\"y\", \"turn_x\", \"turn_z\"]";
+
+#[test]
+fn friction_of_a_body_in_a_plane_is_that_of_coulomb_beside_walls_and_ropes_that_leave_the_plane() -> Result<()> {
+    let block = format!(
+        "[[solid]]\nname = \"block\"\nfriction = 0.3\nshape = {{ box = {{ size = [0.4, 0.3, 0.2] }} }}\nat = {{ z = 2.1 }}\n\
+         free = {{ density = 500.0, velocity = [2.0, 0.0, 0.0], {PLANAR} }}\n"
+    );
+    let ball = format!(
+        "[[solid]]\nname = \"ball\"\nfriction = 0.3\nshape = {{ ball = {{ radius = 0.1 }} }}\nat = {{ z = 2.1 }}\n\
+         free = {{ density = 500.0, velocity = [2.0, 0.0, 0.0], {PLANAR} }}\n"
+    );
+    let wall = |y: f64| {
+        format!(
+            "[[solid]]\nname = \"wall\"\nfixed = true\nfriction = 0.3\nshape = {{ box = {{ size = [4.0, 0.2, 0.6] }} }}\n\
+             at = {{ y = {y}, z = 2.3 }}\n"
+        )
+    };
+    let rope = "[[rope]]\nname = \"rope\"\nbetween = [\"block\"]\nfrom = [0.0, 0.0, 2.1]\nto = [0.5, 3.0, 2.5]\nlength = 6.0\n";
+    let sliding = 2.0 - 0.3 * G * 0.4;
+    for (name, more, body, exact) in [
+        ("a block", block.clone(), "block", sliding),
+        ("beside a wall that it touches", format!("{block}{}", wall(0.25)), "block", sliding),
+        ("beside a wall 1 mm away", format!("{block}{}", wall(0.251)), "block", sliding),
+        ("on a slack rope", format!("{block}{rope}"), "block", sliding),
+        ("a ball, which rolls in the end", ball.clone(), "ball", 2.0 * 5.0 / 7.0),
+        ("a ball beside a wall that it touches", format!("{ball}{}", wall(0.2)), "ball", 2.0 * 5.0 / 7.0),
+    ] {
+        let found = speed_of(&on_floor([0.0; 3], &more), body)?;
+        // A step of 1 ms of friction that comes too late takes 3e-3 m/s.
+        assert!((found - exact).abs() < 6e-3, "{name}: {found} m/s, exact {exact}");
+    }
+    Ok(())
+}
+
+/// The normal (nx, ny, nz) of the slope is oblique to the plane of motion. With s² = nx² + nz², the floor presses with N = m g nz/s², and
+/// the block accelerates by g nx/s − μ N/m along the slope; the horizontal component is nz/s of it.
+#[test]
+fn a_block_in_a_plane_slides_down_a_slope_that_is_banked_across_the_plane() -> Result<()> {
+    for bank in [10.0_f64, 30.0] {
+        let turn = [bank, 30.0, 0.0];
+        let rotation = Pose::<3>::rotated(Vector::zeros(), &turn.map(f64::to_radians)).rotation;
+        let normal: Vector<3> = rotation.column(2).into();
+        let (nx, nz) = (normal[0], normal[2]);
+        let s = nx.hypot(nz);
+        let place = normal * 0.1;
+        let block = format!(
+            "[[solid]]\nname = \"block\"\nfriction = 0.3\nshape = {{ box = {{ size = [0.4, 0.3, 0.2] }} }}\n\
+             at = {{ x = {}, y = {}, z = {}, turn_deg = {turn:?} }}\nfree = {{ density = 500.0, {PLANAR} }}\n",
+            place[0],
+            place[1],
+            2.0 + place[2]
+        );
+        let found = speed_of(&on_floor(turn, &block), "block")?;
+        let exact = 0.4 * (G * nx / s - 0.3 * G * nz / (s * s)) * nz / s;
+        assert!((found - exact).abs() < 0.01 * exact, "banked by {bank}°: {found} m/s, exact {exact}");
+    }
+    Ok(())
+}
