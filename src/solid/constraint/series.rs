@@ -20,6 +20,9 @@ const ROUNDS: usize = 50;
 /// Largest relative residual, –, of loads that the engine applies; it corrects the rest.
 const RESIDUAL: f64 = 1e-6;
 
+/// Inverse effective mass of a row along which locks hold its solids, over that without locks, –.
+const LOCKED: f64 = 1e-20;
+
 /// A lock, or a rope, of a chain.
 pub(in crate::solid) struct SeriesRow<const D: usize> {
     /// Its solids; `None` is the world.
@@ -44,6 +47,15 @@ impl<const D: usize> SeriesRow<D> {
                 loads[*solid] += load;
             }
         }
+    }
+
+    /// Whether its solids can move along it. If they cannot, round-off of its direction may leave a small component along a free axis.
+    fn is_movable(&self) -> bool {
+        let freely = |(load, mobility): (&Load<D>, &Mobility<D>)| {
+            mobility.linear.max() * load.force.norm_squared() + mobility.angular.norm() * load.torque.0.norm_squared()
+        };
+        let loads = self.jacobian.loads(1.0);
+        self.inverse_effective_mass() > LOCKED * loads.iter().zip(&self.mobility).map(freely).sum::<f64>()
     }
 
     /// The inverse effective mass of its two solids, 1/kg or 1/(kg m²).
@@ -77,7 +89,7 @@ pub(in crate::solid) fn series_forces<const D: usize>(
     };
     let wanted: Vec<f64> = rows.iter().map(lacking).collect();
     let scale = wanted.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
-    let mut active: Vec<bool> = rows.iter().map(|row| row.inverse_effective_mass() > 0.0).collect();
+    let mut active: Vec<bool> = rows.iter().map(SeriesRow::is_movable).collect();
     let movable = active.clone();
     for _ in 0..ROUNDS {
         let Some(forces) = conjugate_gradients(rows, &active, &wanted, loads.len()) else { break };

@@ -115,18 +115,18 @@ fn unwind(
     Vec::new()
 }
 
-/// Friction of bodies that move in a plane: in 2-D every body does.
-mod planar_friction {
+/// Locked translations: friction in 2-D does not depend on them.
+mod translation_locks {
     use super::rapier::{
         dynamics::{LockedAxes, RigidBodyHandle, SpringCoefficients},
         pipeline::PhysicsWorld,
     };
 
-    pub(super) fn hold_in_plane(_world: &mut PhysicsWorld, _handle: RigidBodyHandle, _lock: SpringCoefficients<f64>) {}
+    pub(super) fn add_joint(_world: &mut PhysicsWorld, _handle: RigidBodyHandle, _lock: SpringCoefficients<f64>) {}
 
-    pub(super) fn free_normals(_world: &mut PhysicsWorld, _bodies: &[RigidBodyHandle], _locks: &[LockedAxes]) {}
+    pub(super) fn free(_world: &mut PhysicsWorld, _bodies: &[RigidBodyHandle], _locks: &[LockedAxes]) {}
 
-    pub(super) fn hold_normals(_world: &mut PhysicsWorld, _freed: &()) {}
+    pub(super) fn lock(_world: &mut PhysicsWorld, _freed: &()) {}
 }
 
 /// Does nothing: no parameter exists in 2-D only.

@@ -21,8 +21,8 @@ pub use rapier3d as rapier;
 #[allow(clippy::duplicate_mod, reason = "one source, compiled against each engine")]
 #[path = "external.rs"]
 mod external;
-#[path = "planar_friction.rs"]
-mod planar_friction;
+#[path = "translation_locks.rs"]
+mod translation_locks;
 #[allow(clippy::duplicate_mod, reason = "one source, compiled against each engine")]
 #[path = "world.rs"]
 mod world;

@@ -11,7 +11,7 @@ use super::super::rapier::{
 use super::{
     D, HOOKS, LOCK, RapierWorld,
     colliders::{ConvexParts, collect_parts, thickness},
-    lock, mass_properties, planar_friction, to_angular, to_frame, to_point,
+    lock, mass_properties, to_angular, to_frame, to_point, translation_locks,
 };
 use crate::{
     error::Result,
@@ -125,6 +125,6 @@ pub(super) fn insert_solid(
         world.insert_collider(collider, Some(handle));
     }
     world.bodies[handle].recompute_mass_properties_from_colliders(&world.colliders);
-    planar_friction::hold_in_plane(world, handle, SpringCoefficients::new(LOCK, 1.0));
+    translation_locks::add_joint(world, handle, SpringCoefficients::new(LOCK, 1.0));
     handle
 }

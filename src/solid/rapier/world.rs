@@ -37,8 +37,8 @@ use super::rapier::{
     pipeline::PhysicsWorld,
 };
 use super::{
-    Angular, D, ENGINE, HOOKS, from_angular, from_rotation, inverse_inertia, lock, mass_properties, planar_friction,
-    to_angular, to_rotation, tune, unwind, wind,
+    Angular, D, ENGINE, HOOKS, from_angular, from_rotation, inverse_inertia, lock, mass_properties, to_angular,
+    to_rotation, translation_locks, tune, unwind, wind,
 };
 use crate::{
     error::{ErrorCode, Result},
@@ -300,9 +300,9 @@ impl Engine<D> for RapierWorld {
         self.ties.update_rope_limits(&mut self.world, dt);
         self.ties.apply_series_loads(&mut self.world, &self.bodies, driven, dt);
         let turnings = wind(&mut self.world, &self.bodies, dt);
-        let freed = planar_friction::free_normals(&mut self.world, &self.bodies, &self.locks);
+        let freed = translation_locks::free(&mut self.world, &self.bodies, &self.locks);
         self.world.step_with_events(&self.ties.contact_pairs, &());
-        planar_friction::hold_normals(&mut self.world, &freed);
+        translation_locks::lock(&mut self.world, &freed);
         self.ties.turn_velocities(&mut self.world, &self.bodies, driven, dt);
         self.turned = unwind(&mut self.world, &self.bodies, turnings, &spins, dt);
         self.iterations = self.world.integration_parameters.num_solver_iterations;

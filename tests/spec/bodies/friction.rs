@@ -193,12 +193,15 @@ fn friction_of_a_body_in_a_plane_is_that_of_coulomb_beside_walls_and_ropes_that_
         )
     };
     let rope = "[[rope]]\nname = \"rope\"\nbetween = [\"block\"]\nfrom = [0.0, 0.0, 2.1]\nto = [0.5, 3.0, 2.5]\nlength = 6.0\n";
+    let tow = "[[joint]]\nname = \"tow\"\nkind = \"tow\"\nbetween = [\"block\"]\nat = [0.0, 0.0, 2.1]\nalong = [0.0, 1.0, 0.0]\n";
     let sliding = 2.0 - 0.3 * G * 0.4;
     for (name, more, body, exact) in [
         ("a block", block.clone(), "block", sliding),
         ("beside a wall that it touches", format!("{block}{}", wall(0.25)), "block", sliding),
         ("beside a wall 1 mm away", format!("{block}{}", wall(0.251)), "block", sliding),
         ("on a slack rope", format!("{block}{rope}"), "block", sliding),
+        ("towed along the locked axis", format!("{block}{tow}"), "block", sliding),
+        ("free to turn", format!("{}{}", block.replace(PLANAR, "locked = [\"y\"]"), wall(0.25)), "block", sliding),
         ("a ball, which rolls in the end", ball.clone(), "ball", 2.0 * 5.0 / 7.0),
         ("a ball beside a wall that it touches", format!("{ball}{}", wall(0.2)), "ball", 2.0 * 5.0 / 7.0),
     ] {
