@@ -162,7 +162,7 @@ impl ModelConfig {
             let ratio = usual.h / usual.dp;
             let dimension = usual.gravity.len();
             let why = match dimension {
-                3 if ratio == WAVES_H_OVER_DP[1] => "waves keep their height; about 190 neighbours",
+                3 if ratio == WAVES_H_OVER_DP[1] => "waves keep most height; about 190 neighbours",
                 3 => "waves lose height below 1.5 dp; about 110 neighbours",
                 _ if ratio == WAVES_H_OVER_DP[0] => "waves keep their height; about 72 neighbours",
                 _ if ratio == BODIES_IN_WAVES_H_OVER_DP => {
@@ -182,6 +182,9 @@ impl ModelConfig {
         let wendland = "no pairing of particles and less noise than the cubic spline, at the same cost";
         defaults.fill("model.kernel", &mut self.kernel, usual.kernel, wendland);
         let why = match usual.gradient {
+            PressureGradient::Plain if !self.allows_corrected_gradients() => {
+                "others are made for the Wendland kernel without shifting"
+            }
             PressureGradient::Plain => "no paddle makes waves by name",
             _ => "waves keep their height",
         };
