@@ -78,7 +78,11 @@ impl<const D: usize> Term<D> for RiemannTerm {
     fn along_r<N: Num>(&self, ab: &Pair<N, D>, sum: N) -> N {
         // u = −v_ab·r_ab/|r_ab|, so that u² = (v_ab·r_ab)²/r².
         let approach = ab.velocity_along_r.min(ab.constant(0.0));
-        let q = approach * approach * ab.inv_r2 * ab.constant(self.eta) - ab.constant(self.spared);
-        sum - q.max(ab.constant(0.0)).min(ab.constant(self.most))
+        let mut q = approach * approach * ab.inv_r2 * ab.constant(self.eta);
+        // A law without a threshold takes no operation more.
+        if self.spared > 0.0 {
+            q = (q - ab.constant(self.spared)).max(ab.constant(0.0));
+        }
+        sum - q.min(ab.constant(self.most))
     }
 }
