@@ -124,9 +124,14 @@ mod translation_locks {
 
     pub(super) fn add_joint(_world: &mut PhysicsWorld, _handle: RigidBodyHandle, _lock: SpringCoefficients<f64>) {}
 
-    pub(super) fn free(_world: &mut PhysicsWorld, _bodies: &[RigidBodyHandle], _locks: &[LockedAxes]) {}
+    /// Bodies without their locks: none.
+    pub(super) struct Freed;
 
-    pub(super) fn lock(_world: &mut PhysicsWorld, _freed: &()) {}
+    pub(super) fn free(_world: &mut PhysicsWorld, _bodies: &[RigidBodyHandle], _locks: &[LockedAxes]) -> Freed {
+        Freed
+    }
+
+    pub(super) fn lock(_world: &mut PhysicsWorld, _freed: &Freed) {}
 }
 
 /// Does nothing: no parameter exists in 2-D only.

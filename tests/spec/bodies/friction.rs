@@ -63,7 +63,7 @@ fn acceleration_in_3d(slope: f64, yaw: f64, share: f64, planar: bool) -> Result<
     let mut block = common::float(Shape::Box { size: Vector::from([0.3, 0.2, 0.1]) }, [0.0; 3], 800.0);
     block.pose = on([-0.2, 0.0, 0.05], yaw);
     if let (Role::Free(body), true) = (&mut block.role, planar) {
-        *body = body.clone().lock_translation(1).lock_rotation(0).lock_rotation(2);
+        *body = body.lock_translation(1).lock_rotation(0).lock_rotation(2);
     }
     let mut solids = vec![pool, common::solid("slab", under, on([0.0, 0.0, -0.05], 0.0), Role::Fixed), block];
     if planar && yaw == 0.0 {
