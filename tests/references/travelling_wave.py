@@ -5,6 +5,7 @@ of the first harmonic along the surface; the root of the kinetic energy, which i
 Energy travels at the group velocity, so that a period's loss divided by group over phase velocity is that of a wave length in a flume.
 
     python3 travelling_wave.py DIR --kd 2.5 --height 0.04 --dp 0.008     (writes DIR/scene.toml and DIR/surface.csv)
+    python3 travelling_wave.py DIR --kd 2.5 --width 0.096                (the same in 3-D, periodic across as well; h = 1.8 dp)
     pontoon run DIR --out RUN
     python3 travelling_wave.py RUN --judge --kd 2.5 --dp 0.008
 """
@@ -28,7 +29,8 @@ class Wave:
         self.group = 0.5 * (1 + 2 * self.k * DEPTH / math.sinh(2 * self.k * DEPTH))
 
 
-def write(directory, wave, amplitude, dp):
+def write(directory, wave, amplitude, dp, width):
+    up, across = ("z", [width / 2]) if width else ("y", [])
     k, omega, length = wave.k, wave.omega, wave.length
     tanh, sinh, cosh = (f(k * DEPTH) for f in (math.tanh, math.sinh, math.cosh))
     second = amplitude**2 * k / 4 * (3 - tanh**2) / tanh**3
@@ -40,34 +42,42 @@ def write(directory, wave, amplitude, dp):
             file.write(f"{x:.6f},{amplitude * math.cos(k * x) + second * math.cos(2 * k * x):.6f}\n")
     parts = [(amplitude * omega / sinh, k), (0.75 * amplitude**2 * k * omega / sinh**4, 2 * k)]
     velocity = [
-        "+".join(f"{speed}*{down}({n}*(y+{DEPTH}))*{along}({n}*x)" for speed, n in parts)
+        "+".join(f"{speed}*{down}({n}*({up}+{DEPTH}))*{along}({n}*x)" for speed, n in parts)
         for down, along in (("cosh", "cos"), ("sinh", "sin"))
     ]
-    pressure = f"{1000 * GRAVITY}*({amplitude}*cos({k}*x)*cosh({k}*(y+{DEPTH}))/{cosh}-{amplitude + second})"
+    pressure = f"{1000 * GRAVITY}*({amplitude}*cos({k}*x)*cosh({k}*({up}+{DEPTH}))/{cosh}-{amplitude + second})"
+    if width:
+        velocity.insert(1, "0")
+    shape, sides = ("prism", f'length = {width}, axis = "y", ') if width else ("polygon", "")
+    size, place = ([length + 0.4, *([width + 0.4] if width else []), 0.08], [length / 2, *across, -DEPTH - 0.04])
+    fill = f'shape = {{ {shape} = {{ {sides}file = "surface.csv" }} }}' + (f", at = {{ y = {width / 2} }}" if width else "")
+    periodic = f"x = [0.0, {length}]" + (f", y = [0.0, {width}]" if width else "")
+    at = ", ".join(f"{axis} = {x}" for axis, x in zip("xyz" if width else "xy", place))
+    first, last = ([x, *across] if width else x for x in (length / GAUGES / 2, length * (1 - 0.5 / GAUGES)))
     every = wave.period / READINGS
     with open(os.path.join(directory, "scene.toml"), "w") as file:
         file.write(f"""title = "A wave in a periodic sea"
-dimension = 2
+dimension = {3 if width else 2}
 dp = {dp}
 until = {(PERIODS + 0.1) * wave.period}
 frames = "off"
-periodic = {{ x = [0.0, {length}] }}
+periodic = {{ {periodic} }}
 
 [model]                    # the default laws where a paddle makes a named wave
 gradient = "near_surface"
-h_over_dp = 2.4
+h_over_dp = {1.8 if width else 2.4}
 viscosity = {{ riemann = {{ threshold = 0.3 }} }}
 
 [[water]]
-fill = {{ shape = {{ polygon = {{ file = "surface.csv" }} }} }}
-velocity = ["{velocity[0]}", "{velocity[1]}"]
+fill = {{ {fill} }}
+velocity = {velocity}
 pressure = "{pressure}"
 
 [[solid]]
 name = "bed"
 fixed = true
-shape = {{ box = {{ size = [{length + 0.4}, 0.08] }} }}
-at = {{ x = {length / 2}, y = {-DEPTH - 0.04} }}
+shape = {{ box = {{ size = {size} }} }}
+at = {{ {at} }}
 
 [[probe]]
 energy = true
@@ -75,7 +85,7 @@ every = {every}
 
 [[probe]]
 name = "row"
-elevation = {{ from = {length / GAUGES / 2}, to = {length * (1 - 0.5 / GAUGES)}, count = {GAUGES} }}
+elevation = {{ from = {first}, to = {last}, count = {GAUGES} }}
 every = {every}
 
 [[probe]]
@@ -116,9 +126,10 @@ parser.add_argument("--judge", action="store_true")
 parser.add_argument("--kd", type=float, default=2.5)
 parser.add_argument("--height", type=float, default=0.04)
 parser.add_argument("--dp", type=float, default=0.008)
+parser.add_argument("--width", type=float, default=0.0)
 args = parser.parse_args()
 wave = Wave(args.kd, args.dp)
 if args.judge:
     judge(args.directory, wave)
 else:
-    write(args.directory, wave, 0.5 * args.height, args.dp)
+    write(args.directory, wave, 0.5 * args.height, args.dp, args.width)

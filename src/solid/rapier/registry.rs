@@ -9,8 +9,9 @@ use super::super::rapier::{
     pipeline::{ActiveHooks, PhysicsWorld},
 };
 use super::{
-    D, HOOKS, LOCK, RapierWorld,
+    D, HOOKS, RapierWorld,
     colliders::{ConvexParts, collect_parts, thickness},
+    joints::LOCK,
     lock, mass_properties, to_angular, to_frame, to_point, translation_locks,
 };
 use crate::{

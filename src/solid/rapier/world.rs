@@ -49,7 +49,7 @@ use crate::{
     },
 };
 use colliders::{ConvexParts, check_overlap, collect_parts, thickness};
-use joints::{LOCK, RapierJoints, SWEEPS};
+use joints::{RapierJoints, SWEEPS};
 use restitution::Impact;
 
 /// Largest overlap at the start, in dp: it allows for round-off of the placement.
