@@ -1,5 +1,6 @@
 //! Values over time: interpolation and differentiation.
 
+use super::format::three_digits;
 use crate::error::{Error, Result};
 
 /// Largest distance of the parabola's tangent from the chord, over the range, at a sample of a dense record. A sine with
@@ -124,6 +125,7 @@ impl TimeSeries {
         let range = self.t.partition_point(|&t| t < from)..self.t.partition_point(|&t| t <= until);
         if range.len() < 2 {
             let (first, last) = self.span();
+            let [first, last] = [first, last].map(three_digits);
             return Err(Error::scene(format!(
                 "fewer than two samples lie between {from} and {until} s; the series goes from {first} to {last} s"
             )));
