@@ -35,6 +35,7 @@ use std::{
     sync::Arc,
 };
 
+use nalgebra::SymmetricEigen;
 use rapier::{
     dynamics::{FrictionModel, IntegrationParameters, LockedAxes, RigidBody, RigidBodyBuilder, RigidBodyHandle},
     geometry::{ContactData, SharedShape, TriMeshFlags, TypedShape},
@@ -94,6 +95,8 @@ fn inverse_inertia(inverse: &AngularInertia) -> Matrix<3> {
 
 /// Returns the mass properties in the solid's frame. If a rotation is locked, the function drops the products of
 /// inertia about the world's axes at the start: rapier would turn them into spurious rates of the free axes.
+///
+/// The principal axes are nalgebra's. Those of the engine are wrong where the two smaller moments are equal, as of a disc.
 fn mass_properties(body: &FreeBody<D>, start: &Matrix<D>) -> MassProperties {
     let inertia = if body.locked_rotations.contains(&true) {
         let world = rotated_tensor(start, &body.inertia);
@@ -101,7 +104,14 @@ fn mass_properties(body: &FreeBody<D>, start: &Matrix<D>) -> MassProperties {
     } else {
         body.inertia
     };
-    MassProperties::with_inertia_matrix(world::to_point(&body.centre), body.mass, square(&inertia))
+    let principal = SymmetricEigen::new(inertia);
+    let mut axes = principal.eigenvectors;
+    if axes.determinant() < 0.0 {
+        axes.column_mut(0).neg_mut();
+    }
+    let moments = Point::from_array(principal.eigenvalues.map(|moment| moment.max(0.0)).into());
+    let centre = world::to_point(&body.centre);
+    MassProperties::with_principal_inertia_frame(centre, body.mass, moments, to_rotation(&axes))
 }
 
 /// Applies the locks of a body. This crate computes the gyroscopic torque, not rapier.
