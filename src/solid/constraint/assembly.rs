@@ -26,7 +26,7 @@ pub struct JointReading<const D: usize> {
     pub force: Vector<D>,
     /// Their torque on it about the joint, N m (N m/m in 2-D).
     pub torque: Bivector<D>,
-    /// Its coordinate relative to the start, m or rad (−π to π); 0 if the joint has no coordinate.
+    /// Its coordinate relative to the start, m or rad (continuous past a turn); 0 if the joint has no coordinate.
     pub position: f64,
     /// Its rate, m/s or rad/s.
     pub rate: f64,
@@ -282,7 +282,8 @@ impl<const D: usize> Assembly<D> {
                 let known = acceleration(&|i| around.loads[i] + engine.applied_push(i));
                 let reaction = acceleration(&|i| reactions[i]);
                 let going = [free.rate(&ends), known, reaction, own.inverse_effective_mass(own, &mobility)];
-                reading.motor_force = joint.motor_force(&drive, &ends, going, dt);
+                let position = joint.position_after(reading.position, &ends);
+                reading.motor_force = Joint::<D>::motor_force(&drive, position, going, dt);
                 give(engine, joint.spec.between, &free.loads(reading.motor_force));
                 note(&mut self.tied, joint.spec.between, &free.loads(reading.motor_force), |tied| &mut tied.motors);
             }
@@ -331,11 +332,13 @@ impl<const D: usize> Assembly<D> {
     ) {
         let pulls = self.pulls(engine, before, dt, told);
         for (i, (joint, (_, reading))) in self.joints.iter().zip(&mut self.state.joints).enumerate() {
+            // The coordinate of a joint that begins later refers to frames that it has not yet.
+            let last = if self.state.phases.joints[i] == Phase::Acting { reading.position } else { 0.0 };
             let (was, is) = (joint.end_kinematics(before), joint.end_kinematics(after));
             let held: Load<D> = pulls[i].iter().map(|pull| pull.loads()[1]).sum();
             let arm = joint.position_on_second(&was) - was[1].centre;
             (reading.force, reading.torque) = (held.force, held.torque + Bivector::torque(&arm, &held.force) * -1.0);
-            reading.position = joint.position(&is);
+            reading.position = joint.position_after(last, &is);
             let rate = |ends: &[Kinematics<D>; 2]| joint.coordinate_jacobian(ends).map_or(0.0, |row| row.rate(ends));
             reading.absorbed_energy -= reading.motor_force * 0.5 * (rate(&was) + rate(&is)) * dt;
             reading.rate = rate(&is);

@@ -1,6 +1,8 @@
 //! Joints: locked modes between two solids, the free coordinate of a hinge or a slider, and end stops. The engine solves the
 //! locks; the motor on the coordinate is computed in `motor`.
 
+use std::f64::consts::TAU;
+
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
 
 use super::{
@@ -208,6 +210,12 @@ impl<const D: usize> Joint<D> {
         (turn[(j, i)] - turn[(i, j)]).atan2(turn[(i, i)] + turn[(j, j)])
     }
 
+    /// The distance (m, or rad from −π to π) from the value `from` of a mode's coordinate to the value `to`.
+    pub(in crate::solid) fn distance(mode: usize, from: f64, to: f64) -> f64 {
+        let apart = to - from;
+        if mode < D { apart } else { apart - TAU * (apart / TAU).round() }
+    }
+
     /// Distance (m) and angle (rad) between its ends along the locked modes.
     pub(in crate::solid) fn gap(&self, ends: &[Kinematics<D>; 2]) -> [f64; 2] {
         let locked = |modes: std::ops::Range<usize>| modes.filter(|&mode| self.spec.is_locked(mode));
@@ -286,18 +294,22 @@ impl<const D: usize> Joint<D> {
         set.or_else(|| self.spec.motor.as_ref().map(|motor| motor.command_at(t)))
     }
 
-    /// The force (N or N m) of the motor over a step of `dt` (s). `known` and `reaction` (m/s² or rad/s²) are the accelerations of
-    /// the coordinate by the known loads and by the reactions of the last step.
+    /// Its coordinate, m or rad, where it was `last` (m or rad) a step ago: an angle goes on past π.
+    pub(in crate::solid) fn position_after(&self, last: f64, ends: &[Kinematics<D>; 2]) -> f64 {
+        let at = self.position(ends);
+        if self.spec.coordinate_mode() == Some(D) { at + TAU * ((last - at) / TAU).round() } else { at }
+    }
+
+    /// The force (N or N m) of the motor at the coordinate `position` (m or rad) over a step of `dt` (s). `known` and `reaction` (m/s²
+    /// or rad/s²) are the accelerations of the coordinate by the known loads and by the reactions of the last step.
     pub(in crate::solid) fn motor_force(
-        &self,
         drive: &MotorCommand,
-        ends: &[Kinematics<D>; 2],
+        position: f64,
         [rate, known, reaction, ease]: [f64; 4],
         dt: f64,
     ) -> f64 {
         drive.force(&MotorInput {
-            angle: self.spec.kind == JointKind::Hinge,
-            position: self.position(ends),
+            position,
             rate,
             known_acceleration: known,
             reaction,

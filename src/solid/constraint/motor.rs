@@ -12,8 +12,6 @@
 //! these in the last step. Without the term Δt ẍ the rate would miss v* by Δt ẍ, however strong the brake is: by 0.2 m/s for a
 //! light body. A motor with a stiffness omits the term, because a stiffness finds its equilibrium under any load.
 
-use std::f64::consts::TAU;
-
 use serde::{Deserialize, Serialize};
 
 use super::reactions::borne;
@@ -135,8 +133,6 @@ pub struct MotorCommand {
 
 /// State of a joint's coordinate for which a motor computes its force.
 pub(in crate::solid) struct MotorInput {
-    /// Whether it is an angle: a difference is then taken along the shorter way round.
-    pub(in crate::solid) angle: bool,
     /// Its value, m or rad.
     pub(in crate::solid) position: f64,
     /// Its rate, m/s or rad/s.
@@ -154,10 +150,7 @@ pub(in crate::solid) struct MotorInput {
 impl MotorCommand {
     /// Its force over a step, N or N m.
     pub(in crate::solid) fn force(&self, going: &MotorInput) -> f64 {
-        let mut off = self.position - going.position;
-        if going.angle {
-            off -= TAU * (off / TAU).round();
-        }
+        let off = self.position - going.position;
         let stiff = going.dt * self.damping * going.inverse_effective_mass;
         let known = going.known_acceleration + going.inverse_effective_mass * self.force;
         let gained = if self.stiffness > 0.0 { 0.0 } else { going.dt * (known + borne(known, going.reaction)) };

@@ -5,6 +5,10 @@
 //! distance r, the length may exceed the limit by (u² + L Σ ω² r) Δt²/2L. The limit of a step is shorter by this length, with the
 //! velocities that the other loads give. With those at its start the rope would be slack by u Δu Δt²/L after it, for longer than a
 //! short step.
+//!
+//! An end stop of the engine acts once the coordinate is at it or beyond. A body that rests on a stop is short of it by round-off: it would
+//! fall freely for a step, and the next step would bear twice the load. Therefore a stop acts at the coordinate where it is, if the
+//! known loads of the step carry the coordinate past the stop.
 
 use super::super::rapier::{
     dynamics::{
@@ -146,6 +150,45 @@ impl RapierJoints {
             let across = (vb - va) - along * along.dot(&(vb - va));
             let further = (across.norm_squared() + *longest * (turned_a + turned_b)) * dt * dt;
             rope.data.limits[0].max = (longest * longest - further).max(0.0).sqrt();
+        }
+    }
+
+    /// Sets the end stops of each connected joint for a step of `dt` (s) in which driven solids move as `driven`.
+    pub(super) fn update_end_stops(
+        &mut self,
+        world: &mut PhysicsWorld,
+        bodies: &[RigidBodyHandle],
+        driven: &[Option<Kinematics<D>>],
+        dt: f64,
+    ) {
+        if self.specs.0.iter().all(|joint| joint.spec.end_stops().is_empty()) {
+            return;
+        }
+        let at_start: Vec<_> = bodies.iter().map(|&body| kinematics_of(&world.bodies[body])).collect();
+        let loaded = |(i, now): (usize, &Kinematics<D>)| {
+            if let Some(to) = driven[i] {
+                return Kinematics { velocity: (to.centre - now.centre) / dt, spin: to.spin, ..*now };
+            }
+            let body = &world.bodies[bodies[i]];
+            let (ease, load) = (mobility_of(body), load_on(world.gravity, body));
+            let velocity = now.velocity + ease.linear.component_mul(&load.force) * dt;
+            Kinematics { velocity, spin: now.spin + ease.spin_change(&load.torque) * dt, ..*now }
+        };
+        let loaded: Vec<_> = at_start.iter().enumerate().map(loaded).collect();
+        for (joint, &handle) in self.specs.0.iter_mut().zip(&self.joints) {
+            let tie = world.impulse_joints.get_mut(handle, false).filter(|tie| tie.data.is_enabled());
+            let Some(tie) = tie else { continue };
+            joint.frames = [&tie.data.local_frame1, &tie.data.local_frame2].map(from_frame);
+            let ends = [&at_start, &loaded].map(|solids| joint.end_kinematics(solids));
+            for (mode, [min, max]) in joint.spec.end_stops() {
+                let (at, row) = (joint.coordinate(mode, &ends[0]), joint.row(mode, &ends[0]));
+                let [before, after] = ends.each_ref().map(|ends| row.rate(ends) * dt);
+                let limits = [
+                    min + acts_short_of(Joint::<D>::distance(mode, min, at), [-before, -after]),
+                    max - acts_short_of(Joint::<D>::distance(mode, at, max), [before, after]),
+                ];
+                tie.data.limits[mode] = JointLimits { min: limits[0], max: limits[1], ..tie.data.limits[mode] };
+            }
         }
     }
 
@@ -315,6 +358,13 @@ fn give(
             act(body, load);
         }
     }
+}
+
+/// Returns the distance (m or rad) before an end stop at which it acts, of a coordinate that is `left` short of it and moves towards
+/// it by `before` in a step without the known loads and by `after` with them.
+fn acts_short_of(left: f64, [before, after]: [f64; 2]) -> f64 {
+    let by_loads = after - before;
+    if left > 0.0 && left < after && left < by_loads { left * (1.0 + 1e-9) + 1e-14 } else { 0.0 }
 }
 
 /// Returns the load of the step on a body, with its weight, without joints, ropes and contacts.

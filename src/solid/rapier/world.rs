@@ -298,6 +298,7 @@ impl Engine<D> for RapierWorld {
             self.ties.contact_pairs.restitution_and_friction(a, b, mu)
         });
         self.ties.update_rope_limits(&mut self.world, dt);
+        self.ties.update_end_stops(&mut self.world, &self.bodies, driven, dt);
         self.ties.apply_series_loads(&mut self.world, &self.bodies, driven, dt);
         let turnings = wind(&mut self.world, &self.bodies, dt);
         let freed = translation_locks::free(&mut self.world, &self.bodies, &self.locks);
