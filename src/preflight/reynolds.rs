@@ -174,7 +174,7 @@ fn slow_body<const D: usize>(context: &PreflightContext<D>, i: usize, speed: f64
     } else {
         format!(
             "it {slower};  h_over_dp = 2.0  and  gradient = \"corrected\"  in [model] reduce it to a tenth, at {} times the time of a run; \
-             bodies at the surface gain energy by them",
+             bodies at the surface gain energy by them, and free ones more than 50 dp below it sink",
             COST_CORRECTED[D - 2]
         )
     };

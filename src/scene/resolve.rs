@@ -11,9 +11,11 @@ use super::{
         gravity::{self, GravityValues},
         joint::verify_names,
         open_boundary::{self, FaceFlow},
-        solid,
+        solid::{self, SolidConfig},
+        water::StillWater,
     },
     toml_source::ValueSource,
+    world_bounds,
 };
 use crate::{
     error::Result,
@@ -151,14 +153,34 @@ impl Scene {
         if !self.model.allows_corrected_gradients() {
             usual.gradient = PressureGradient::Plain;
         }
-        if weightless || !free {
+        if weightless {
             return usual;
         }
-        // Water that cannot be built has no depth; its construction reports the error.
-        match self.still_water() {
-            Ok(still) => usual.deep_water(still.depth / self.dp),
-            Err(_) => usual,
+        // Of water and solids that cannot be built, their construction reports the error.
+        if self.dimension == 2 && !self.makes_waves() && self.moves_under_water().unwrap_or(false) {
+            usual = usual.under_water();
         }
+        match self.still_water() {
+            Ok(still) if free => usual.deep_water(still.depth / self.dp),
+            _ => usual,
+        }
+    }
+
+    /// Whether solids of a 2-D scene move, and all that do are wholly under water at the start.
+    fn moves_under_water(&self) -> Result<bool> {
+        let ctx = &self.context();
+        let pool = StillWater::of(&self.water_bodies::<2>(ctx)?);
+        let moving = self.solid.iter().enumerate().filter(|(_, solid)| solid.free.is_some() || solid.driven.is_some());
+        let is_under = |(i, solid): (usize, &SolidConfig)| -> Result<bool> {
+            if solid.is_afloat() {
+                return Ok(false);
+            }
+            let spec = solid.build::<2>(ctx, &format!("solid.{i}"), &pool)?;
+            let bounds = world_bounds(&spec.shape, &spec.initial_kinematics().pose);
+            Ok(pool.level_at(&bounds).is_some_and(|level| bounds.max[1] <= level))
+        };
+        let under = moving.map(is_under).collect::<Result<Vec<_>>>()?;
+        Ok(!under.is_empty() && under.into_iter().all(|under| under))
     }
 
     /// Returns the scene with every default filled in, and the reasons of the defaults.

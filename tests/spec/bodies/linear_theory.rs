@@ -96,19 +96,23 @@ fn a_disc_driven_in_sway_meets_the_added_mass_and_damping_of_linear_theory() -> 
     Ok(())
 }
 
-/// Particles under pressure resist slow motion. `inspect` advises corrected gradients with h = 2 dp.
+/// Particles under pressure resist slow motion: h = 2.1 dp, the default where all that moves is under water, reduces this, and corrected
+/// gradients, which `inspect` advises, more.
 #[test]
-fn a_slow_disc_under_water_has_the_added_mass_of_potential_flow_with_corrected_gradients() -> Result<()> {
-    let sets = [("dp", "0.02"), ("probe", "[]"), ("model", "{ gradient = \"corrected\", h_over_dp = 2.0 }")];
-    let (amplitude, omega) = (0.02, 2.56);
-    let mut samples = forces_on_disc(measurement("slow-disc", &sets)?, 1)?;
-    // Compression waves of the start fade in a second.
-    samples.retain(|&(t, _)| t > 1.2);
-    let [_, sine, cosine, ..] = harmonics(&samples, omega);
-    let (added_mass, damping) = (sine / amplitude / (omega * omega), -cosine / (omega * amplitude));
-    // By images in bed, lid and walls 1.0955 ρ π R². With ten rows 36.3 and 15; with the default laws 18.5 and 79.
-    assert!((added_mass / 34.42 - 1.0).abs() < 0.1, "added mass {added_mass} kg/m, exact 34.42");
-    assert!(damping < 25.0, "damping {damping} kg/(m s)");
+fn a_slow_disc_under_water_has_the_added_mass_of_potential_flow() -> Result<()> {
+    for (model, most) in [("{}", 45.0), ("{ gradient = \"corrected\", h_over_dp = 2.0 }", 25.0)] {
+        let sets = [("dp", "0.02"), ("probe", "[]"), ("model", model)];
+        let (amplitude, omega) = (0.02, 2.56);
+        let mut samples = forces_on_disc(measurement("slow-disc", &sets)?, 1)?;
+        // Compression waves of the start fade in a second.
+        samples.retain(|&(t, _)| t > 1.2);
+        let [_, sine, cosine, ..] = harmonics(&samples, omega);
+        let (added_mass, damping) = (sine / amplitude / (omega * omega), -cosine / (omega * amplitude));
+        // By images in bed, lid and walls 1.0955 ρ π R². With ten rows 33.6 and 34, with corrected gradients 36.3 and 15; with h = 1.7 dp
+        // 18.5 and 79.
+        assert!((added_mass / 34.42 - 1.0).abs() < 0.1, "{model}: added mass {added_mass} kg/m, exact 34.42");
+        assert!(damping < most, "{model}: damping {damping} kg/(m s)");
+    }
     Ok(())
 }
 
