@@ -204,7 +204,7 @@ pub(crate) const BODIES_IN_WAVES_H_OVER_DP: f64 = 2.0;
 /// Depth over dp at which α = 0.02 gives the viscosity that deep water gets, –: a body of ten rows in water as deep as itself.
 const VISCOUS_ROWS: f64 = 10.0;
 
-/// Default of h over dp for bodies under water and in deep water, in 2-D, –.
+/// Default of h over dp for free bodies under water and in deep water, in 2-D, –.
 pub(crate) const UNDER_WATER_H_OVER_DP: f64 = 2.1;
 
 impl Model {
@@ -272,8 +272,8 @@ impl Model {
         self.under_water()
     }
 
-    /// The same model with the defaults for bodies that move wholly under water: in 2-D h = 2.1 dp, where the particles resist slow bodies
-    /// least for the time of a run.
+    /// The same model with the defaults for free bodies wholly under water: in 2-D h = 2.1 dp, with which the particles resist slow bodies
+    /// less in the same time.
     pub fn under_water(self) -> Self {
         let in_3d = self.h / self.dp;
         self.h_over_dp([UNDER_WATER_H_OVER_DP, in_3d])

@@ -25,7 +25,7 @@ use super::{
     lifetimes::overload,
     surface_samples::SurfaceSample,
     surroundings::Surroundings,
-    thickness::{effect_on_sides, load_error, thinnest_part},
+    thickness::{buoyancy_error, effect_on_sides, load_error, thinnest_part},
     turns::{LARGEST_ESTIMATE, linear_heel, turn_finding},
 };
 use crate::{
@@ -500,12 +500,12 @@ impl<const D: usize> PreflightContext<'_, D> {
         }
     }
 
-    /// Describes the error in the buoyancy of a body that remains after the correction of parts thinner than dp: 0.15 dp times
-    /// their area (record 147).
+    /// Describes the error in the buoyancy of a thin body. After the correction of parts thinner than dp it is 0.15 dp times their area
+    /// (record 147).
     fn thin_buoyancy_error(&self, body: &BodySummary) -> String {
         let model = self.system.model();
         if body.thinnest_dp >= 1.0 - 1e-6 {
-            return String::new();
+            return buoyancy_error(body.thinnest_dp).into();
         }
         let shape = self.solids().iter().find(|solid| solid.spec.name == body.name).map(|solid| &solid.spec.shape);
         let area = shape.map_or(0.0, |shape| 0.5 * shape.surface_area());

@@ -153,7 +153,7 @@ impl Scene {
         if !self.model.allows_corrected_gradients() {
             usual.gradient = PressureGradient::Plain;
         }
-        if weightless {
+        if weightless || !free {
             return usual;
         }
         // Of water and solids that cannot be built, their construction reports the error.
@@ -161,12 +161,12 @@ impl Scene {
             usual = usual.under_water();
         }
         match self.still_water() {
-            Ok(still) if free => usual.deep_water(still.depth / self.dp),
-            _ => usual,
+            Ok(still) => usual.deep_water(still.depth / self.dp),
+            Err(_) => usual,
         }
     }
 
-    /// Whether solids of a 2-D scene move, and all that do are wholly under water at the start.
+    /// Whether all solids of a 2-D scene that move are wholly under water at the start.
     fn moves_under_water(&self) -> Result<bool> {
         let ctx = &self.context();
         let pool = StillWater::of(&self.water_bodies::<2>(ctx)?);
@@ -179,8 +179,7 @@ impl Scene {
             let bounds = world_bounds(&spec.shape, &spec.initial_kinematics().pose);
             Ok(pool.level_at(&bounds).is_some_and(|level| bounds.max[1] <= level))
         };
-        let under = moving.map(is_under).collect::<Result<Vec<_>>>()?;
-        Ok(!under.is_empty() && under.into_iter().all(|under| under))
+        Ok(moving.map(is_under).collect::<Result<Vec<_>>>()?.into_iter().all(|is_under| is_under))
     }
 
     /// Returns the scene with every default filled in, and the reasons of the defaults.

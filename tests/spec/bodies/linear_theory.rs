@@ -96,11 +96,11 @@ fn a_disc_driven_in_sway_meets_the_added_mass_and_damping_of_linear_theory() -> 
     Ok(())
 }
 
-/// Particles under pressure resist slow motion: h = 2.1 dp, the default where all that moves is under water, reduces this, and corrected
-/// gradients, which `inspect` advises, more.
+/// Particles under pressure resist slow motion: h = 2.1 dp, the default for free bodies under water, reduces this, and corrected gradients,
+/// which `inspect` advises, more.
 #[test]
 fn a_slow_disc_under_water_has_the_added_mass_of_potential_flow() -> Result<()> {
-    for (model, most) in [("{}", 45.0), ("{ gradient = \"corrected\", h_over_dp = 2.0 }", 25.0)] {
+    for (model, most) in [("{ h_over_dp = 2.1 }", 45.0), ("{ gradient = \"corrected\", h_over_dp = 2.0 }", 25.0)] {
         let sets = [("dp", "0.02"), ("probe", "[]"), ("model", model)];
         let (amplitude, omega) = (0.02, 2.56);
         let mut samples = forces_on_disc(measurement("slow-disc", &sets)?, 1)?;

@@ -60,6 +60,19 @@ fn plates_of_a_fifth_of_dp_have_the_buoyancy_of_their_volume() -> Result<()> {
     Ok(())
 }
 
+/// What rows displace depends on their distance and on their number. Equal cells would give a plate of 1.5 dp 1.16 times its buoyancy, one
+/// of 2.5 dp 1.08 times. Bound: a tenth; found: 1.09, 1.03, 0.98, 1.05.
+#[test]
+fn plates_of_no_whole_number_of_dp_have_the_buoyancy_of_their_volume() -> Result<()> {
+    for thickness in [1.5, 1.75, 2.25, 2.5] {
+        let exact = 1000.0 * G * 0.4 * thickness * 0.02;
+        let force = mean_force::<2>(&held([0.4, thickness * 0.02], [0.403, 0.2]), 0.4, 1.0)?[1];
+        println!("{thickness} dp: {force} N/m, Archimedes {exact}");
+        assert!((force / exact - 1.0).abs() < 0.1, "{thickness} dp: {force} N/m, Archimedes {exact} N/m");
+    }
+    Ok(())
+}
+
 #[test]
 fn a_thin_disc_has_the_buoyancy_of_its_volume_in_3d() -> Result<()> {
     let text = r#"dimension = 3

@@ -31,3 +31,10 @@ fn only_parts_thinner_than_dp_in_2d_have_a_pressure_for_each_side() {
         assert!(!of_each_side(text) && text.contains("one pressure for both"), "{text}");
     }
 }
+
+/// The errors were measured in still water; the thicknesses between are those of parts that are no whole number of dp.
+#[test]
+fn only_plates_of_no_whole_number_of_dp_have_an_error_of_buoyancy() {
+    assert!([0.5, 1.0, 1.05, 2.0, 3.0, 4.5].iter().all(|&x| buoyancy_error(x).is_empty()));
+    assert!(buoyancy_error(1.5).contains("15 %") && buoyancy_error(2.5).contains("6 %"));
+}
