@@ -382,6 +382,24 @@ fn floating(shape: &str, more: &str) -> String {
     )
 }
 
+#[test]
+fn thin_parts_that_lie_flat_against_each_other_are_told() {
+    let slabs = |count: usize, thickness: f64| {
+        let part = |i| {
+            format!(
+                "{{ shape = {{ box = {{ size = [0.4, {thickness}] }} }}, at = {{ y = {} }} }}",
+                i as f64 * thickness
+            )
+        };
+        floating(&format!("{{ compound = [{}] }}", (0..count).map(part).collect::<Vec<_>>().join(", ")), "")
+    };
+    assert!(finding(&slabs(10, 0.018), "stacked_parts").what.starts_with("10 parts of \"b\""));
+    has_no(&slabs(9, 0.02), "stacked_parts");
+    // A keel touches its hull with an edge.
+    let keel = "{ compound = [{ shape = { box = { size = [0.4, 0.2] } } }, { shape = { box = { size = [0.01, 0.1] } }, at = { y = -0.15 } }] }";
+    has_no(&floating(keel, ""), "stacked_parts");
+}
+
 /// Water does not fill gaps between faces of one solid that are narrower than the kernel's reach, 3.4 dp, just as between two solids:
 /// such a body turned by 3° for no reason. A gap of 0.75 dp holds no particle.
 #[test]
