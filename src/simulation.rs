@@ -548,7 +548,7 @@ impl<const D: usize> Simulation<D> {
         self.bodies.pending_impulse(solid)
     }
 
-    /// Gives free solid number `solid` a velocity of its centre of mass (m/s) and a spin (rad/s), at once.
+    /// Gives free solid number `solid` a velocity of its centre of mass (m/s) and a spin (rad/s), at once; 0 along its locked motions.
     pub fn set_velocity(&mut self, solid: usize, velocity: &Vector<D>, spin: &Bivector<D>) {
         (self.compiled.set_velocity)(self, solid, velocity, spin);
     }

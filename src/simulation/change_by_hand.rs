@@ -13,8 +13,8 @@ pub(super) fn set_velocity<const D: usize>(
 ) {
     if let Some(engine) = sim.bodies.engine_mut() {
         engine.set_velocity(solid, velocity, spin);
-        let kinematics = &mut sim.system.solids[solid].kinematics;
-        (kinematics.velocity, kinematics.spin) = (*velocity, *spin);
+        let (now, kinematics) = (engine.kinematics(solid), &mut sim.system.solids[solid].kinematics);
+        (kinematics.velocity, kinematics.spin) = (now.velocity, now.spin);
         sim.system.place_boundary(solid);
         note_change(sim);
     }

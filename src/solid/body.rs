@@ -129,6 +129,21 @@ impl<const D: usize> SolidSpec<D> {
             .map_err(|e| self.named(e))
     }
 
+    /// Refuses a motion at the start along a locked motion: the engine would keep it.
+    pub(super) fn check_locks(&self) -> Result<()> {
+        let Role::Free(body) = &self.role else { return Ok(()) };
+        let moves =
+            |rates: &[f64], locks: &[bool]| rates.iter().zip(locks).any(|(rate, locked)| *locked && *rate != 0.0);
+        let along = moves(body.velocity.as_slice(), &body.locked_translations)
+            || moves(&body.spin.axial(), &body.locked_rotations);
+        require(
+            !along,
+            || "it starts with a motion that is locked".into(),
+            "a velocity and a spin of 0 along locked motions",
+        )
+        .map_err(|e| self.named(e))
+    }
+
     /// Refuses ballast of a solid that is not free, and ballast without a finite position or a valid mass at t = 0.
     fn check_ballast(&self) -> Result<()> {
         let free = matches!(self.role, Role::Free(_)) || self.ballast.is_empty();

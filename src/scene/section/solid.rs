@@ -113,6 +113,19 @@ pub enum MotionMode {
 }
 
 impl MotionMode {
+    /// Its name in a scene.
+    fn name(self) -> &'static str {
+        match self {
+            Self::X => "x",
+            Self::Y => "y",
+            Self::Z => "z",
+            Self::Turn => "turn",
+            Self::TurnX => "turn_x",
+            Self::TurnY => "turn_y",
+            Self::TurnZ => "turn_z",
+        }
+    }
+
     /// Its number among the modes of this dimension, translations first; `None` if there is no such mode.
     pub(crate) fn index(self, dimension: usize) -> Option<usize> {
         match (self, dimension == 3) {
@@ -402,7 +415,34 @@ impl FreeBodyConfig {
         self.verify_inertia(ctx, &format!("{key}.inertia"))?;
         let mut ballast = self.ballast.iter().enumerate();
         ballast.try_for_each(|(i, ballast)| ballast.verify(ctx, &format!("{key}.ballast.{i}")))?;
-        verify_modes(ctx, &format!("{key}.locked"), &self.locked)
+        verify_modes(ctx, &format!("{key}.locked"), &self.locked)?;
+        self.verify_start(ctx, key)
+    }
+
+    /// Refuses a motion at the start along a locked mode.
+    fn verify_start(&self, ctx: &Context, key: &str) -> Result<()> {
+        for mode in &self.locked {
+            let Some(number) = mode.index(ctx.dimension) else { continue };
+            let (word, rate) = match number.checked_sub(ctx.dimension) {
+                None => ("velocity", self.velocity.as_ref().and_then(|velocity| velocity.get(number)).copied()),
+                Some(axis) => (
+                    "spin",
+                    match &self.spin {
+                        Some(NumberOrArray::One(spin)) => Some(*spin),
+                        Some(NumberOrArray::List(list)) => list.get(axis).copied(),
+                        _ => None,
+                    },
+                ),
+            };
+            let Some(rate) = rate.filter(|rate| *rate != 0.0) else { continue };
+            let (name, unit) = (mode.name(), if word == "spin" { "rad/s" } else { "m/s" });
+            let what = format!("{word} moves the body with {rate} {unit} along \"{name}\", which is locked");
+            let help = format!("make this part of  {word}  0, or remove \"{name}\" from  locked");
+            return Err(ctx
+                .error_with_help(&format!("{key}.{word}"), what, help)
+                .with_code(ErrorCode::ConflictingKeys));
+        }
+        Ok(())
     }
 
     /// Refuses an inertia that does not fit the dimension or is not symmetric and positive.

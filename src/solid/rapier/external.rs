@@ -2,14 +2,14 @@
 //! their kinematics. It is compiled for each dimension with its engine.
 
 use super::rapier::{
-    dynamics::{LockedAxes, RigidBody, RigidBodyHandle, RigidBodySet, RigidBodyType},
+    dynamics::{RigidBody, RigidBodyHandle, RigidBodySet, RigidBodyType},
     geometry::{ColliderSet, Shape as Geometry, TypedShape},
 };
 use super::{D, arc, from_angular, inertia, of_this_dimension, to_angular, world};
 use crate::{
     error::{Error, Result},
     geometry::Shape,
-    math::{Pose, Vector},
+    math::{Bivector, Pose, Vector},
     solid::{FreeBody, Kinematics, Load, Role, SolidSpec},
 };
 
@@ -104,19 +104,14 @@ pub fn set_kinematic(body: &mut RigidBody, solid: &Kinematics<D>) {
 
 fn free(body: &RigidBody) -> FreeBody<D> {
     let (own, locks) = (&body.mass_properties().local_mprops, body.locked_axes());
-    let straight =
-        [LockedAxes::TRANSLATION_LOCKED_X, LockedAxes::TRANSLATION_LOCKED_Y, LockedAxes::TRANSLATION_LOCKED_Z];
-    let turns = [LockedAxes::ROTATION_LOCKED_X, LockedAxes::ROTATION_LOCKED_Y, LockedAxes::ROTATION_LOCKED_Z];
-    // In 2-D, bodies rotate about z.
-    let turns: Vec<bool> = turns[if D == 2 { 2 } else { 0 }..].iter().map(|&axis| locks.contains(axis)).collect();
     FreeBody {
         mass: own.mass(),
         centre: world::from_point(own.local_com),
         inertia: inertia(own),
         velocity: world::from_point(body.linvel()),
         spin: from_angular(body.angvel()),
-        locked_translations: std::array::from_fn(|i| locks.contains(straight[i])),
-        locked_rotations: std::array::from_fn(|i| turns.get(i).is_some_and(|locked| *locked)),
+        locked_translations: std::array::from_fn(|i| world::is_locked(locks, i)),
+        locked_rotations: std::array::from_fn(|i| i < Bivector::<D>::COMPONENTS && world::is_locked(locks, D + i)),
     }
 }
 

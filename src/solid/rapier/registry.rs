@@ -49,6 +49,7 @@ impl RapierWorld {
 
     /// Adds a solid after all others.
     pub(super) fn append_solid(&mut self, solid: &SolidSpec<D>, start: &Kinematics<D>) -> Result<()> {
+        solid.check_locks()?;
         let parts = parts(solid)?;
         let pairs = !self.ties.contact_pairs.is_empty();
         let body = insert_solid(&mut self.world, self.bodies.len(), solid, start, &parts, pairs);

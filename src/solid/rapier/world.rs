@@ -107,6 +107,7 @@ impl RapierWorld {
         let mut all_parts = Vec::new();
         for (i, solid) in solids.iter().enumerate() {
             solid.check_role()?;
+            solid.check_locks()?;
             let mut parts = ConvexParts::new();
             let fixed = matches!(solid.role, Role::Fixed);
             collect_parts(&solid.shape, &Pose::identity(), fixed, &mut parts)
@@ -327,8 +328,11 @@ impl Engine<D> for RapierWorld {
 
     fn set_velocity(&mut self, solid: usize, velocity: &Vector<D>, spin: &Bivector<D>) {
         let body = &mut self.world.bodies[self.bodies[solid]];
-        body.set_linvel(to_point(velocity), true);
-        body.set_angvel(to_angular(spin), true);
+        let locks = body.locked_axes();
+        let free = |mode: usize, rate: f64| if is_locked(locks, mode) { 0.0 } else { rate };
+        let turns: Vec<f64> = spin.axial().iter().enumerate().map(|(i, rate)| free(D + i, *rate)).collect();
+        body.set_linvel(to_point(&Vector::from_fn(|i, _| free(i, velocity[i]))), true);
+        body.set_angvel(to_angular(&Bivector::from_axial(&turns)), true);
     }
 
     fn deepest_overlap(&self, solid: &SolidSpec<D>, start: &Kinematics<D>) -> Result<Option<(usize, f64)>> {
@@ -428,6 +432,20 @@ fn mobility_of(body: &RigidBody) -> Mobility<D> {
         linear: from_point(mass.effective_inv_mass),
         angular: inverse_inertia(&mass.effective_world_inv_inertia),
     }
+}
+
+/// Returns whether `locks` hold a mode of motion: 0 to D − 1 are translations, from D on rotations.
+pub(super) fn is_locked(locks: LockedAxes, mode: usize) -> bool {
+    const LINES: [LockedAxes; 3] =
+        [LockedAxes::TRANSLATION_LOCKED_X, LockedAxes::TRANSLATION_LOCKED_Y, LockedAxes::TRANSLATION_LOCKED_Z];
+    const TURNS: [LockedAxes; 3] =
+        [LockedAxes::ROTATION_LOCKED_X, LockedAxes::ROTATION_LOCKED_Y, LockedAxes::ROTATION_LOCKED_Z];
+    locks.contains(match mode.checked_sub(D) {
+        None => LINES[mode],
+        // In 2-D, bodies rotate about z.
+        Some(_) if D == 2 => TURNS[2],
+        Some(axis) => TURNS[axis],
+    })
 }
 
 /// Sets the parameters that stay constant during the whole run.

@@ -264,3 +264,33 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn a_motion_at_the_start_along_a_locked_motion_is_refused() {
+    let plane = |keys: &str| SCENE.replace("velocity = [0.1, 0.0], spin = 0.2", keys);
+    let space = |keys: &str| {
+        format!(
+            "dimension = 3\ndp = 0.05\nuntil = 1.0\n\
+             [[water]]\nfill = {{ box = {{ min = [0.0, 0.0, 0.0], max = [0.2, 0.2, 0.2] }} }}\n\
+             [[solid]]\nname = \"box\"\nshape = {{ box = {{ size = [0.2, 0.2, 0.2] }} }}\nat = [0.0, 0.0, 2.0]\n\
+             free = {{ mass = 8.0, {keys} }}\n"
+        )
+    };
+    for (text, key, mode) in [
+        (plane("velocity = [1.0, 0.0], spin = 2.0, locked = [\"x\"]"), "velocity", "\"x\""),
+        (plane("velocity = [1.0, 0.0], spin = 2.0, locked = [\"y\", \"turn\"]"), "spin", "\"turn\""),
+        (space("spin = [1.0, 0.0, 2.0], locked = [\"turn_x\"]"), "spin", "\"turn_x\""),
+        (space("velocity = [0.0, 0.0, 2.0], locked = [\"z\"]"), "velocity", "\"z\""),
+    ] {
+        let error = try_scene(&text, Path::new("")).unwrap_err();
+        let location = error.location.as_ref().unwrap();
+        assert!(error.message.contains(mode) && location.key.ends_with(key), "{error}");
+        assert!(location.line_column.is_some() && error.help.as_ref().unwrap().contains("remove"), "{error}");
+    }
+    for text in [
+        plane("velocity = [0.0, 0.1], locked = [\"x\", \"turn\"]"),
+        space("velocity = [1.0, 0.0, 0.0], spin = [0.0, 2.0, 1.0], locked = [\"turn_x\", \"y\"]"),
+    ] {
+        try_scene(&text, Path::new("")).unwrap();
+    }
+}

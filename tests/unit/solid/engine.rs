@@ -439,3 +439,29 @@ fn a_free_mesh_rests_on_its_contact_parts_and_survives_a_restart() {
         assert_eq!(run(&mut third, 1300), whole, "the same bits after a restart");
     }
 }
+
+fn keeps_locks<const D: usize>()
+where
+    Dim<D>: HasEngine<D>,
+{
+    let turn = if D == 2 { 0 } else { 1 };
+    let body = light::<D>().lock_translation(0).lock_rotation(turn);
+    let start = |body: FreeBody<D>| engine(&[solid("locked", cube(0.1), [0.0; D], Role::Free(body))], Vector::zeros());
+    let mut engine = start(body).unwrap();
+    let spin = Bivector::from_axial(&[2.0, 3.0, -1.0][..Bivector::<D>::COMPONENTS]);
+    engine.set_velocity(0, &Vector::repeat(1.5), &spin);
+    let now = engine.kinematics(0);
+    let expected = Vector::from_fn(|i, _| if i == 0 { 0.0 } else { 1.5 });
+    let kept: Vec<f64> = spin.axial().iter().enumerate().map(|(i, rate)| if i == turn { 0.0 } else { *rate }).collect();
+    assert_eq!((now.velocity, now.spin.axial()), (expected, kept));
+    for moving in [body.velocity(Vector::repeat(1.0)), body.spin(spin)] {
+        let refused = start(moving);
+        assert!(refused.err().unwrap().message.contains("a motion that is locked"));
+    }
+}
+
+#[test]
+fn a_set_velocity_leaves_locked_motions_at_rest() {
+    keeps_locks::<2>();
+    keeps_locks::<3>();
+}
