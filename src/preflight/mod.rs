@@ -26,6 +26,7 @@ mod reynolds;
 mod run_size;
 mod short_pulses;
 mod sound_speed;
+mod start_motions;
 mod wavemaker_site;
 mod driven_motion;
 mod driven_paths;
@@ -252,6 +253,7 @@ pub fn preflight<const D: usize>(
     carried_bodies::check(&look, &gaps.touching, &bodies, &mut findings);
     overlapping_bodies::check(&look, &mut findings);
     hinged_bodies::check(&look, &mut findings);
+    start_motions::check(&look, &mut findings);
     look.misplaced_bodies(&gaps.touching, &mut findings);
     look.check_thickness(&mut findings);
     thin_parts::check_parts(&look, &mut findings);

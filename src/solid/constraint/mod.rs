@@ -10,6 +10,7 @@ pub(crate) mod links;
 mod motor;
 mod moved;
 mod reactions;
+pub(crate) mod start_motion;
 pub(in crate::solid) mod series;
 
 pub use assembly::{JointReading, LineReading};

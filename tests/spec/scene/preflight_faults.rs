@@ -511,3 +511,32 @@ fn the_fall_of_a_body_ends_where_joints_and_solids_hold_it() {
         assert!(finding(&text, "slow_sound").what.contains("\"b\" after a fall"), "{text}");
     }
 }
+
+/// A bar 1 m from its hinge with a spin of 1 rad/s and no velocity: the point on the hinge has 1 m/s.
+#[test]
+fn a_motion_at_the_start_that_a_joint_forbids_is_a_warning() {
+    let scene = |joint: &str, motion: &str| {
+        format!(
+            "{WATER}{TANK}[[solid]]\nname = \"b\"\nshape = {{ box = {{ size = [0.4, 0.2] }} }}\nat = [4.0, 2.0]\n\
+             free = {{ mass = 50.0, {motion} }}\n[[joint]]\nname = \"j\"\nbetween = [\"b\"]\nat = [3.0, 2.0]\n{joint}\n"
+        )
+    };
+    let hinge = "kind = \"hinge\"";
+    let found = finding(&scene(hinge, "spin = 1.0"), "forbidden_motion");
+    assert!(found.severity == Severity::Warning, "{found:?}");
+    assert!(["\"b\"", "\"j\"", "takes away 1 m/s"].iter().all(|part| found.what.contains(part)), "{}", found.what);
+    // v = ω × r along y, with r = 1 m.
+    assert!(found.mend.contains("velocity = [0, 1]"), "{}", found.mend);
+    let slider = "kind = \"slider\"\nalong = [1.0, 0.0]";
+    let found = finding(&scene(slider, "velocity = [1.0, 0.5], spin = 0.2"), "forbidden_motion");
+    assert!(found.what.contains("0.3 m/s and 0.2 rad/s"), "{}", found.what);
+    for (joint, motion) in [
+        (hinge, "spin = 1.0, velocity = [0.0, 1.0]"),
+        // 0.9 % of the speed.
+        (hinge, "spin = 1.0, velocity = [0.0, 1.018]"),
+        (slider, "velocity = [1.0, 0.0]"),
+        ("kind = \"hinge\"\nsince = 0.5", "spin = 1.0"),
+    ] {
+        has_no(&scene(joint, motion), "forbidden_motion");
+    }
+}
