@@ -105,6 +105,11 @@ impl LineMaterial {
         let bending = 16.0 * self.bending / (self.mass * l.powi(4));
         (axial + bending + self.bed_stiffness * self.contact_width / self.mass).sqrt()
     }
+
+    /// Largest rate of decay (1/s) by the axial damping of a line of segments of length `l` (m), by Gershgorin's bound.
+    pub(crate) fn highest_decay(&self, l: f64) -> f64 {
+        4.0 * self.damping / (self.mass * l * l)
+    }
 }
 
 /// The load of weight and water on a node.

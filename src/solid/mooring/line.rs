@@ -1,16 +1,20 @@
 //! A lumped-mass line in motion.
 //!
 //! An inner step of length h drifts by h/2, changes the velocities, and drifts by h/2 again (Störmer and Verlet). Elastic forces
-//! are those of the middle of the step; axial damping and drag act at the mean of the velocities before and after, and the
-//! resistance of a bed at the velocity after it:
+//! are those of the middle of the step; drag acts at the mean of the velocities before and after, and the resistance of a bed at
+//! the velocity after it:
 //!
 //!   (M + h/2 C + h C_bed) Δv = h (f − (C + C_bed) v)
 //!
 //! Damping of any strength is therefore stable, and elasticity only requires h ω < 2. The step is h = 0.7/ω, with which a line
 //! without losses keeps its energy within 1 %. M and C of the water change slowly: they are taken anew every eight inner steps.
 //!
+//! Axial damping acts at the velocity (1 − θ) v + θ (v + Δv). With the highest rate of decay κ = 4 BA/(m l₀²), θ is ½, or
+//! 1 − 1/(h κ) if that is more: no motion then changes its sign in a step by damping, which a segment that cannot push would
+//! take for slack.
+//!
 //! Axial damping couples neighbouring nodes along their segment. Its impulses λ on the segments are the unknowns: with the inverse
-//! A of the matrix of each node, its other impulse r, and the half damping b = h BA/(2 l₀),
+//! A of the matrix of each node, its other impulse r, and the damping b = θ h BA/l₀,
 //!
 //!   Δvᵢ = Aᵢ (rᵢ + qᵢ λᵢ − qᵢ₋₁ λᵢ₋₁),  λᵢ = bᵢ qᵢ·(Δvᵢ₊₁ − Δvᵢ)
 //!
@@ -346,6 +350,7 @@ impl<const D: usize> MooringLine<D> {
             }
             impulse.push(force * h);
         }
+        let share = (1.0 - 1.0 / (h * self.material.highest_decay(self.state.segment))).max(0.5);
         for (s, segment) in pulls.iter().enumerate() {
             let q = segment.q;
             let rate = q.dot(&(self.state.v[s + 1] - self.state.v[s]));
@@ -353,7 +358,7 @@ impl<const D: usize> MooringLine<D> {
             let pull = (segment.pull + q * (damping * rate)) * h;
             impulse[s] += pull;
             impulse[s + 1] -= pull;
-            coupling.push(AxialCoupling { q, b: 0.5 * h * damping, sides: [Vector::zeros(); 2], factors: [0.0; 3] });
+            coupling.push(AxialCoupling { q, b: share * h * damping, sides: [Vector::zeros(); 2], factors: [0.0; 3] });
         }
         if self.material.bending > 0.0 {
             let energy = self.material.bending / self.state.segment;

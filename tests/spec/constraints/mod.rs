@@ -5,3 +5,4 @@ mod hinge_loads;
 mod joints;
 mod moorings;
 mod prescribed_motions;
+mod taut_lines;
