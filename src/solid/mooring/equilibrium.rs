@@ -55,9 +55,14 @@ const DIFFERENCE: f64 = 0.01;
 /// Largest force on a node at rest over its weight, –.
 const TOLERANCE: f64 = 1e-9;
 
+/// Shares of the tension and of the axial stiffness that stand for the weight of a node where this is less, as without gravity, –. A
+/// thousandth of the second is the round-off of the stretch.
+const SHARES: [f64; 2] = [1e-3, 1e-9];
+
 impl<const D: usize> MooringLine<D> {
     /// Finds the equilibrium of the line between its held ends. `around` returns the surroundings of a position (m), and
-    /// `gravity` is in m/s². Returns the largest residual force on a node over the weight of a node.
+    /// `gravity` is in m/s². Returns the largest residual force on a node over the weight of a node or, if this is less, over the
+    /// [`SHARES`]. Without gravity a slack line rests straight, as it would in any shape.
     pub(crate) fn find_rest(&mut self, around: &dyn Fn(&Vector<D>) -> NodeSurroundings<D>, gravity: &Vector<D>) -> f64 {
         let left = if self.may_float() {
             self.find_rest_afloat(around, gravity)
@@ -74,7 +79,13 @@ impl<const D: usize> MooringLine<D> {
         let last = self.segments();
         self.state.end_forces = [0, last].map(|i| forces[i]);
         self.store_pulls(&near, gravity);
-        left
+        left.min(self.over_stretch(forces[1..last].iter().map(|force| force.norm()).fold(0.0, f64::max)))
+    }
+
+    /// A `force` (N) over the [`SHARES`] of the tension at the last rest and of the stiffness.
+    pub(super) fn over_stretch(&self, force: f64) -> f64 {
+        let tension = self.state.pulls.iter().map(|pull| pull.norm()).fold(0.0, f64::max);
+        force / (SHARES[0] * tension).max(SHARES[1] * self.material.stiffness)
     }
 
     /// Finds the equilibrium of a line that may float, with the surroundings of each iteration: by Newton's method; where this

@@ -249,8 +249,9 @@ impl Junctions {
             (places, forces, left) = better;
             damping = (0.1 * damping).max(1e-9);
         }
-        let last = self.forces_on_points(lines, &places, around, gravity).0;
-        left.max(last.amax() / weight)
+        let last = self.forces_on_points(lines, &places, around, gravity).0.amax();
+        let over_stretch = self.lines.iter().map(|i| lines[*i].over_stretch(last)).fold(f64::INFINITY, f64::min);
+        left.max((last / weight).min(over_stretch))
     }
 
     /// The forces (N) of the lines in equilibrium on the points at these `places` (m), and the largest residual force on a node

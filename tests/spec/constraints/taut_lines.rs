@@ -1,4 +1,4 @@
-//! Taut mooring lines against exact solutions: strong damping.
+//! Taut mooring lines against exact solutions: strong damping, and rest without gravity.
 
 use pontoon::Result;
 
@@ -49,5 +49,32 @@ fn the_damping_of_a_line_does_not_depend_on_its_segments() -> Result<()> {
             );
         }
     }
+    Ok(())
+}
+
+#[test]
+fn a_taut_line_without_gravity_is_straight_and_has_the_tension_of_its_stretch() -> Result<()> {
+    for (gravity, length) in [(0.0, 1.9), (-1e-6, 1.9), (0.0, 2.0), (-1e-6, 2.0)] {
+        let sim = scene_simulation::<2>(&hung(gravity, "", length, ""))?;
+        let now = sim.mooring_reading(0);
+        let (exact, found) = (5e3 * (2.0 / length - 1.0), now.end_forces[0].norm());
+        // Half of the weight, 1e-7 N, stretches the lower part less; the rest is round-off of the stiffness.
+        assert!((found - exact).abs() < 2e-7, "gravity {gravity}: {found} of {exact} N");
+        let off = now.nodes.iter().map(|x| (x[0] - 8.0).abs()).fold(0.0, f64::max);
+        assert!(off < 1e-8, "gravity {gravity}: {off} m from straight");
+    }
+    Ok(())
+}
+
+/// Without gravity a slack line is at rest in any shape: it starts straight, and pulls on nothing.
+#[test]
+fn a_slack_line_without_gravity_stays_at_rest() -> Result<()> {
+    // With little gravity it hangs in its catenary.
+    scene_simulation::<2>(&hung(-1e-6, "", 2.5, ""))?;
+    let mut sim = scene_simulation::<2>(&hung(0.0, "", 2.5, ""))?;
+    run_to(&mut sim, 0.05)?;
+    let (now, ball) = (sim.mooring_reading(0), sim.system().solids()[0].kinematics);
+    assert!(now.end_forces.iter().all(|force| force.norm() < 1e-9), "{:?}", now.end_forces);
+    assert!(ball.velocity.norm() < 1e-12, "{}", ball.velocity);
     Ok(())
 }
