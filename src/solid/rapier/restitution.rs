@@ -7,7 +7,16 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{super::Angular, Frame, PhysicsWorld, Point, RigidBodyHandle};
+use super::{
+    super::{
+        Angular,
+        rapier::{
+            geometry::Collider,
+            parry::query::{ContactManifold, DefaultQueryDispatcher, PersistentQueryDispatcher},
+        },
+    },
+    Frame, PhysicsWorld, Point, RigidBodyHandle,
+};
 
 /// An impact of two solids at a point.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
@@ -108,10 +117,15 @@ fn find(world: &PhysicsWorld, dt: f64, law: impl Fn(usize, usize, f64) -> (f64, 
         if restitution == 0.0 {
             continue;
         }
+        // The engine's points are those of the poses before its last step: a body that slides has left them behind.
+        if pair.manifolds().iter().all(|manifold| manifold.points.is_empty()) {
+            continue;
+        }
         let bodies = [first, second];
         let skins = colliders.map(|c| c.contact_skin());
+        let reach = world.integration_parameters.prediction_distance() + skins[0] + skins[1];
         let (mut close, mut struck) = (Vec::new(), false);
-        for manifold in pair.manifolds() {
+        for manifold in present_contacts(colliders, reach) {
             let poses = [
                 colliders[0].position() * manifold.subshape_pos1().copied().unwrap_or(Frame::IDENTITY),
                 colliders[1].position() * manifold.subshape_pos2().copied().unwrap_or(Frame::IDENTITY),
@@ -138,6 +152,15 @@ fn find(world: &PhysicsWorld, dt: f64, law: impl Fn(usize, usize, f64) -> (f64, 
         }
     }
     touches
+}
+
+/// Returns the contacts of two colliders in their present poses, up to the distance `reach` (m).
+fn present_contacts([first, second]: [&Collider; 2], reach: f64) -> Vec<ContactManifold<(), ()>> {
+    let (mut manifolds, between) = (Vec::new(), first.position().inv_mul(second.position()));
+    let shapes = [first.shape(), second.shape()];
+    // Shapes without contacts have none in the engine either.
+    let _ = DefaultQueryDispatcher.contact_manifolds(&between, shapes[0], shapes[1], reach, &mut manifolds, &mut None);
+    manifolds
 }
 
 /// Returns the velocity (m/s) of the second body less that of the first at a point.

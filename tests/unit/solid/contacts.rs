@@ -212,3 +212,103 @@ fn contact_loads_sum_to_the_change_of_momentum() {
         adds_up::<3>(heavy, restitution);
     }
 }
+
+/// A frictionless impact acts through the centre of a ball: at the point of a floor under it, and of another ball beside it, at any
+/// speed along the face and with any spin.
+fn glances<const D: usize>()
+where
+    Dim<D>: HasEngine<D>,
+{
+    let spin = Bivector::from_axial(&[0.5, 3.0, -1.0][..Bivector::<D>::COMPONENTS]);
+    let ball = |at: [f64; D], velocity: [f64; 2]| {
+        let velocity = Vector::from_fn(|i, _| {
+            if i == 0 {
+                velocity[0]
+            } else if i == D - 1 {
+                velocity[1]
+            } else {
+                0.0
+            }
+        });
+        let role = Role::Free(FreeBody { velocity, spin, inertia: Matrix::identity() * 2e-3, ..light() });
+        SolidSpec { restitution: 1.0, friction: 0.0, ..solid("ball", Shape::Ball { radius: 0.1 }, at, role) }
+    };
+    let mut across = at_height(0.3);
+    across[0] = 0.06;
+    let long = Vector::from_fn(|i, _| if i == 0 { 40.0 } else { 1.0 });
+    let under = SolidSpec {
+        restitution: 1.0,
+        friction: 0.0,
+        ..solid("floor", Shape::Box { size: long }, at_height(-0.5), Role::Fixed)
+    };
+    for solids in [
+        vec![under.clone(), ball(at_height(0.15), [10.0, -2.0])],
+        vec![ball(at_height(0.15), [10.0, -2.0]), under],
+        vec![ball(at_height(0.05), [3.0, 0.0]), ball(across, [3.0, -2.0])],
+    ] {
+        let mut engine = engine(&solids, Vector::zeros()).unwrap();
+        let mut hits = 0;
+        for _ in 0..100 {
+            engine.step(1e-3, &idle(2), &[None; 2]).unwrap();
+            hits += engine.contacts().len();
+        }
+        assert!(hits > 0, "{D}-D: they touch");
+        for (i, ball) in solids.iter().enumerate().filter(|(_, solid)| matches!(solid.role, Role::Free(_))) {
+            let off = (engine.kinematics(i).spin + ball.initial_kinematics().spin * -1.0).0.norm();
+            // The search for the nearest points of curved faces ends within 1e-9 of their size.
+            assert!(off < 1e-6, "{D}-D: {} gains {off} rad/s", ball.name);
+        }
+    }
+}
+
+#[test]
+fn a_frictionless_impact_leaves_the_spin_of_a_ball() {
+    glances::<2>();
+    glances::<3>();
+}
+
+/// A box that slides, turned by 45°, hits a frictionless floor with a corner: the impulse j = (1 + e) v m/(1 + r²/k²) acts at the corner,
+/// r beside the centre, and gives the spin j r/I.
+fn strikes_with_a_corner<const D: usize>()
+where
+    Dim<D>: HasEngine<D>,
+{
+    let (edge, turn, [mass, inertia]) = (0.1, 0.6_f64, [2.0, 2e-3]);
+    let half = 0.5 * edge * 2f64.sqrt();
+    // The lowest corner lies at −135° in the frame of the box.
+    let corner = [half * (turn - 0.75 * std::f64::consts::PI).cos(), half * (turn - 0.75 * std::f64::consts::PI).sin()];
+    let velocity = Vector::from_fn(|i, _| {
+        if i == 0 {
+            10.0
+        } else if i == D - 1 {
+            -2.0
+        } else {
+            0.0
+        }
+    });
+    let role = Role::Free(FreeBody { mass, velocity, inertia: Matrix::identity() * inertia, ..light() });
+    // About −y in 3-D, which turns x to z.
+    let axial = if D == 2 { vec![turn] } else { vec![0.0, -turn, 0.0] };
+    let mut body = solid("box", cube(edge), at_height(0.05 - corner[1]), role);
+    body.pose.rotation = Bivector::from_axial(&axial).exp();
+    let long = Vector::from_fn(|i, _| if i == 0 { 40.0 } else { 1.0 });
+    let mut solids = [solid("floor", Shape::Box { size: long }, at_height(-0.5), Role::Fixed), body];
+    solids.iter_mut().for_each(|solid| (solid.restitution, solid.friction) = (0.5, 0.0));
+    let mut engine = engine(&solids, Vector::zeros()).unwrap();
+    for _ in 0..28 {
+        engine.step(1e-3, &idle(2), &[None; 2]).unwrap();
+    }
+    let impulse = 1.5 * 2.0 / (1.0 / mass + corner[0] * corner[0] / inertia);
+    let now = engine.kinematics(1);
+    let axial = now.spin.axial();
+    let spin = if D == 2 { axial[0] } else { -axial[1] };
+    let rise = now.velocity[D - 1] + 2.0;
+    assert!((rise / (impulse / mass) - 1.0).abs() < 1e-6, "{D}-D: {rise} m/s of {} m/s", impulse / mass);
+    assert!((spin / (impulse * corner[0] / inertia) - 1.0).abs() < 1e-6, "{D}-D: {spin} rad/s");
+}
+
+#[test]
+fn an_impact_with_a_corner_acts_at_the_corner() {
+    strikes_with_a_corner::<2>();
+    strikes_with_a_corner::<3>();
+}
