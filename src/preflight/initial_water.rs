@@ -16,6 +16,43 @@ pub(super) const OFF_LATTICE: f64 = 0.2;
 /// Depth below a particle of the lowest row within which something carries it, dp.
 const CARRIED: f64 = 1.5;
 
+/// Share of the hydrostatic pressure of a sideways gravity below which the water at the start counts as without it, –.
+const MISSING: f64 = 0.5;
+
+/// Adds a note if gravity points to a side without an opening and the water starts without the pressure that belongs to it.
+fn check_sideways<const D: usize>(context: &PreflightContext<D>, findings: &mut Vec<Finding>) {
+    let (system, gravity) = (context.system, context.system.gravity());
+    let Some(axis) = (0..D - 1).max_by(|a, b| gravity[*a].abs().total_cmp(&gravity[*b].abs())) else { return };
+    let (pull, water, rho0) = (gravity[axis], system.fluid(), system.properties().rho0);
+    let is_open = system.periodic()[axis].is_some() || system.open_boundaries().iter().any(|face| face.axis == axis);
+    if gravity[D - 1].abs() > 0.9 * gravity.norm() || pull == 0.0 || is_open {
+        return;
+    }
+    let bounds = Bounds::around(water.r).grown(0.5 * context.dp());
+    let hydrostatic = rho0 * pull.abs() * bounds.size()[axis];
+    let most = water.rho.iter().map(|rho| system.pressure(*rho)).fold(0.0, f64::max);
+    if most >= MISSING * hydrostatic {
+        return;
+    }
+    let letter = ["x", "y", "z"][axis];
+    let slope = three_digits(rho0 * pull);
+    let from = if pull > 0.0 { bounds.min[axis] } else { bounds.max[axis] };
+    let way = match three_digits(from.abs()) {
+        _ if from.abs() < 1e-9 * context.dp() => letter.into(),
+        shown if from < 0.0 => format!("{letter} + {shown}"),
+        shown => format!("{letter} - {shown}"),
+    };
+    let what = format!(
+        "gravity points along {letter}, and the water starts without its pressure of up to {} Pa: it starts with a pressure wave",
+        three_digits(hydrostatic)
+    );
+    findings.push(Finding::note(
+        "sideways_gravity",
+        what,
+        format!("give the [[water]]  pressure = \"{slope}*({way})\""),
+    ));
+}
+
 /// Adds findings about the open bodies of water.
 pub(super) fn check<const D: usize>(context: &PreflightContext<D>, findings: &mut Vec<Finding>) {
     let boxes = &context.open_water;
@@ -27,6 +64,7 @@ pub(super) fn check<const D: usize>(context: &PreflightContext<D>, findings: &mu
         let what = format!("gravity is {} m/s²: it points upwards", list(gravity.iter().copied().collect()));
         findings.push(Finding::warning("gravity_direction", what, format!("write  gravity = {}", list(down))));
     }
+    check_sideways(context, findings);
     if context.g <= 0.0 {
         return;
     }

@@ -8,7 +8,7 @@ use crate::{
     },
     scene::world_bounds,
     solid::Solid,
-    system::{OpenBoundary, driven_speeds, prescribed_discharge},
+    system::{OpenBoundary, passing_speeds, prescribed_discharge},
 };
 
 /// Difference between inflow and outflow, over the larger of the two, above which a warning is given, –.
@@ -30,7 +30,7 @@ pub(super) fn check<const D: usize>(context: &PreflightContext<D>, findings: &mu
 fn check_damping<const D: usize>(context: &PreflightContext<D>, findings: &mut Vec<Finding>) {
     let (system, dp) = (context.system, context.dp());
     let times = || [0.0].into_iter().chain(SAMPLE_TIMES).map(|part| part * context.end_time());
-    let driven = times().flat_map(|t| driven_speeds(system, t)).fold(0.0, f64::max);
+    let driven = times().flat_map(|t| passing_speeds(system, t)).fold(0.0, f64::max);
     for zone in system.sponge_layers() {
         let damped = || system.fluid().r.iter().filter(|x| zone.rate(x) > 0.0);
         let speed_at = |face: &OpenBoundary<D>, x: &Vector<D>| {
@@ -79,7 +79,7 @@ fn check_surface<const D: usize>(context: &PreflightContext<D>, findings: &mut V
             && ends_inside(&bounds.min)
             && ends_inside(&bounds.max)
     };
-    let driven = SAMPLE_TIMES.iter().flat_map(|part| driven_speeds(context.system, part * context.end_time()));
+    let driven = SAMPLE_TIMES.iter().flat_map(|part| passing_speeds(context.system, part * context.end_time()));
     let fastest = faces.iter().map(speed).chain(driven).fold(0.0, f64::max);
     let Some(body) = context.solids().iter().find(pierces) else { return };
     if fastest > 0.0 && fastest * fastest < context.g * dp {

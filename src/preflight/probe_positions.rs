@@ -60,18 +60,25 @@ impl<const D: usize> PreflightContext<'_, D> {
             match probe.kind.location() {
                 Some(ProbeLocation::Points(places, on)) => {
                     let in_world = places.iter().filter(|_| on.is_none());
-                    findings.extend(in_world.filter_map(|at| self.beyond_plane(name, at)));
+                    findings.extend(
+                        in_world.filter_map(|at| self.beyond_plane(name, at).or_else(|| self.beyond_side(name, at))),
+                    );
                     let points = places.iter().filter(|at| at.len() == D);
                     findings.extend(points.filter_map(|at| self.point(&place(at, on), all, sound)));
                 }
                 Some(ProbeLocation::Columns(places, on)) => {
                     let in_world = places.iter().filter(|_| on.is_none());
-                    findings.extend(in_world.filter_map(|at| self.beyond_plane(name, at)));
+                    findings.extend(
+                        in_world.filter_map(|at| self.beyond_plane(name, at).or_else(|| self.beyond_side(name, at))),
+                    );
                     let columns = places.iter().filter(|at| at.len() == D - 1);
                     findings.extend(columns.filter_map(|at| self.gauge(&place(at, on), all, sound)));
                 }
                 Some(ProbeLocation::Section([from, to])) if from.len() == D && to.len() == D => {
-                    findings.extend([from, to].into_iter().find_map(|at| self.beyond_plane(name, at)));
+                    let ends = [from, to].map(|at| self.beyond_plane(name, at).or_else(|| self.beyond_side(name, at)));
+                    if let [Some(finding), Some(_)] = ends {
+                        findings.push(finding);
+                    }
                     let ends = [from, to].map(|at| Vector::from_fn(|i, _| at[i]));
                     findings.extend(self.section(name, ends, all));
                 }
@@ -92,6 +99,23 @@ impl<const D: usize> PreflightContext<'_, D> {
         );
         let mend = format!("measure at its mirror image, {letter} = {}", three_digits(2.0 * plane.at - at[axis]));
         Some(Finding::warning("probe_outside", what, mend))
+    }
+
+    /// A place beyond a periodic side has no particles: the water comes in again at the opposite side.
+    fn beyond_side(&self, name: &str, at: &[f64]) -> Option<Finding> {
+        let mut sides = self.system.periodic().iter().enumerate().filter_map(|(axis, sides)| Some((axis, (*sides)?)));
+        let is_beyond =
+            |(axis, [from, to]): &(usize, [f64; 2])| at.get(*axis).is_some_and(|x| *x < from - 1e-9 || *x > to + 1e-9);
+        let (axis, [from, to]) = sides.find(is_beyond)?;
+        let letter = ["x", "y", "z"][axis];
+        let side = if at[axis] < from { from } else { to };
+        let what = format!(
+            "probe \"{name}\" at {} m is beyond the periodic side {letter} = {} m: no water comes there",
+            coordinates(at),
+            three_digits(side)
+        );
+        let inside = from + (at[axis] - from).rem_euclid(to - from);
+        Some(Finding::warning("probe_outside", what, format!("measure at  {letter} = {}", three_digits(inside))))
     }
 
     /// A section needs a place on its line, in 3-D on its diagonal, that no solid covers.

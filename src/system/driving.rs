@@ -139,10 +139,29 @@ impl<const D: usize> DrivingState<D> {
 
 /// Speeds (m/s) of the current that is held, and of the water past a towed frame at time `t` (s).
 pub(crate) fn driven_speeds<const D: usize>(system: &System<D>, t: f64) -> impl Iterator<Item = f64> {
-    let Driving { current, towed } = &system.driving.driving;
-    let held = current.map(|current| current.discharge / mean_section(system, current.axis));
-    let passing = towed.as_ref().map(|frame| frame.velocity.value_and_rate(t).0);
-    held.into_iter().chain(passing).map(f64::abs)
+    held_speed(system).into_iter().chain(towing_speed(system, t).map(|(_, speed)| speed))
+}
+
+/// Those of [`driven_speeds`] with which water passes: walls take the water of a closed tank along with a towed frame.
+pub(crate) fn passing_speeds<const D: usize>(system: &System<D>, t: f64) -> impl Iterator<Item = f64> {
+    let is_open = |axis: usize| {
+        system.periodic()[axis].is_some() || system.open_boundaries().iter().any(|face| face.axis == axis)
+    };
+    held_speed(system)
+        .into_iter()
+        .chain(towing_speed(system, t).filter(|(axis, _)| is_open(*axis)).map(|(_, speed)| speed))
+}
+
+/// Speed (m/s) of the current that is held.
+fn held_speed<const D: usize>(system: &System<D>) -> Option<f64> {
+    let current = system.driving.driving.current?;
+    Some((current.discharge / mean_section(system, current.axis)).abs())
+}
+
+/// Axis and speed (m/s) of a towed frame at time `t` (s).
+fn towing_speed<const D: usize>(system: &System<D>, t: f64) -> Option<(usize, f64)> {
+    let frame = system.driving.driving.towed.as_ref()?;
+    Some((frame.axis, frame.velocity.value_and_rate(t).0.abs()))
 }
 
 /// Discharge (m³/s; m²/s in 2-D) of water that moves at 1 m/s along `axis`, m² (m).

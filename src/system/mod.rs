@@ -38,7 +38,7 @@ pub(crate) use boundary::Boundary;
 pub(crate) use checkpoint::{SavedWater, SystemState};
 use driving::DrivingState;
 pub use driving::{Current, Driving, TowedFrame};
-pub(crate) use driving::{driven_speeds, set_gravity_at, update_current};
+pub(crate) use driving::{driven_speeds, passing_speeds, set_gravity_at, update_current};
 pub(crate) use fluid::{Fluid, permute};
 use gap_pressure::GapPressure;
 #[cfg(feature = "gpu")]

@@ -540,3 +540,51 @@ fn a_motion_at_the_start_that_a_joint_forbids_is_a_warning() {
         has_no(&scene(joint, motion), "forbidden_motion");
     }
 }
+
+#[test]
+fn a_section_that_a_symmetry_plane_cuts_has_water() {
+    let scene = |probe: &str| format!("symmetry = {{ x = 1.0 }}\n{WATER}{TANK}[[probe]]\n{probe}\n");
+    has_no(&scene("flow = { from = [0.5, 0.3], to = [1.5, 0.3] }"), "probe_outside");
+    finding(&scene("flow = { from = [0.2, 0.3], to = [0.5, 0.3] }"), "probe_outside");
+}
+
+#[test]
+fn a_gauge_beyond_a_periodic_side_is_a_warning() {
+    let bed = "[[solid]]\nname = \"bed\"\nfixed = true\nshape = { box = { size = [6.0, 0.2] } }\nat = { x = 1.0, y = -0.1 }\n";
+    let scene = |probe: &str| format!("periodic = {{ x = [0.0, 2.0] }}\n{WATER}{bed}[[probe]]\n{probe}\n");
+    for probe in ["elevation = { x = 2.5 }", "pressure = [2.5, 0.2]", "elevation = { x = -1.5 }"] {
+        let found = finding(&scene(probe), "probe_outside");
+        assert!(found.what.contains("beyond the periodic side") && found.mend.ends_with("x = 0.5"), "{found:?}");
+    }
+    has_no(&scene("elevation = { x = 2.0 }"), "probe_outside");
+}
+
+#[test]
+fn a_gravity_to_a_side_needs_its_pressure_at_the_start() {
+    let closed = "[[solid]]\nname = \"t\"\nfixed = true\n\
+                  shape = { polyline = { points = [[0.0, 0.0], [2.0, 0.0], [2.0, 0.6], [0.0, 0.6]], closed = true } }\n";
+    let scene = |gravity: &str, pressure: &str| {
+        format!(
+            "gravity = {gravity}\n{}[model]\nc0 = 40.0\n{closed}",
+            WATER.replace("} } }]", &format!("}} }}{pressure} }}]"))
+        )
+    };
+    let found = finding(&scene("[9.81, 0.0]", ""), "sideways_gravity");
+    // 1000 kg/m³ × 9.81 m/s² × 2 m
+    assert!(found.what.contains("along x") && found.what.contains("19620 Pa"), "{}", found.what);
+    has_no(&scene("[9.81, 0.0]", ", pressure = \"9810*x\""), "sideways_gravity");
+    has_no(&scene("[0.0, -9.81]", ""), "sideways_gravity");
+    // In a periodic channel gravity drives a current.
+    let channel = format!("gravity = [9.81, 0.0]\nperiodic = {{ x = [0.0, 2.0] }}\n{WATER}[model]\nc0 = 40.0\n");
+    has_no(&channel, "sideways_gravity");
+}
+
+/// Walls take the water of a closed tank along with a towed frame: nothing flows past what stands in it.
+#[test]
+fn a_towed_closed_tank_has_no_current() {
+    let towed = "towed = { along = \"x\", velocity = \"0.3*t\" }\n";
+    let post = "[[solid]]\nname = \"post\"\nfixed = true\nshape = { box = { size = [0.2, 0.6] } }\nat = { x = 1.0, y = 0.6 }\n";
+    has_no(&format!("{towed}{WATER}{TANK}{post}"), "slow_current");
+    let bed = "[[solid]]\nname = \"bed\"\nfixed = true\nshape = { box = { size = [6.0, 0.2] } }\nat = { x = 1.0, y = -0.1 }\n";
+    finding(&format!("{towed}periodic = {{ x = [0.0, 2.0] }}\n{WATER}{bed}{post}"), "slow_current");
+}
