@@ -13,7 +13,7 @@ use super::{
         open_boundary::FaceFlow,
         shape::{vector, world_bounds},
         solid::require_solid,
-        water::{StillWaterLevel, WaterBody, WaterConfig, open_boxes, require_near_origin},
+        water::{StillWaterLevel, WaterBody, WaterConfig, open_boxes},
     },
 };
 use crate::{
@@ -578,7 +578,6 @@ fn require_affordable<const D: usize>(
     solids: &[SolidSpec<D>],
     ranks: usize,
 ) -> Result<()> {
-    require_near_origin(ctx, water)?;
     let (fluid, boundary) = estimated_counts(ctx, water, solids);
     let (all, own) = (fluid + boundary, fluid / ranks as f64 + boundary);
     // Particles have numbers of 32 bits.

@@ -222,10 +222,13 @@ pub(super) fn read<T: DeserializeOwned>(
         origin.renamed[i].key = origin.key_with_names(&origin.renamed[i].key);
     }
     require_finite(root.get_ref(), "", &origin)?;
+    let whole = root.span();
     let scene = T::deserialize(ValueReader::from(root)).map_err(|e| {
         let span = e.span.unwrap_or(0..0);
         let start = span.start;
-        let key = marks.key(start).unwrap_or_else(|| key_at(&entries, &span));
+        // The first section may begin where the scene does.
+        let written = || if span == whole { String::new() } else { key_at(&entries, &span) };
+        let key = marks.key(start).unwrap_or_else(written);
         let (error, key) = diagnostics::explain(&e.message, &key);
         let shown = origin.key_with_names(&key);
         match start > text.len() {

@@ -231,7 +231,11 @@ impl ModelConfig {
         let c0 = self.c0.unwrap_or(self.c0_factor.unwrap_or_default() * (g * still.depth).sqrt());
         if !(c0.is_finite() && c0 > 0.0) {
             let help = "write  c0 = ...  in [model]: 10 to 20 times the largest speed expected, m/s";
-            return Err(ctx.error_with_help("model.c0", "without gravity the depth gives no speed of sound", help));
+            let what = match g == 0.0 {
+                true => "without gravity the depth gives no speed of sound".into(),
+                false => format!("a depth of {} m gives no speed of sound", still.depth),
+            };
+            return Err(ctx.error_with_help("model.c0", what, help));
         }
         let missing = |key: &str| ctx.error_at(key, "this law has no value");
         Ok(Model {

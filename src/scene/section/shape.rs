@@ -23,6 +23,9 @@ use crate::{
     },
 };
 
+/// Largest angle of a turn, degrees: beyond, its sine has less than ten digits.
+const MOST_TURN: f64 = 1e6;
+
 /// A shape in its own frame; lengths in m.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
@@ -414,6 +417,13 @@ impl PlacementConfig {
             Some(_) if !three => return refuse("turn_deg", "a turn in 2-D is one angle", "write  angle_deg = 30.0"),
             Some(turn) => ctx.require_dimension(&format!("{key}.turn_deg"), turn)?,
             None => {}
+        }
+        let turns = self.turn_deg.iter().flatten().map(|turn| ("turn_deg", turn));
+        if let Some((word, turn)) =
+            turns.chain(self.angle_deg.iter().map(|turn| ("angle_deg", turn))).find(|(_, turn)| turn.abs() > MOST_TURN)
+        {
+            let what = format!("{word} has {turn:?}: an angle beyond {MOST_TURN}° is not exact");
+            return refuse(word, &what, "give an angle from -180 to 180 degrees");
         }
         let up = if three { ("z", self.z.is_some()) } else { ("y", self.y.is_some()) };
         let heights = [up, ("bottom", self.bottom.is_some()), ("draft", self.draft.is_some())];

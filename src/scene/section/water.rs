@@ -87,6 +87,7 @@ impl WaterConfig {
             }
         };
         let bounds = world_bounds(&shape, &pose);
+        require_near_origin(ctx, &format!("{key}.fill"), &bounds)?;
         let (bottom, top) = (bounds.min[D - 1], bounds.max[D - 1]);
         let level = self.level.unwrap_or(f64::INFINITY).min(top);
         let top = self.fill.corners.as_ref().and_then(|corners| corners.max.last().copied()).unwrap_or(top);
@@ -280,21 +281,15 @@ impl<const D: usize> StillWater<D> {
     }
 }
 
-/// Refuses water so far from the origin that its coordinates are not exact enough.
-pub(crate) fn require_near_origin<const D: usize>(ctx: &Context, water: &[WaterBody<D>]) -> Result<()> {
+/// Refuses water within `bounds` (m), of the shape at `key`, so far from the origin that its coordinates are not exact enough.
+fn require_near_origin<const D: usize>(ctx: &Context, key: &str, bounds: &Bounds<D>) -> Result<()> {
     let most = FARTHEST * 2.0 * ctx.h;
-    let far = |body: &WaterBody<D>| {
-        let bounds = body.bounds();
-        bounds.min.iter().chain(bounds.max.iter()).map(|x| x.abs()).fold(0.0, f64::max)
-    };
-    match water.iter().map(far).enumerate().find(|(_, far)| *far > most) {
-        Some((i, far)) => {
-            let what = format!("this water is {far:.1e} m from the origin; places are exact up to {most:.1e} m");
-            let help = "move the scene to the origin, or make dp larger";
-            Err(ctx.error_with_help(&format!("water.{i}.fill"), what, help))
-        }
-        None => Ok(()),
+    let far = bounds.min.iter().chain(bounds.max.iter()).map(|x| x.abs()).fold(0.0, f64::max);
+    if far <= most {
+        return Ok(());
     }
+    let what = format!("this water is {far:.1e} m from the origin; places are exact up to {most:.1e} m");
+    Err(ctx.error_with_help(key, what, "move the scene to the origin, or make dp larger"))
 }
 
 #[cfg(all(test, feature = "dim2"))]

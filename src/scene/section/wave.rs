@@ -15,7 +15,7 @@ use crate::{
         context::{Context, Defaults, quoted_list, set_keys},
         record,
     },
-    wavemaker::{COMPONENTS_DEFAULT, SolitaryTheory},
+    wavemaker::{COMPONENTS_DEFAULT, COMPONENTS_MAX, SolitaryTheory},
 };
 
 /// Peakedness of JONSWAP's spectrum, if the scene gives none.
@@ -332,6 +332,7 @@ impl WaveConfig {
         if let Some(config) = &self.focused {
             numbers.extend([("crest", Some(config.crest)), ("peak_period", Some(config.peak_period))]);
             numbers.extend([("distance", Some(config.distance)), ("time", Some(config.time)), ("gamma", config.gamma)]);
+            verify_count(ctx, &format!("{key}.components"), config.components)?;
         }
         if let Some(config) = &self.elevation {
             record::verify_scaling(ctx, key, config.given_scaling())?;
@@ -382,7 +383,19 @@ impl IrregularWaveConfig {
         if self.gamma.is_some() && !key.ends_with("jonswap") {
             return Err(ctx.error_with_help(&place("gamma"), "gamma belongs to jonswap", "leave it out"));
         }
-        Ok(())
+        verify_count(ctx, &place("components"), self.components)
+    }
+}
+
+/// Refuses a sum of no or too many components.
+fn verify_count(ctx: &Context, key: &str, count: Option<usize>) -> Result<()> {
+    match count.filter(|count| !(1..=COMPONENTS_MAX).contains(count)) {
+        Some(count) => {
+            let what = format!("a wave has 1 to {COMPONENTS_MAX} components, not {count}");
+            let help = "components = 100, or leave it out for its default";
+            Err(ctx.error_with_help(key, what, help).with_code(ErrorCode::OutOfRange))
+        }
+        None => Ok(()),
     }
 }
 

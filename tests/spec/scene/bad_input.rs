@@ -294,3 +294,41 @@ fn a_motion_at_the_start_along_a_locked_motion_is_refused() {
         try_scene(&text, Path::new("")).unwrap();
     }
 }
+
+/// The place of each message is the key that has the fault, and the message states the fault.
+#[test]
+fn a_message_is_about_the_key_that_has_the_fault() {
+    let wave = |keys: &str| {
+        let angle = "driven = { hinge = [-0.5, 0.0], angle_deg = { formula = \"5*sin(2*t)\" } }";
+        SCENE.replace(angle, &format!("driven = {{ along = [1.0, 0.0], wave = {{ {keys} }} }}"))
+    };
+    let space = "dimension = 3\ndp = 0.05\nuntil = 1.0\n[[solid]]\nname = \"box\"\nshape = { box = { size = [0.2, 0.2, 0.2] } }\n\
+                 at = { x = 0.0, y = 0.0, z = 2.0, turn_deg = [1e300, 0.0, 0.0] }\nfree = { mass = 8.0 }\n\
+                 [[water]]\nfill = { box = { min = [0.0, 0.0, 0.0], max = [0.2, 0.2, 0.2] } }\n";
+    let sea = "height = 0.05, peak_period = 1.0, components = 0";
+    for (text, key, what) in [
+        ("[[water]]\nfill = { box = { min = [0.0, 0.0], max = [1.0, 0.8] } }\n".into(), "dimension", "missing"),
+        (
+            SCENE.replace("max = [1.0, 0.8]", "max = [1e308, 1e308]").replace("c0        = 30.0\n", ""),
+            "water.0.fill",
+            "from the origin",
+        ),
+        (
+            wave(&format!("jonswap = {{ {sea} }}")),
+            "solid.paddle.driven.wave.jonswap.components",
+            "1 to 2000 components",
+        ),
+        (wave(&format!("bretschneider = {{ {sea} }}")), "solid.paddle.driven.wave.bretschneider.components", "not 0"),
+        (
+            wave("focused = { crest = 0.05, peak_period = 1.0, distance = 0.5, time = 0.5, components = 3000 }"),
+            "solid.paddle.driven.wave.focused.components",
+            "not 3000",
+        ),
+        (space.into(), "solid.box.at.turn_deg", "1e300"),
+        (SCENE.replace("angle_deg = 30.0 }", "angle_deg = -1e300 }"), "solid.box.at.angle_deg", "1e300"),
+    ] {
+        let error = try_scene(&text, Path::new("")).unwrap_err();
+        assert!(error.message.contains(what), "{key}: {error}");
+        assert_eq!(error.location.as_ref().unwrap().key, key, "{error}");
+    }
+}
