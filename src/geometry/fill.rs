@@ -56,6 +56,8 @@ pub(crate) struct Filling<'a, const D: usize> {
     pub(crate) regions: &'a [WaterRegion<D>],
     /// The solid whose hollows each region fills, if it fills nothing else; an empty list: none does.
     pub(crate) inside: Vec<Option<usize>>,
+    /// The height (m) at which the water of each region ends, if that lies below its top; an empty list: at the tops of all.
+    pub(crate) levels: Vec<Option<f64>>,
     /// Shapes, poses, and whether open polylines are beds, with ground below.
     pub(crate) solids: &'a [(&'a Shape<D>, &'a Pose<D>, bool)],
     pub(crate) spaces: &'a [EnclosedSpace<'a, D>],
@@ -125,7 +127,10 @@ pub(crate) fn fill_around<const D: usize>(
     dp: f64,
 ) -> Result<FilledWater<D>> {
     let alone = &Ranks::default();
-    Ok(Filling { regions, inside: Vec::new(), solids, spaces: &[], ranks: alone, owners: alone }.fill(dp)?.water)
+    let levels = Vec::new();
+    Ok(Filling { regions, inside: Vec::new(), levels, solids, spaces: &[], ranks: alone, owners: alone }
+        .fill(dp)?
+        .water)
 }
 
 impl<const D: usize> Filling<'_, D> {
@@ -151,17 +156,23 @@ impl<const D: usize> Filling<'_, D> {
         let excludes = |k: usize, x: &Vector<D>| {
             self.spaces.iter().zip(&entries[k]).any(|(space, entry)| space.excludes(x, *entry))
         };
+        let claims = |k: usize, x: &Vector<D>| lattices[k].contains(x) && !excludes(k, x);
+        let is_water = |k: usize, x: &Vector<D>| self.is_below_level(k, x) && claims(k, x);
         let own = ranks::equal_part(lattices.iter().map(Lattice::point_count).sum(), self.owners);
         let mut point = 0;
         for (k, lattice) in lattices.iter().enumerate() {
             lattice.for_each_point(0, |x| {
                 let is_own = own.contains(&point);
                 point += 1;
-                if !lattice.contains(x) || excludes(k, x) {
+                if !claims(k, x) {
                     return;
                 }
-                if lattices[..k].iter().enumerate().any(|(i, earlier)| earlier.contains(x) && !excludes(i, x)) {
-                    filled.removed_in_regions += 1;
+                let is_below = self.is_below_level(k, x);
+                if (0..k).any(|i| is_water(i, x)) {
+                    filled.removed_in_regions += usize::from(is_below);
+                } else if !is_below && ((0..k).any(|i| claims(i, x)) || (k + 1..lattices.len()).any(|i| is_water(i, x)))
+                {
+                    // The packing treats a region as full up to its top, but for what is water of another.
                 } else if obstacles.iter_mut().any(|o| o.claims_cell(x)) {
                     filled.removed_in_solids += 1;
                 } else {
@@ -186,8 +197,17 @@ impl<const D: usize> Filling<'_, D> {
             home.retain(|_| flags.next() == Some(&true));
             filled.removed_in_solids += self.owners.counts(before - filled.r.len()).iter().sum::<usize>();
         }
+        if self.levels.iter().any(Option::is_some) {
+            let below = |(x, k): &(Vector<D>, u32)| self.is_below_level(*k as usize, x);
+            (filled.r, home) = filled.r.into_iter().zip(home).filter(below).unzip();
+        }
         let has_own_water = (0..self.spaces.len()).map(|s| self.has_own_water(s, &lattices, &entries)).collect();
         Ok(Filled { water: filled, home, has_own_water })
+    }
+
+    /// Returns whether `x` (m) is below the surface of region number `k`.
+    fn is_below_level(&self, k: usize, x: &Vector<D>) -> bool {
+        self.levels.get(k).copied().flatten().is_none_or(|level| x[D - 1] < level)
     }
 
     /// Returns how region number `k` meets each enclosed space.
@@ -199,7 +219,8 @@ impl<const D: usize> Filling<'_, D> {
             }
             let mut around = false;
             lattice.for_each_point(0, |x| {
-                around = around || (lattice.contains(x) && space.place(x) == Place::Outside);
+                around =
+                    around || (lattice.contains(x) && self.is_below_level(k, x) && space.place(x) == Place::Outside);
             });
             if around { Entry::Around } else { Entry::Within }
         };
@@ -209,10 +230,11 @@ impl<const D: usize> Filling<'_, D> {
     /// Returns whether a region of water that does not reach around the solid enters enclosed space number `s`.
     fn has_own_water(&self, s: usize, lattices: &[Lattice<D>], entries: &[Vec<Entry>]) -> bool {
         let space = &self.spaces[s];
-        lattices.iter().zip(entries).filter(|(_, entries)| entries[s] != Entry::Around).any(|(lattice, _)| {
-            let mut enters = false;
+        (0..lattices.len()).filter(|k| entries[*k][s] != Entry::Around).any(|k| {
+            let (mut enters, lattice) = (false, &lattices[k]);
             lattice.for_each_point(0, |x| {
-                enters = enters || (lattice.contains(x) && matches!(space.place(x), Place::Hollow(_)));
+                let is_water = || lattice.contains(x) && self.is_below_level(k, x);
+                enters = enters || (is_water() && matches!(space.place(x), Place::Hollow(_)));
             });
             enters
         })

@@ -128,7 +128,8 @@ fn check_support<const D: usize>(
         return;
     }
     let what = format!(
-        "water.{number} begins at {} m, and nothing is under it: it falls at the start",
+        "water.{} begins at {} m, and nothing is under it: it falls at the start",
+        context.open_numbers[number],
         three_digits(lowest - 0.5 * dp)
     );
     let mend = format!("let it begin on the floor, or put one under it, as at {}", coordinates(&own.min));
@@ -207,9 +208,12 @@ fn check_stack<const D: usize>(
     let over = (0..D - 1).all(|axis| overlap(axis) > dp);
     let (level, above) = (other.max[D - 1], own.max[D - 1]);
     let touches = own.min[D - 1] <= level + 0.5 * dp && other.min[D - 1] <= own.min[D - 1];
-    if i == j || !over || above < level + dp || !touches {
+    // The first of two overlapping entries has the water of both, so an earlier one stands on a later one that begins below it.
+    let stands = i > j || other.min[D - 1] < own.min[D - 1] - 0.5 * dp;
+    if i == j || !over || above < level + dp || !touches || !stands {
         return;
     }
+    let (i, j) = (context.open_numbers[i], context.open_numbers[j]);
     let what = format!(
         "water.{i} stands to {} m on water.{j}, which starts with the pressure below its own level, {} m",
         three_digits(above),

@@ -206,6 +206,8 @@ struct PreflightContext<'a, const D: usize> {
     hollows: Vec<Option<SolidHollows<D>>>,
     /// Boxes around the open bodies of water, up to their levels.
     open_water: Vec<Bounds<D>>,
+    /// The number of the body of water in each of these boxes.
+    open_numbers: Vec<usize>,
     /// The water around each solid.
     surroundings: Vec<Surroundings>,
     /// The free body on which each free body stands.
@@ -237,6 +239,7 @@ pub fn preflight<const D: usize>(
         surface_samples: samples,
         hollows,
         open_water: initial.boxes,
+        open_numbers: initial.box_numbers,
         surroundings: Vec::new(),
         decks: Vec::new(),
     };

@@ -420,7 +420,7 @@ impl<const D: usize> PlacedSolids<D> {
             let may_enter = match body.inside {
                 Some(solid) => solid == i,
                 None => {
-                    let (own, other) = (spec.shape.bounds_at(pose), body.bounds());
+                    let (own, other) = (spec.shape.bounds_at(pose), body.bounds_below_level());
                     !self.keeps_out(i, hollow, pose, water) || (own.contains(&other.min) && own.contains(&other.max))
                 }
             };

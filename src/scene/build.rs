@@ -61,6 +61,8 @@ pub struct InitialWater<const D: usize> {
     pub(crate) enclosures: Vec<Option<Enclosure<D>>>,
     /// The box around each body of water that no solid encloses, up to its level.
     pub(crate) boxes: Vec<Bounds<D>>,
+    /// The number of the body of water in each of these boxes.
+    pub(crate) box_numbers: Vec<usize>,
     /// The level (m) of each body of water inside a solid, with the number of the solid.
     pub(crate) inside: Vec<(usize, f64)>,
 }
@@ -374,6 +376,7 @@ impl<const D: usize> SceneParts<D> {
         };
         let own_levels = water.iter().filter_map(|body| Some((body.inside?, body.level))).collect();
         let boxes = open_boxes(&water);
+        let box_numbers = (0..water.len()).filter(|i| water[*i].inside.is_none()).collect();
         let first_buffer = water.len();
         let (open_boundaries, buffers) = scene.open_boundaries(ctx, &water, &model)?;
         water.extend(buffers);
@@ -394,14 +397,12 @@ impl<const D: usize> SceneParts<D> {
         let alone = Ranks::default();
         let owners = if is_shared { ranks } else { &alone };
         require_affordable(ctx, &water, solids, owners.count())?;
-        let filling = Filling { regions: &regions, inside, solids: &solid_shapes, spaces: &spaces, ranks, owners };
-        let Filled { water: mut filled, mut home, has_own_water } =
+        // A box by its corners ends at its level.
+        let levels = scene.water.iter().map(|own| own.level.filter(|_| own.fill.shape.is_some())).collect();
+        let filling =
+            Filling { regions: &regions, inside, levels, solids: &solid_shapes, spaces: &spaces, ranks, owners };
+        let Filled { water: mut filled, home, has_own_water } =
             filling.fill(scene.dp).map_err(|e| ctx.with_location(e, "water"))?;
-        if scene.water.iter().any(|w| w.level.is_some() && w.fill.shape.is_some()) {
-            let below = |x: &Vector<D>| water.iter().any(|body| body.contains(x) && x[D - 1] < body.level);
-            let (r, own) = filled.r.iter().zip(&home).filter(|(x, _)| below(x)).unzip();
-            (filled.r, home) = (r, own);
-        }
         let part = owners.part(filled.r.len());
         if part.count == 0 {
             return Err(no_water_error(ctx, &water, solids));
@@ -415,26 +416,15 @@ impl<const D: usize> SceneParts<D> {
         let own_water: Vec<usize> =
             spaces.iter().zip(has_own_water).filter(|(_, own)| *own).map(|(space, _)| space.solid).collect();
         let plan = scene.resolved_plan(ctx, &still)?;
-        // The packing algorithm can move a particle slightly out of its body of water.
-        let nearest = |(x, home): (&Vector<D>, &u32)| match &water[*home as usize] {
-            own if own.inside.is_some() => Some(own),
-            _ => {
-                let bodies =
-                    if (*home as usize) < first_buffer { &water[..first_buffer] } else { &water[first_buffer..] };
-                let open = bodies.iter().filter(|body| body.inside.is_none());
-                open.min_by(|a, b| a.distance(x).total_cmp(&b.distance(x)))
-            }
-        };
-        let origins = || filled.r.iter().zip(&home).map(nearest);
-        let levels = origins().map(|body| body.map_or(still.level, |body| body.level)).collect();
+        let origin = |home: &u32| &water[*home as usize];
+        let levels = home.iter().map(|home| origin(home).level).collect();
         let moves = scene.water.iter().any(|water| water.velocity.is_some() || water.pressure.is_some());
         let (mut velocity, mut pressure) = (Vec::new(), Vec::new());
-        for (x, body) in filled.r.iter().zip(origins()).take(if moves { filled.r.len() } else { 0 }) {
-            let number = body.and_then(|body| water.iter().position(|own| std::ptr::eq(own, body)));
-            if let Some(number) = number.filter(|number| *number < scene.water.len()) {
-                water[number].flow.require_possible(ctx, &format!("water.{number}"), x, model.c0)?;
+        for (x, home) in filled.r.iter().zip(&home).take(if moves { filled.r.len() } else { 0 }) {
+            if (*home as usize) < first_buffer {
+                origin(home).flow.require_possible(ctx, &format!("water.{home}"), x, model.c0)?;
             }
-            let (v, p) = body.map_or((Vector::zeros(), 0.0), |body| body.flow.at(x));
+            let (v, p) = origin(home).flow.at(x);
             velocity.push(v);
             pressure.push(p);
         }
@@ -482,6 +472,7 @@ impl<const D: usize> SceneParts<D> {
                 removed_by_water: filled.removed_in_regions,
                 enclosures: placed.enclosures,
                 boxes,
+                box_numbers,
                 inside: own_levels,
             },
             file_notes: ctx.file_notes.take(),

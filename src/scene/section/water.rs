@@ -188,7 +188,14 @@ impl<const D: usize> WaterBody<D> {
         self.distance(x) < 1e-9
     }
 
-    /// The smallest box around it, m.
+    /// The smallest box around it up to its level, m.
+    pub(crate) fn bounds_below_level(&self) -> Bounds<D> {
+        let mut own = self.bounds();
+        own.max[D - 1] = self.level;
+        own
+    }
+
+    /// The smallest box around its region, m.
     pub(crate) fn bounds(&self) -> Bounds<D> {
         world_bounds(&self.region.shape, &self.region.pose)
     }
@@ -220,12 +227,7 @@ fn outside_solids<const D: usize>(water: &[WaterBody<D>]) -> impl Iterator<Item 
 
 /// Returns the boxes around the bodies of water that no solid encloses, up to their levels.
 pub(crate) fn open_boxes<const D: usize>(water: &[WaterBody<D>]) -> Vec<Bounds<D>> {
-    let up_to_level = |body: &WaterBody<D>| {
-        let mut own = body.bounds();
-        own.max[D - 1] = body.level;
-        own
-    };
-    water.iter().filter(|body| body.inside.is_none()).map(up_to_level).collect()
+    water.iter().filter(|body| body.inside.is_none()).map(WaterBody::bounds_below_level).collect()
 }
 
 /// Returns the highest level (m) of the water in `boxes` that reaches over or under a solid in the box `own`; `None` if none does.

@@ -150,8 +150,15 @@ fn the_parts_of_ranks_are_the_water_of_one() {
     let (ball, at) = (Shape::Ball { radius: 0.17 }, Pose::at(Vector::from([0.53, 0.36, 0.5])));
     let solids = [(&ball, &at, true)];
     let filled = |ranks: &Ranks| {
-        let filling =
-            Filling { regions: &regions, inside: Vec::new(), solids: &solids, spaces: &[], ranks, owners: ranks };
+        let filling = Filling {
+            regions: &regions,
+            inside: Vec::new(),
+            levels: Vec::new(),
+            solids: &solids,
+            spaces: &[],
+            ranks,
+            owners: ranks,
+        };
         filling.fill(dp).unwrap()
     };
     let whole = filled(&Ranks::default());
