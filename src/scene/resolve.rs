@@ -336,7 +336,7 @@ impl Scene {
                 return source;
             }
             if at == key
-                && let Some(source) = self.origin.source(&at)
+                && let Some(source) = self.origin.source(&at).or_else(|| self.origin.source(&list_item(&at)?))
             {
                 return source;
             }
@@ -356,6 +356,13 @@ impl Scene {
             _ => ValueSource::Default("see docs/reference/scene.md".into()),
         }
     }
+}
+
+/// Returns the key of a coordinate in a place that is written as a list.
+fn list_item(key: &str) -> Option<String> {
+    let (place, coordinate) = key.rsplit_once('.')?;
+    let number = ["x", "y", "z"].iter().position(|name| *name == coordinate)?;
+    Some(format!("{place}.{number}"))
 }
 
 /// The order in which values are listed.
