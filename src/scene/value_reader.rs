@@ -139,8 +139,12 @@ impl<'de> Deserializer<'de> for ValueReader<'de> {
         visitor: V,
     ) -> Result<V::Value, ReadError> {
         match &self.value {
-            DeValue::Array(items) if name != "PlacementConfig" || items.len() > 3 => {
+            DeValue::Array(_) if name != "PlacementConfig" => {
                 Err(ReadError::invalid_type(Unexpected::Seq, &visitor).at(&self.span))
+            }
+            DeValue::Array(items) if !(2..=3).contains(&items.len()) => {
+                let what = format!("a place is a list of 2 numbers in 2-D and of 3 in 3-D, not of {}", items.len());
+                Err(ReadError::custom(what).at(&self.span))
             }
             _ => self.deserialize_any(visitor),
         }

@@ -407,6 +407,11 @@ impl PlacementConfig {
         let three = ctx.dimension == 3;
         let refuse =
             |word: &str, what: &str, help: &str| Err(ctx.error_with_help(&format!("{key}.{word}"), what, help));
+        // A list may be shorter than it must be, a table may leave out coordinates.
+        let listed: Vec<f64> = [self.x, self.y, self.z].into_iter().flatten().collect();
+        if ctx.is_written(&format!("{key}.0")) {
+            ctx.require_dimension(key, &listed)?;
+        }
         if self.z.is_some() && !three {
             return refuse("z", "a 2-D scene has no z", "in 2-D x is horizontal and y is up");
         }

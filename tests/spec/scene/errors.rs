@@ -394,3 +394,55 @@ fn an_error_returned_from_main_prints_message_and_help() {
     let error = Error::scene("nothing is called \"narow\"").help("write narrow");
     assert_eq!(format!("{error:?}"), "nothing is called \"narow\"\n  write narrow");
 }
+
+/// A place as a list has as many numbers as the scene has dimensions, for solids, parts of compounds and water.
+#[test]
+fn a_place_as_a_list_has_all_coordinates() {
+    let head = |d: usize| {
+        let (min, max) = (vec![0.0; d], vec![1.0; d]);
+        let pool = format!("[[water]]\nfill = {{ box = {{ min = {min:?}, max = {max:?} }} }}\n");
+        format!("dimension = {d}\ndp = 0.05\nuntil = 1.0\n{pool}")
+    };
+    let ball = |at: &str| {
+        format!("[[solid]]\nname = \"s\"\nfixed = true\nshape = {{ ball = {{ radius = 0.2 }} }}\nat = {at}\n")
+    };
+    let part = |at: &str| {
+        let part = format!("{{ shape = {{ ball = {{ radius = 0.2 }} }}, at = {at} }}");
+        format!("[[solid]]\nname = \"s\"\nfixed = true\nshape = {{ compound = [{part}] }}\n")
+    };
+    let water = |at: &str| format!("[[water]]\nfill = {{ shape = {{ ball = {{ radius = 0.2 }} }}, at = {at} }}\n");
+    let places: [&dyn Fn(&str) -> String; 3] = [&ball, &part, &water];
+    for (place, key) in places.into_iter().zip(["solid.s.at", "solid.s.shape.compound.0.at", "water.1.fill.at"]) {
+        let message = |d: usize, at: &str| {
+            let read = Scene::parse(&format!("{}{}", head(d), place(at)), Path::new(""), &[]);
+            read.and_then(|scene| scene.plan()).map_or_else(|e| e.to_string(), |_| String::new())
+        };
+        for (d, at, what) in [
+            (3, "[0.5, 0.5]", "at has 2 numbers, not 3"),
+            (2, "[0.5, 0.5, 0.1]", "at has 3 numbers, not 2"),
+            (3, "[0.5]", "not of 1"),
+            (3, "[]", "not of 0"),
+            (3, "[0.5, 0.5, 0.1, 0.2]", "not of 4"),
+        ] {
+            let found = message(d, at);
+            assert!(found.contains(what) && found.contains(key), "{key} = {at}: {found}");
+        }
+        assert_eq!(message(3, "[0.5, 0.5, 0.1]"), "");
+    }
+}
+
+#[test]
+fn the_coordinates_of_a_list_have_the_line_of_the_list_as_their_source() {
+    let text = GOOD.replace("at    = { x = 0.5, draft = \"equilibrium\" }", "at    = [0.5, 0.45]");
+    let source = |sets: &[(String, String)], key: &str| {
+        let values = Scene::parse(&text, Path::new("s.toml"), sets).and_then(|scene| scene.resolve()).expect("a scene");
+        values
+            .iter()
+            .find(|value| value.key == key)
+            .unwrap_or_else(|| panic!("{key} among {values:?}"))
+            .source
+            .to_string()
+    };
+    assert_eq!(source(&[], "solid.box.at.y"), "scene line 17");
+    assert_eq!(source(&[("solid.box.at".into(), "[0.4, 0.5]".into())], "solid.box.at.x"), "--set");
+}

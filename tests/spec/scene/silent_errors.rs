@@ -412,7 +412,7 @@ fn lists_in_place_of_tables_and_longer_lists_are_refused_with_the_form() {
     for (text, words) in [
         (scene(REST, "").replace(free, "free = [500]"), ["free must be a table, not a list", "free = { density"]),
         // The position alone may be a list.
-        (scene(REST, &solid_at("[1.0, 0.4, 0.0, 0.1]")), ["at must be a table, not a list", "at = { x"]),
+        (scene(REST, &solid_at("[1.0, 0.4, 0.0, 0.1]")), ["a place is a list of 2 numbers in 2-D", "at = { x"]),
         (probed(&format!("{check}bound = [0.1]")), ["bound must be a table, not a list", "bound = { N"]),
         (scene(REST, "").replacen("[[water]]", "model = []\n[[water]]", 1), ["model must be a table", "[model]"]),
         (shaped("{ ball = [0.1] }"), ["ball must be a table, not a list", "{ ball = { radius"]),
