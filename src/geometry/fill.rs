@@ -158,6 +158,13 @@ impl<const D: usize> Filling<'_, D> {
         };
         let claims = |k: usize, x: &Vector<D>| lattices[k].contains(x) && !excludes(k, x);
         let is_water = |k: usize, x: &Vector<D>| self.is_below_level(k, x) && claims(k, x);
+        let is_free = |x: &Vector<D>| {
+            let near =
+                |(shape, pose, _): &(&Shape<D>, &Pose<D>, bool)| shape.signed_distance(&pose.local(x)) < 0.5 * dp;
+            !self.solids.iter().any(near)
+        };
+        let opens = |x: &Vector<D>| (0..lattices.len()).any(|k| is_water(k, x)) && is_free(x);
+        obstacles.iter_mut().for_each(|o| o.keep_beds(opens));
         let own = ranks::equal_part(lattices.iter().map(Lattice::point_count).sum(), self.owners);
         let mut point = 0;
         for (k, lattice) in lattices.iter().enumerate() {

@@ -120,6 +120,23 @@ impl<'a, const D: usize> Obstacle<'a, D> {
         taken
     }
 
+    /// Keeps as beds only the lines with no water (`is_water`) before and below their ends: under a shelf that ends in the water there is
+    /// water, and under a line whose ends are at walls, at the bed or beside the water there is ground.
+    pub(crate) fn keep_beds(&mut self, is_water: impl Fn(&Vector<D>) -> bool) {
+        let way = 1.5 * self.dp;
+        let beyond = |end: &Vector<D>, inner: &Vector<D>| {
+            let along = end[0] - inner[0];
+            let mut at = *end;
+            at[0] += if along.abs() > 1e-9 * self.dp { way * along.signum() } else { 0.0 };
+            at[D - 1] -= way;
+            at
+        };
+        self.lines.retain(|line| {
+            let ends = [line.first().zip(line.get(1)), line.last().zip(line.iter().nth_back(1))];
+            !ends.into_iter().flatten().any(|(end, inner)| is_water(&beyond(end, inner)))
+        });
+    }
+
     /// Returns whether `x` lies in the ground below a bed.
     fn buries(&self, x: &Vector<D>) -> bool {
         self.lines.iter().any(|line| below_bed(x, line))

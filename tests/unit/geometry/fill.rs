@@ -112,6 +112,28 @@ fn water_fills_the_space_above_a_slope_only() {
 }
 
 #[test]
+fn water_fills_the_space_under_a_shelf_that_ends_in_it() {
+    // A shelf in mid-water, one at the right side of the water, and a table whose legs end above the bed; volume of the walls, m².
+    let lines: [(&[[f64; 2]], f64); 3] = [
+        (&[[1.0, 0.6], [2.0, 0.6]], 0.1),
+        (&[[3.0, 0.6], [4.0, 0.6]], 0.1),
+        (&[[1.0, 0.3], [1.0, 0.6], [2.0, 0.6], [2.0, 0.3]], 0.14),
+    ];
+    for (points, volume) in lines {
+        let shelf = Shape::Polyline { points: points.iter().copied().map(Vector::from).collect(), thickness: 0.1 };
+        let filled = fill(&[pool([4.0, 1.0])], &[(&shelf, &Pose::identity())], 0.05).unwrap();
+        // Within a row of cells along the table's outline of 1.6 m, cut by its faces.
+        let lack = 4.0 - filled.r.len() as f64 * 0.0025 - volume;
+        assert!(lack.abs() < 0.021, "{points:?}: {lack} m² too few");
+    }
+    // A sill between two places of the bed has ground under it.
+    let sill = [[1.0, 0.0], [1.0, 0.4], [2.0, 0.4], [2.0, 0.0]].map(Vector::from).to_vec();
+    let sill = Shape::Polyline { points: sill, thickness: 0.1 };
+    let filled = fill(&[pool([4.0, 1.0])], &[(&sill, &Pose::identity())], 0.05).unwrap();
+    assert_eq!(filled.r.len(), 1600 - 160);
+}
+
+#[test]
 fn water_around_a_ball_has_no_gap() {
     let (ball, at) = (Shape::Ball { radius: 0.4 }, Pose::at(Vector::from([1.013, 0.987, 1.03])));
     let filled = fill(&[pool([2.0, 2.0, 2.0])], &[(&ball, &at)], 0.1).unwrap();
