@@ -6,7 +6,7 @@
 
 use std::{cmp::Reverse, collections::BinaryHeap};
 
-use super::Shape;
+use super::{Shape, support::world_bounds};
 use crate::math::{Bounds, Matrix, Pose, Vector};
 
 /// Edge of a cell, dp.
@@ -457,7 +457,7 @@ impl<const D: usize> Enclosure<D> {
     /// Returns the number of the hollow of `shape` at `pose` in which the middle of the box `other` lies, if the box does not reach
     /// beyond the sides of the shape.
     pub(crate) fn number_around(&self, shape: &Shape<D>, pose: &Pose<D>, other: &Bounds<D>) -> Option<usize> {
-        let around = shape.bounds_at(pose);
+        let around = world_bounds(shape, pose);
         let is_between = (0..D - 1).all(|k| around.min[k] <= other.min[k] && other.max[k] <= around.max[k]);
         match self.place(shape, &pose.local(&((other.min + other.max) * 0.5))) {
             Place::Hollow(hollow) if is_between => Some(hollow),

@@ -21,6 +21,7 @@ mod projected_area;
 mod shell;
 pub(crate) mod solids_of_revolution;
 mod submerged_volume;
+mod support;
 pub(crate) mod thin;
 pub(crate) mod triangulation;
 pub(crate) mod wall;
@@ -33,6 +34,7 @@ pub(crate) use fill::fill_around;
 pub use fill::{FilledWater, WaterRegion, fill};
 pub use mesh::{ContactGeometry, Mesh};
 pub(crate) use projected_area::Silhouette;
+pub(crate) use support::{greatest_length, world_bounds};
 
 /// A shape in its own frame, m. The last axis is vertical if the shape is not rotated.
 #[derive(Clone, Debug, PartialEq)]

@@ -2,6 +2,7 @@
 
 use super::{BodySummary, Finding, PreflightContext};
 use crate::{
+    geometry::world_bounds,
     math::{Vector, format::three_digits},
     solid::{
         JointKind, JointSpec, Solid, SolidSpec,
@@ -81,7 +82,7 @@ pub(super) fn find_decks<const D: usize>(context: &PreflightContext<D>) -> Vec<O
 
 /// Whether the free solid called `name` is under solid number `i`, in contact.
 fn is_below<const D: usize>(context: &PreflightContext<D>, name: &str, i: usize) -> bool {
-    let bounds = |solid: &Solid<D>| solid.spec.shape.bounds_at(&solid.kinematics.pose);
+    let bounds = |solid: &Solid<D>| world_bounds(&solid.spec.shape, &solid.kinematics.pose);
     let own = bounds(&context.solids()[i]);
     let other = context.solids().iter().enumerate().find(|(j, solid)| *j != i && solid.spec.name == name);
     other.is_some_and(|(_, solid)| {

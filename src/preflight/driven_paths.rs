@@ -3,8 +3,8 @@
 
 use super::{Finding, PreflightContext, wavemaker_site::is_wall};
 use crate::{
+    geometry::world_bounds,
     math::{Bounds, Vector, format::three_digits},
-    scene::world_bounds,
     solid::{PrescribedMotion, Role, Solid},
 };
 

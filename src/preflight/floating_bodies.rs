@@ -29,11 +29,11 @@ use super::{
     turns::{LARGEST_ESTIMATE, linear_heel, turn_finding},
 };
 use crate::{
+    geometry::world_bounds,
     math::{
         Matrix,
         format::{three_digits, two_digits_down, two_digits_up},
     },
-    scene::world_bounds,
     solid::{
         Constraints, FreeBody, Solid, SolidSpec,
         decks::standing_joint,

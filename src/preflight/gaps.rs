@@ -6,12 +6,11 @@ use super::{
     surface_samples::{self, SurfaceSample},
 };
 use crate::{
-    geometry::Shape,
+    geometry::{Shape, world_bounds},
     math::{
         Vector,
         format::{coordinates, three_digits, two_digits_down},
     },
-    scene::world_bounds,
     solid::{Role, Solid, joint_groups::JointGroups},
 };
 

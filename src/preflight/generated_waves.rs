@@ -9,8 +9,9 @@ use super::{
     wavemaker_site::{WavemakerSite, is_wall},
 };
 use crate::{
+    geometry::world_bounds,
     math::format::{three_digits, two_digits_down, two_digits_up},
-    scene::{StillWaterLevel, world_bounds},
+    scene::StillWaterLevel,
     solid::{PrescribedMotion, Role, Solid},
     wavemaker::{DepthRegime, LinearWave, Paddle, TheoryRegion},
 };

@@ -2,7 +2,10 @@
 
 use super::{Finding, PreflightContext, initial_water::OFF_LATTICE};
 use crate::{
-    geometry::hollow::{Enclosure, Hollow, Place},
+    geometry::{
+        hollow::{Enclosure, Hollow, Place},
+        world_bounds,
+    },
     math::{Vector, format::three_digits},
     solid::{
         Role, Solid,
@@ -112,7 +115,7 @@ pub(super) fn check_hollows<const D: usize>(context: &PreflightContext<D>, findi
 pub(super) fn particles_around<const D: usize>(context: &PreflightContext<D>, i: usize, hull: usize) -> Option<usize> {
     let own = context.hollows[hull].as_ref().filter(|_| i != hull)?;
     let (solid, other) = (&context.solids()[hull], &context.solids()[i]);
-    let bounds = other.spec.shape.bounds_at(&other.kinematics.pose);
+    let bounds = world_bounds(&other.spec.shape, &other.kinematics.pose);
     let around = own.enclosure.number_around(&solid.spec.shape, &solid.kinematics.pose, &bounds)?;
     Some(own.particles[around])
 }

@@ -3,11 +3,11 @@
 
 use super::{Finding, PreflightContext};
 use crate::{
+    geometry::world_bounds,
     math::{
         Bounds, Vector,
         format::{three_digits, two_digits_up},
     },
-    scene::world_bounds,
     solid::{FreeBody, Role, Solid},
 };
 

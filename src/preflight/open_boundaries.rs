@@ -2,11 +2,11 @@
 
 use super::{Finding, PreflightContext, wavemaker_site::zone_extent};
 use crate::{
+    geometry::world_bounds,
     math::{
         Vector,
         format::{three_digits, two_digits_down},
     },
-    scene::world_bounds,
     solid::Solid,
     system::{OpenBoundary, passing_speeds, prescribed_discharge},
 };

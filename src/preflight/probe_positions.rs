@@ -2,12 +2,12 @@
 
 use super::{Finding, PreflightContext, SoundSpeed};
 use crate::{
+    geometry::world_bounds,
     math::{
         Bounds, Pose, Vector,
         format::{coordinates, three_digits},
     },
     probe::ProbeLocation,
-    scene::world_bounds,
     solid::Solid,
     system::symmetry::SymmetryPlane,
 };

@@ -10,13 +10,13 @@ use serde::Serialize;
 
 use super::{Finding, PreflightContext};
 use crate::{
+    geometry::world_bounds,
     math::{
         Vector,
         format::{three_digits, two_digits_down},
     },
     model::PressureGradient,
     preflight::GeneratedWave,
-    scene::world_bounds,
     solid::{ForceSpec, Role, Solid},
     sph::viscosity::Viscosity,
 };

@@ -1,7 +1,7 @@
 //! The water around each solid: its draft, its support and its buoyancy are those in this water, not in the highest one.
 
 use super::{PreflightContext, hollows::particles_around};
-use crate::scene::level_at;
+use crate::{geometry::world_bounds, scene::level_at};
 
 /// The still water around a solid at the start.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,7 +29,7 @@ pub(super) fn find_surroundings<const D: usize>(
         if let Some(level) = hulls().find_map(own) {
             return Surroundings::Hull(level);
         }
-        let bounds = solids[i].spec.shape.bounds_at(&solids[i].kinematics.pose);
+        let bounds = world_bounds(&solids[i].spec.shape, &solids[i].kinematics.pose);
         // Without open water the highest level is that of all.
         let boxes = &context.open_water;
         let open = if boxes.is_empty() { Some(context.still_water.level) } else { level_at(boxes, &bounds) };

@@ -8,13 +8,13 @@ use super::{
     wavemaker_site::{WavemakerSite, is_wall},
 };
 use crate::{
+    geometry::world_bounds,
     math::{
         Vector,
         format::{coordinates, three_digits, two_digits_down, two_digits_up},
     },
     plan::StatisticKind,
     probe::ProbePlan,
-    scene::world_bounds,
     solid::{PrescribedMotion, Solid},
     wavemaker::{self, LINEAR_SPEED_RATIO_MAX, LinearWave, Paddle, TheoryRegion, WaveProperties},
 };

@@ -2,12 +2,11 @@
 
 use super::{Finding, GeneratedWave, PreflightContext};
 use crate::{
-    geometry::Shape,
+    geometry::{Shape, world_bounds},
     math::{
         Bounds, Vector,
         format::{coordinates, three_digits, two_digits_up},
     },
-    scene::world_bounds,
     solid::Solid,
     system::SpongeLayer,
 };

@@ -9,13 +9,13 @@ use super::{
         solid::SolidConfig,
         water::{StillWater, WaterBody},
     },
-    world_bounds,
 };
 use crate::{
     error::{Error, Result},
     geometry::{
         fill::EnclosedSpace,
         hollow::{Enclosure, Hollow, may_enclose},
+        world_bounds,
     },
     math::{Pose, Vector},
     solid::{
@@ -403,7 +403,7 @@ impl<const D: usize> PlacedSolids<D> {
     /// have risen by `rises` (m).
     fn is_sheltered(&self, i: usize, rises: &[f64], water: &[WaterBody<D>]) -> bool {
         let poses = self.risen(rises);
-        let own = self.specs[i].shape.bounds_at(&poses[i]);
+        let own = world_bounds(&self.specs[i].shape, &poses[i]);
         (0..self.specs.len()).filter(|j| *j != i).any(|j| {
             let (shape, pose) = (&self.specs[j].shape, poses[j]);
             let Some(around) = &self.enclosures[j] else { return false };

@@ -12,10 +12,9 @@ use super::{
         solid::SolidConfig,
         water::{StillWater, WaterBody},
     },
-    world_bounds,
 };
 use crate::{
-    geometry::Shape,
+    geometry::{Shape, world_bounds},
     math::{Bounds, Pose, Vector, format::three_digits},
     solid::{
         Constraints, FreeBody, Kinematics, Role, RopeSpec, SolidSpec,

@@ -3,7 +3,7 @@
 use super::{
     context::Context,
     section::{
-        shape::{AxisName, ShapeConfig, world_bounds},
+        shape::{AxisName, ShapeConfig},
         solid::SolidConfig,
         water::WaterBody,
     },
@@ -11,6 +11,7 @@ use super::{
 };
 use crate::{
     error::Result,
+    geometry::world_bounds,
     math::Bounds,
     solid::{Role, SolidSpec},
 };

@@ -76,10 +76,7 @@ use toml_source::SceneSource;
 pub use context::FileNote;
 #[cfg(feature = "cli")]
 pub(crate) use resolve::MOST_JITTER;
-pub(crate) use section::{
-    shape::world_bounds,
-    water::{basin, level_at},
-};
+pub(crate) use section::water::{basin, level_at};
 pub use {
     crate::probe::ProbeConfig,
     build::{BuiltScene, InitialWater},

@@ -13,8 +13,8 @@ use super::{
 };
 use crate::{
     error::Result,
-    geometry::{ContactGeometry, Shape, mesh::Completion},
-    math::{Bounds, Pose, Vector},
+    geometry::{ContactGeometry, Shape, mesh::Completion, world_bounds},
+    math::{Pose, Vector},
     scene::{
         context::{Context, Defaults, quoted_list, set_keys},
         files,
@@ -468,55 +468,4 @@ impl PlacementConfig {
 /// The vector of the numbers `x`; missing ones are 0.
 pub(crate) fn vector<const D: usize>(x: &[f64]) -> Vector<D> {
     Vector::from_fn(|i, _| x.get(i).copied().unwrap_or(0.0))
-}
-
-/// The smallest box around the posed shape, m.
-pub(crate) fn world_bounds<const D: usize>(shape: &Shape<D>, pose: &Pose<D>) -> Bounds<D> {
-    let extent = |i: usize, sign: f64| {
-        let mut direction = Vector::<D>::zeros();
-        direction[i] = sign;
-        sign * pose.position[i] + support(shape, &(pose.rotation.transpose() * direction))
-    };
-    Bounds { min: Vector::from_fn(|i, _| -extent(i, -1.0)), max: Vector::from_fn(|i, _| extent(i, 1.0)) }
-}
-
-/// The support function: how far the shape reaches in the direction `n`, a unit vector of its own frame, m.
-fn support<const D: usize>(shape: &Shape<D>, n: &Vector<D>) -> f64 {
-    match shape {
-        Shape::Box { size } => 0.5 * n.abs().dot(size),
-        Shape::Ball { radius } => *radius,
-        Shape::Capsule { length, radius, axis } => 0.5 * n[*axis].abs() * length + radius,
-        Shape::Cylinder { length, radius, axis } => {
-            0.5 * n[*axis].abs() * length + radius * (1.0 - n[*axis] * n[*axis]).max(0.0).sqrt()
-        }
-        Shape::Polygon { points } => points.iter().map(|p| p.dot(n)).fold(f64::NEG_INFINITY, f64::max),
-        Shape::Mesh { mesh, .. } => {
-            let along = |p: &Vector<3>| (0..D).map(|i| p[i] * n[i]).sum();
-            mesh.points().iter().map(along).fold(f64::NEG_INFINITY, f64::max)
-        }
-        Shape::Compound(parts) => parts
-            .iter()
-            .map(|(pose, part)| pose.position.dot(n) + support(part, &(pose.rotation.transpose() * n)))
-            .fold(f64::NEG_INFINITY, f64::max),
-        Shape::Polyline { .. } | Shape::Tank { .. } => {
-            let bounds = shape.bounds();
-            (0..D).map(|i| (n[i] * bounds.min[i]).max(n[i] * bounds.max[i])).sum()
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_turned_box_reaches_as_far_as_its_corner() {
-        let shape = Shape::<2>::Box { size: vector(&[0.2, 0.2]) };
-        let at = PlacementConfig { bottom: Some(0.5), angle_deg: Some(45.0), ..PlacementConfig::default() };
-        let bounds = world_bounds(&shape, &at.build(&shape, 0.0));
-        let half_diagonal = 0.1 * 2f64.sqrt();
-        // round-off of a sine and a product: a few 1e-16
-        assert!((bounds.min[1] - 0.5).abs() < 1e-15);
-        assert!((bounds.max[1] - 0.5 - 2.0 * half_diagonal).abs() < 1e-15);
-    }
 }

@@ -6,13 +6,13 @@ use serde::{Deserialize, Serialize};
 use super::{
     ballast::BallastConfig,
     motion::DrivenConfig,
-    shape::{PlacementConfig, ShapeConfig, vector, world_bounds},
+    shape::{PlacementConfig, ShapeConfig, vector},
     water::StillWater,
     wavemaker,
 };
 use crate::{
     error::{Error, ErrorCode, Result, suggestion},
-    geometry::Shape,
+    geometry::{Shape, world_bounds},
     math::{Bivector, Matrix, NumberOrArray, Pose, Vector},
     scene::{
         context::{Context, Defaults, quoted_list, set_keys},

@@ -3,10 +3,10 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::shape::{PlacementConfig, ShapeConfig, vector, world_bounds};
+use super::shape::{PlacementConfig, ShapeConfig, vector};
 use crate::{
     error::{Error, ErrorCode, Result},
-    geometry::{Shape, WaterRegion},
+    geometry::{Shape, WaterRegion, world_bounds},
     math::{Bounds, BoxConfig, Pose, Vector, expression::ScalarField, format::three_digits},
     scene::{context::Context, untagged::FieldFormulaConfig},
 };

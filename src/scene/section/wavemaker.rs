@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use super::{
     motion::DrivenConfig,
-    shape::{vector, world_bounds},
+    shape::vector,
     water::StillWater,
     wave::{
         AbsorbChoice, AbsorptionConfig, IrregularWaveConfig, JONSWAP_GAMMA, MeasuredElevationConfig,
@@ -13,7 +13,7 @@ use super::{
 };
 use crate::{
     error::{Error, Result},
-    geometry::Shape,
+    geometry::{Shape, world_bounds},
     math::{
         Bivector, Bounds, Pose, Vector,
         time_series::{SampleScaling, TimeSeries},
