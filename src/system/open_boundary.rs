@@ -36,6 +36,7 @@ use rayon::prelude::*;
 
 use super::{Fluid, FluidDomain, System, periodic::WIDTH, reflected};
 use crate::{
+    geometry::world_bounds,
     math::{Bounds, Pose, Vector, expression::UnsteadyField},
     model::Model,
     particles::Particles,
@@ -373,6 +374,11 @@ pub(crate) fn face_reached<'a, const D: usize>(
     if faces.is_empty() || matches!(spec.role, Role::Fixed) {
         return None;
     }
-    let (bounds, length) = (spec.shape.bounds_at(pose), buffer_length(&system.model));
-    faces.iter().find(|face| face.has_end_in_buffer(&spec.role, &bounds, length, system.model.dp))
+    // The smallest box of a mesh takes long: a box around it that ends before the face decides alone.
+    let (around, length) = (spec.shape.bounds_at(pose), buffer_length(&system.model));
+    let is_near = |face: &&OpenBoundary<D>| face.beyond(&around.min).max(face.beyond(&around.max)) > 0.0;
+    let ends = |face: &&OpenBoundary<D>| {
+        face.has_end_in_buffer(&spec.role, &world_bounds(&spec.shape, pose), length, system.model.dp)
+    };
+    faces.iter().filter(is_near).find(ends)
 }

@@ -18,6 +18,7 @@ use super::{
 };
 use crate::{
     error::{Error, Result},
+    geometry::{greatest_length, world_bounds},
     interaction::StepLimits,
     math::{Bounds, Pose, Vector},
     model::Model,
@@ -332,7 +333,7 @@ fn motion_along<const D: usize>(spec: &SolidSpec<D>, axis: usize) -> Option<&Pre
 
 /// The longest (m) that a driven solid, which starts with `bounds`, is along axis number `axis`.
 fn longest<const D: usize>(spec: &SolidSpec<D>, motion: &PrescribedMotion<D>, bounds: &Bounds<D>, axis: usize) -> f64 {
-    if motion.turns() { spec.shape.bounds().size().norm() } else { bounds.size()[axis] }
+    if motion.turns() { greatest_length(&spec.shape) } else { bounds.size()[axis] }
 }
 
 /// Whether the boundary particles of a solid have copies along axis number `axis`, across which water sees as far as `width` (m).
@@ -348,7 +349,7 @@ fn is_copied<const D: usize>(
     let Some(motion) = motion_along(spec, axis).filter(|_| !has_planes) else {
         return matches!(spec.role, Role::Free(_));
     };
-    let bounds = spec.shape.bounds_at(&spec.initial_kinematics().pose);
+    let bounds = world_bounds(&spec.shape, &spec.initial_kinematics().pose);
     let starts_inside = from <= bounds.min[axis] && bounds.max[axis] <= to;
     starts_inside && longest(spec, motion, &bounds, axis) <= to - from - 2.0 * width
 }
@@ -368,7 +369,7 @@ fn side_reached<const D: usize>(
 ) -> Option<usize> {
     let reaches = |axis: &usize| {
         let Some(sides) = periodic[*axis].filter(|_| motion_along(spec, *axis).is_some()) else { return false };
-        ends_near(&spec.shape.bounds_at(pose), *axis, sides, width)
+        ends_near(&world_bounds(&spec.shape, pose), *axis, sides, width)
             && !is_copied(periodic, has_planes, spec, (*axis, width))
     };
     (0..D).find(reaches)
@@ -456,7 +457,7 @@ pub(crate) fn check<const D: usize>(
             check_free(solid, (name, axis), [from, to], width)?;
         }
         let ends = |solid: &&SolidSpec<D>| {
-            let bounds = solid.shape.bounds_at(&solid.initial_kinematics().pose);
+            let bounds = world_bounds(&solid.shape, &solid.initial_kinematics().pose);
             ends_near(&bounds, axis, [from, to], width) && !is_copied(periodic, has_planes, solid, (axis, width))
         };
         if let Some(solid) = solids.iter().find(ends) {
@@ -482,10 +483,10 @@ fn check_free<const D: usize>(
     [from, to]: [f64; 2],
     width: f64,
 ) -> Result<()> {
-    let bounds = solid.shape.bounds_at(&solid.initial_kinematics().pose);
+    let bounds = world_bounds(&solid.shape, &solid.initial_kinematics().pose);
     let (min, max) = (bounds.min[axis], bounds.max[axis]);
     // The longest that it can become along the axis as it turns.
-    let (long, longest) = (solid.shape.bounds().size().norm(), to - from - 2.0 * width);
+    let (long, longest) = (greatest_length(&solid.shape), to - from - 2.0 * width);
     if long > longest {
         let what = format!(
             "free solid {:?} is up to {long:.4} m long, and the period along {name} {} m",

@@ -7,7 +7,7 @@ use super::{
 };
 use crate::{
     error::{Error, ErrorCode, Result},
-    geometry::cells::PointCells,
+    geometry::{cells::PointCells, world_bounds},
     math::{Bounds, Vector},
     solid::{ForceSpec, Kinematics, LineEnd, Role, SolidSpec, TimeFunction},
 };
@@ -122,7 +122,7 @@ impl<const D: usize> Setup<D> {
 
     /// Whether the plane cuts the solid.
     fn is_cut(&self, solid: &SolidSpec<D>, plane: &Named) -> bool {
-        let bounds = solid.shape.bounds_at(&solid.initial_kinematics().pose);
+        let bounds = world_bounds(&solid.shape, &solid.initial_kinematics().pose);
         plane.depths(&bounds)[0] < -TOLERANCE * self.model.dp
     }
 
@@ -130,7 +130,7 @@ impl<const D: usize> Setup<D> {
     fn check_solid(&self, i: usize, plane: &Named) -> Result<()> {
         let (solid, dp) = (&self.solids[i], self.model.dp);
         let pose = solid.initial_kinematics().pose;
-        let [least, most] = plane.depths(&solid.shape.bounds_at(&pose));
+        let [least, most] = plane.depths(&world_bounds(&solid.shape, &pose));
         let (name, title) = (&solid.name, plane.title());
         if most <= TOLERANCE * dp {
             return Err(Error::scene(format!("solid {name:?} lies beyond {title}, where nothing is computed"))

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use super::{MOST_FACES, OpenBoundary};
 use crate::{
     error::{Error, ErrorCode, Result},
+    geometry::world_bounds,
     math::{
         Bounds, Vector, find_pole,
         format::{three_digits, two_digits_down, two_digits_up},
@@ -66,7 +67,7 @@ pub(crate) fn check<const D: usize>(setup: &Setup<D>, i: usize, until: f64) -> R
         let what = format!("open boundary {name:?} at {along} = {at} has no water on both of its sides");
         let help = match solid_at_face(setup, face) {
             Some(solid) => {
-                let bounds = solid.shape.bounds_at(&solid.initial_kinematics().pose);
+                let bounds = world_bounds(&solid.shape, &solid.initial_kinematics().pose);
                 let [from, to] = [bounds.min[axis], bounds.max[axis]];
                 format!("solid {:?} is there, from {along} = {from:.6} to {to:.6}: move the face out of it", solid.name)
             }
@@ -81,7 +82,7 @@ pub(crate) fn check<const D: usize>(setup: &Setup<D>, i: usize, until: f64) -> R
         return Err(Error::scene(what).help(help));
     }
     for solid in &setup.solids {
-        let bounds = solid.shape.bounds_at(&solid.initial_kinematics().pose);
+        let bounds = world_bounds(&solid.shape, &solid.initial_kinematics().pose);
         if !face.has_end_in_buffer(&solid.role, &bounds, length, setup.model.dp) {
             continue;
         }

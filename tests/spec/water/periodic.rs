@@ -267,6 +267,14 @@ fn free_bodies_that_periodic_sides_do_not_allow_are_refused_with_the_remedy() {
         common::scene_simulation::<2>(&text).err().map(|e| e.to_string()).unwrap_or_default()
     };
     assert_eq!(refused("", ""), "");
+    // A turned disc ends where the disc does: at 1.18 m.
+    let disc = |x: f64| {
+        let text = channel(0.0, 500.0).replace("box = { size = [0.2, 0.1] }", "ball = { radius = 0.1 }");
+        let text = text.replace("x = 0.6, draft = 0.03", &format!("x = {x}, draft = 0.1, angle_deg = 45"));
+        common::scene_simulation::<2>(&text).err().map(|e| e.to_string()).unwrap_or_default()
+    };
+    assert_eq!(disc(1.08), "");
+    assert!(disc(1.12).contains("starts across a periodic side"));
     let message = refused("at = { x = 0.6, draft", "at = { x = 1.15, draft");
     assert!(message.contains("starts across a periodic side") && message.contains("move it by -0.05"), "{message}");
     let message = refused("size = [0.2, 0.1]", "size = [1.0, 0.1]");

@@ -351,6 +351,11 @@ fn what_contradicts_the_symmetry_is_refused_with_a_remedy() {
         let refusal = scene.build::<2>().err().map(|error| error.to_string());
         assert_eq!(refusal, None, "a symmetric load is accepted");
     }
+    // A turned disc ends where the disc does.
+    let turned = BOX.replace("box = { size = [0.18, 0.1] }", "ball = { radius = 0.1 }");
+    let turned = turned.replace("x = 0.4, draft = 0.03", "x = 0.52, draft = 0.1, angle_deg = 45");
+    let scene = Scene::parse(&format!("{plane}\n{turned}"), Path::new(""), &[]).expect("a readable scene");
+    assert_eq!(scene.build::<2>().err().map(|error| error.to_string()), None, "a disc beside the plane");
     for (keys, scene, expected) in [
         ("symmetry = { y = 0.2 }", BOX.into(), "gravity"),
         ("symmetry = { x = 0.605 }", COLUMN.into(), "symmetry.x = "),
