@@ -8,6 +8,7 @@ mod boundary_points;
 pub(crate) mod cells;
 mod check;
 mod distance;
+mod exposed;
 pub mod fill;
 mod fit;
 pub(crate) mod hollow;

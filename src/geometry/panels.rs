@@ -7,7 +7,7 @@ use std::f64::consts::{PI, TAU};
 
 use super::{
     Shape,
-    projected_area::{area_vector, exposed_facets, middle},
+    exposed::{area_vector, exposed_facets, middle},
     submerged_volume::Facet,
 };
 use crate::math::{Pose, Vector};
@@ -34,11 +34,12 @@ pub(crate) fn wetted_panels(
     size: f64,
     is_wet: impl Fn(&Vector<3>) -> bool,
 ) -> Vec<Facet<3>> {
-    let panels = exposed_facets(shape, &|part| {
+    let facets = |part: &Shape<3>| {
         let mut halved = Vec::new();
         facets_of_size(part, size).into_iter().for_each(|facet| halve(facet, LONGEST * size, &mut halved));
         halved
-    });
+    };
+    let panels = exposed_facets(shape, &facets, &|cover, facet, into| cover.add_exposed_parts(facet, into));
     let is_wet = |facet: &Facet<3>| {
         let normal = area_vector(facet);
         let length = normal.norm();

@@ -4,11 +4,12 @@
 //! counts once. That of a convex shape is the sum over its facets. Of others it is the union of the projections: exact in 2-D, along
 //! lines across the flow in 3-D.
 
-use super::{Shape, submerged_volume::Facet};
+use super::{
+    Shape,
+    exposed::{OFFSET, area_vector, exposed_facets, middle},
+    submerged_volume::Facet,
+};
 use crate::math::{Pose, Vector};
-
-/// Offset of a point before a facet, relative to the size of the shape, at which another part hides it.
-const OFFSET: f64 = 1e-6;
 
 /// Number of lines across the flow on which shadows are found in 3-D, at least.
 const LINES: usize = 128;
@@ -16,37 +17,17 @@ const LINES: usize = 128;
 /// Most facets of a shape that is tested for convexity: the test takes the square of their number.
 const MOST_CONVEX: usize = 10_000;
 
-/// The facets of the surface of `shape` in its own frame. Those of a part whose middle lies on or in another part are left out.
+/// The facets of the surface of `shape` in its own frame, without those that other parts cover. One that is covered in part is whole:
+/// its covered part lies in the shadow of what covers it.
 fn surface_facets<const D: usize>(shape: &Shape<D>) -> Vec<Facet<D>> {
-    exposed_facets(shape, &|part| match part {
-        Shape::Ball { radius } => Shape::Capsule { length: 0.0, radius: *radius, axis: D - 1 }.facets(),
-        _ => part.outer_facets(),
-    })
+    exposed_facets(shape, &leaf_facets, &|cover, facet, into| cover.add_unless_covered(facet, into))
 }
 
-/// The facets of `shape` in its own frame, where `facets` returns those of a shape that is no compound. Those of a part whose middle
-/// lies on or in another part are left out.
-pub(super) fn exposed_facets<const D: usize>(
-    shape: &Shape<D>,
-    facets: &impl Fn(&Shape<D>) -> Vec<Facet<D>>,
-) -> Vec<Facet<D>> {
+/// The facets of a shape that is no compound, in its own frame.
+pub(super) fn leaf_facets<const D: usize>(shape: &Shape<D>) -> Vec<Facet<D>> {
     match shape {
-        Shape::Compound(parts) => {
-            let offset = OFFSET * shape.bounds().size().max();
-            let mut all = Vec::new();
-            for (i, (pose, part)) in parts.iter().enumerate() {
-                let others = || parts.iter().enumerate().filter(|(j, _)| *j != i);
-                let is_hidden = |facet: &Facet<D>| {
-                    let normal = area_vector(facet);
-                    let before = middle(facet) + normal * (offset / normal.norm().max(f64::MIN_POSITIVE));
-                    others().any(|(_, (other, shape))| shape.signed_distance(&other.local(&before)) < 0.0)
-                };
-                let own = exposed_facets(part, facets).into_iter().map(|facet| facet.map(|x| pose.point(&x)));
-                all.extend(own.filter(|facet| !is_hidden(facet)));
-            }
-            all
-        }
-        _ => facets(shape),
+        Shape::Ball { radius } => Shape::Capsule { length: 0.0, radius: *radius, axis: D - 1 }.facets(),
+        _ => shape.outer_facets(),
     }
 }
 
@@ -205,23 +186,6 @@ fn split_dry<const D: usize>(facet: Facet<D>, level: f64, each: &mut impl FnMut(
         (Some(_), None) => each(facet),
         (None, _) => {}
     }
-}
-
-/// Area of a facet times its outward normal.
-pub(super) fn area_vector<const D: usize>(facet: &Facet<D>) -> Vector<D> {
-    let side = facet[1] - facet[0];
-    if D == 2 {
-        return Vector::from_fn(|i, _| if i == 0 { side[1] } else { -side[0] });
-    }
-    let other = facet[2] - facet[0];
-    Vector::from_fn(|i, _| {
-        let (j, k) = ((i + 1) % D, (i + 2) % D);
-        0.5 * (side[j] * other[k] - side[k] * other[j])
-    })
-}
-
-pub(super) fn middle<const D: usize>(facet: &Facet<D>) -> Vector<D> {
-    facet.iter().sum::<Vector<D>>() / D as f64
 }
 
 #[cfg(test)]

@@ -73,3 +73,18 @@ fn faces_that_are_not_in_the_water_around_have_no_panels() {
     assert!((panel_volume(&outer, 0.0) - 0.44 * 0.34 * 0.12).abs() < 1e-12);
     assert!((panel_area(&outer) - (0.44 * 0.34 + 2.0 * 0.78 * 0.12)).abs() < 1e-12);
 }
+
+#[test]
+fn a_face_that_another_part_covers_in_part_has_panels_beside_it() {
+    // A fender on the middle of a side, smaller than most panels and off their edges.
+    let part = |at: [f64; 3], size: [f64; 3]| (Pose::at(Vector::from(at)), Shape::Box { size: Vector::from(size) });
+    for size in [0.05, 0.2] {
+        let hull =
+            Shape::Compound(vec![part([0.0; 3], [0.4, 0.3, 0.2]), part([0.22, 0.01, -0.05], [0.04, 0.06, 0.06])]);
+        let panels = panels(&hull, Pose::identity(), size);
+        let (area, volume) = (0.4 * 0.3 + 1.4 * 0.1 + 4.0 * 0.04 * 0.06, 0.4 * 0.3 * 0.1 + 0.04 * 0.0036);
+        // Straight cuts miss the corners of the fender by a part of a panel that was halved six times.
+        assert!((panel_area(&panels) / area - 1.0).abs() < 2e-3, "{size}: area {} for {area}", panel_area(&panels));
+        assert!((panel_volume(&panels, 0.0) / volume - 1.0).abs() < 2e-3, "{size}: {}", panel_volume(&panels, 0.0));
+    }
+}

@@ -84,3 +84,34 @@ fn a_part_in_the_lee_of_another_counts_once_in_3d() {
     let seen = area(&row, Pose::identity(), -1.0, [1.0, 0.0, 0.0]).0;
     assert!((seen / disc - 1.0).abs() < 1e-3, "{seen} of {disc}");
 }
+
+#[test]
+fn a_face_with_a_small_part_on_its_middle_shows_whole() {
+    let part = |x: f64, size: [f64; 2]| (Pose::at(Vector::from([x, 0.0])), Shape::Box { size: Vector::from(size) });
+    let hull = Shape::Compound(vec![part(0.0, [0.8, 0.3]), part(-0.42, [0.04, 0.04])]);
+    for way in [[1.0, 0.0], [-1.0, 0.0]] {
+        let (whole, centre) = area(&hull, Pose::identity(), -1.0, way);
+        assert!((whole - 0.3).abs() < 1e-14 && centre[1].abs() < 1e-14, "{whole} at {centre}");
+    }
+    let part =
+        |x: f64, size: [f64; 3]| (Pose::at(Vector::from([x, 0.0, 0.0])), Shape::Box { size: Vector::from(size) });
+    let hull = Shape::Compound(vec![part(0.0, [0.8, 0.6, 0.3]), part(-0.42, [0.04, 0.1, 0.04])]);
+    for (way, exact) in [([1.0, 0.0, 0.0], 0.18), ([-1.0, 0.0, 0.0], 0.18), ([0.0, 1.0, 0.0], 0.24 + 0.0016)] {
+        let (whole, _) = area(&hull, Pose::identity(), -1.0, way);
+        assert!((whole - exact).abs() < 1e-12, "{way:?}: {whole}");
+    }
+}
+
+#[test]
+fn faces_that_several_parts_cover_together_do_not_show() {
+    // A wall before two boxes that stand on each other: together they are one box, whose faces alone remain.
+    let part =
+        |[x, y]: [f64; 2], size: [f64; 2]| (Pose::at(Vector::from([x, y])), Shape::Box { size: Vector::from(size) });
+    let block = Shape::Compound(vec![
+        part([0.0, 0.0], [0.2, 0.4]),
+        part([0.2, 0.085], [0.2, 0.23]),
+        part([0.2, -0.115], [0.2, 0.17]),
+    ]);
+    assert!(Silhouette::new(&block).is_convex);
+    assert!((area(&block, Pose::identity(), -1.0, [-1.0, 0.0]).0 - 0.4).abs() < 1e-15);
+}
