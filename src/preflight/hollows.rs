@@ -11,6 +11,7 @@ use crate::{
         Role, Solid,
         hydrostatics::{HollowWater, Hull},
     },
+    system::System,
 };
 
 /// Share of a hollow's volume below the still level that water may take while the hollow counts as dry.
@@ -19,17 +20,18 @@ const DRY: f64 = 0.05;
 /// The space that a solid encloses, before the first step.
 pub(super) struct SolidHollows<const D: usize> {
     enclosure: Enclosure<D>,
-    /// Number of water particles in each hollow.
+    /// Number of water particles in each hollow, with their mirror images.
     pub(super) particles: Vec<usize>,
 }
 
 impl<const D: usize> SolidHollows<D> {
-    /// Counts the particles of the `water` (m) in the hollows of `solid`.
-    pub(super) fn new(enclosure: Enclosure<D>, solid: &Solid<D>, water: &[Vector<D>]) -> Self {
-        let (shape, pose) = (&solid.spec.shape, &solid.kinematics.pose);
+    /// Counts the particles of the water of `system`, and their mirror images, in the hollows of `solid`.
+    pub(super) fn new(enclosure: Enclosure<D>, solid: &Solid<D>, system: &System<D>) -> Self {
+        let (shape, pose, planes) = (&solid.spec.shape, &solid.kinematics.pose, system.symmetry_planes());
         let (bounds, mut particles) = (shape.bounds_at(pose), vec![0; enclosure.hollows.len()]);
-        for x in water.iter().filter(|x| bounds.contains(x)) {
-            if let Place::Hollow(hollow) = enclosure.place(shape, &pose.local(x)) {
+        let water = system.fluid().r.iter().flat_map(|x| planes.images(x));
+        for x in water.filter(|x| bounds.contains(x)) {
+            if let Place::Hollow(hollow) = enclosure.place(shape, &pose.local(&x)) {
                 particles[hollow] += 1;
             }
         }

@@ -227,8 +227,7 @@ pub fn preflight<const D: usize>(
     let g = if down > 0.9 * system.gravity().norm() { down } else { 0.0 };
     let (dp, reach) = (system.model().dp, system.model().support_radius());
     let samples = system.solids().iter().map(|s| surface_samples::of_solid(s, dp, reach)).collect();
-    let hollow =
-        |(solid, enclosure): (&Solid<D>, Option<_>)| Some(SolidHollows::new(enclosure?, solid, system.fluid().r));
+    let hollow = |(solid, enclosure): (&Solid<D>, Option<_>)| Some(SolidHollows::new(enclosure?, solid, system));
     let hollows = system.solids().iter().zip(initial.enclosures).map(hollow).collect();
     let inside = initial.inside;
     let mut look = PreflightContext {

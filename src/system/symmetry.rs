@@ -70,6 +70,12 @@ impl<const D: usize> SymmetryPlanes<D> {
         x
     }
 
+    /// The place `x` (m) and its mirror images.
+    pub(crate) fn images(&self, x: &Vector<D>) -> impl Iterator<Item = Vector<D>> {
+        let (planes, x, all) = (*self, *x, self.each().fold(0, |set, (axis, _)| set | 1 << axis));
+        (0..=all).filter(move |axes| axes & !all == 0).map(move |axes| planes.mirrored(axes, &x))
+    }
+
     /// The image of `x` (m) on the computed side.
     pub(crate) fn folded(&self, x: &Vector<D>) -> Vector<D> {
         self.mirrored(self.axes_beyond(x), x)

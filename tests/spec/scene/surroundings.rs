@@ -315,3 +315,68 @@ fn a_release_after_the_removal_is_refused_at_its_key() {
     assert!(error.contains("free.release") && error.contains("after its removal at 0.5 s"), "{error}");
     assert!(refused("0.9").is_ok());
 }
+
+/// The U-shaped hull of 0.18 m² in half a model floats as in the whole model, with the water inside it.
+#[test]
+fn the_water_in_a_hull_that_a_symmetry_plane_cuts_counts_whole() {
+    let hull = |symmetry: &str, dry: &str| {
+        report(&format!(
+            "{symmetry}dimension = 2\ndp = 0.02\nuntil = 1.0\nframes = \"off\"\n\
+             [[water]]\nfill = {{ box = {{ min = [-1.2, -1.0], max = [1.2, 0.0] }} }}\n\
+             [[solid]]\nname = \"tank\"\nfixed = true\nshape = {{ tank = {{ size = [2.4, 1.4] }} }}\nat = [-1.2, -1.0]\n\
+             [[solid]]\nname = \"b\"\nat = {{ x = 0.0, draft = \"equilibrium\" }}\nfree = {{ density = 900.0 }}\n{dry}\n\
+             shape = {{ polygon = [[-0.5, 0], [0.5, 0], [0.5, 0.4], [0.4, 0.4], [0.4, 0.1], [-0.4, 0.1], [-0.4, 0.4], [-0.5, 0.4]] }}\n"
+        ))
+    };
+    let plane = "symmetry = { x = 0.0 }\n";
+    for dry in ["dry = false", "dry = true", ""] {
+        let [whole, half] = ["", plane].map(|symmetry| hull(symmetry, dry));
+        let [a, b] = [&whole, &half].map(|found| summary(found, "b"));
+        assert!(
+            (a.draft_m - b.draft_m).abs() < 1e-9 && (a.displaced_kg - b.displaced_kg).abs() < 1e-6,
+            "{dry}: {a:?} {b:?}"
+        );
+        let [a, b] = [a, b].map(|body| body.afloat.as_ref().unwrap());
+        // The plane leaves no turn, so only the whole model has a metacentric height.
+        assert!((a.draft_m - b.draft_m).abs() < 1e-9, "{dry}: {a:?} {b:?}");
+        let topics = |found: &Preflight| -> Vec<_> { found.findings.iter().map(|finding| finding.topic).collect() };
+        let beyond: Vec<_> = topics(&half).into_iter().filter(|topic| !topics(&whole).contains(topic)).collect();
+        assert!(beyond.is_empty(), "{dry}: {beyond:?}");
+    }
+}
+
+#[test]
+fn a_body_longer_than_half_of_the_water_floats_in_a_half_model() {
+    let tank = TANK.replace("at = [", "").replace("size = [1.6, 0.9] } }", "size = [1.6, 0.9] } }\nat = [-0.8, 0.0]");
+    let sea = "[[water]]\nfill = { box = { min = [-0.8, 0.0], max = [0.8, 0.4] } }\n";
+    let body = |wide: f64| block("b", [wide, 0.3], "x = 0.0, draft = \"equilibrium\"", "density = 500.0");
+    let half = |wide: f64| report(&format!("symmetry = {{ x = 0.0 }}\n{tank}{sea}{}", body(wide)));
+    assert!(find(&half(1.0), "larger_than_water").is_none(), "{:#?}", half(1.0).findings);
+}
+
+/// The water is 0.6 m or 0.36 m deep, a whole number of dp. Beside the beach and the ball some packed particles stand above the highest row.
+#[test]
+fn packed_particles_above_their_row_do_not_put_the_level_off_the_lattice() {
+    let head = "dimension = 2\ndp = 0.02\nuntil = 1.0\nframes = \"off\"\n";
+    let beach = |level: f64| {
+        format!(
+            "{head}[[solid]]\nname = \"bed\"\nfixed = true\n\
+             shape = {{ polyline = {{ points = [[-2, 0.8], [-2, 0], [0, 0], [4.5, 0.75]] }} }}\n\
+             [[water]]\nfill = {{ box = {{ min = [-2.0, 0.0], max = [3.6, {level}] }} }}\n"
+        )
+    };
+    let ball = |level: f64| {
+        format!(
+            "{TANK}[[water]]\nfill = {{ box = {{ min = [0.0, 0.0], max = [1.6, {level}] }} }}\n\
+             [[solid]]\nname = \"b\"\nshape = {{ ball = {{ radius = 0.2 }} }}\nat = {{ x = 0.8, draft = \"equilibrium\" }}\n\
+             free = {{ density = 500.0 }}\n"
+        )
+    };
+    for text in [beach(0.6), ball(0.36)] {
+        let found = report(&text);
+        assert!(find(&found, "surface_off_lattice").is_none(), "{:#?}", found.findings);
+    }
+    for text in [beach(0.61), ball(0.37)] {
+        assert!(find(&report(&text), "surface_off_lattice").is_some(), "half a dp off");
+    }
+}
