@@ -14,7 +14,10 @@ use crate::{
 impl<const D: usize> PreflightContext<'_, D> {
     /// Adds findings about implausible free bodies and constraints; `touching` tells which solids touch another.
     pub(super) fn misplaced_bodies(&self, touching: &[bool], findings: &mut Vec<Finding>) {
-        let water = Bounds::around(self.system.fluid().r).grown(0.5 * self.dp());
+        let computed = Bounds::around(self.system.fluid().r);
+        let planes = self.system.symmetry_planes();
+        let corners: Vec<_> = [computed.min, computed.max].iter().flat_map(|corner| planes.images(corner)).collect();
+        let water = Bounds::around(&corners).grown(0.5 * self.dp());
         for (i, solid) in self.solids().iter().enumerate() {
             let Some(body) = &solid.body else { continue };
             if self.g > 0.0 && !touching[i] {
