@@ -81,15 +81,20 @@ pub(super) fn check<const D: usize>(context: &PreflightContext<D>, findings: &mu
 /// Adds a finding about a level between two rows of particles.
 fn check_surface<const D: usize>(context: &PreflightContext<D>, findings: &mut Vec<Finding>) {
     let (dp, level) = (context.dp(), context.still_water.level);
-    let heights = || context.system.fluid().r.iter().map(|x| x[D - 1]);
-    let top = heights().fold(f64::NEG_INFINITY, f64::max);
-    // A packed particle beside a body may stand above its row.
-    let mut row: Vec<f64> = heights().filter(|height| *height > top - 0.5 * dp).collect();
+    // The highest particle of each column of one dp. Those beside bodies and beaches are packed, and may stand above their row.
+    let mut tops: HashMap<[i64; D], f64> = HashMap::new();
+    for x in context.system.fluid().r {
+        let column = std::array::from_fn(|i| if i + 1 < D { (x[i] / dp).floor() as i64 } else { 0 });
+        let top = tops.entry(column).or_insert(f64::NEG_INFINITY);
+        *top = top.max(x[D - 1]);
+    }
+    let mut row: Vec<f64> = tops.into_values().filter(|top| (top + 0.5 * dp - level).abs() <= dp).collect();
     row.sort_by(f64::total_cmp);
     let Some(&highest) = row.get(row.len() / 2) else { return };
     let off = highest + 0.5 * dp - level;
     // Round regions are packed without rows.
-    if off.abs() <= OFF_LATTICE * dp || off.abs() > dp {
+    let in_row = row.iter().filter(|top| (*top - highest).abs() < OFF_LATTICE * dp).count();
+    if off.abs() <= OFF_LATTICE * dp || 2 * in_row < row.len() {
         return;
     }
     let what = format!(
