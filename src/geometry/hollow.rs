@@ -2,11 +2,18 @@
 //!
 //! A grid covers the solid. A flood from outside in the order of height gives each free cell its spill level: the least
 //! level at which water outside reaches it @barnes2014. Free cells below their spill level are enclosed. Closed hollows
-//! have no spill level.
+//! have no spill level. The volume of a hollow is that of columns of cells if the solid's faces fit the grid, and otherwise that within
+//! its surface ([`super::hollow_surface`]).
 
 use std::{cmp::Reverse, collections::BinaryHeap};
 
-use super::{Shape, support::world_bounds};
+use super::{
+    Shape,
+    exposed::area_vector,
+    hollow_surface::{Space, free_facets, hollow_facets},
+    submerged_volume::{Facet, add_wet},
+    support::world_bounds,
+};
 use crate::math::{Bounds, Matrix, Pose, Vector};
 
 /// Edge of a cell, dp.
@@ -43,6 +50,8 @@ pub(crate) struct Hollow<const D: usize> {
     /// Unit vector along the columns, upward.
     along: Vector<D>,
     columns: Vec<Column<D>>,
+    /// Its closed surface, with normals out of it; empty if the columns are exact, or if the surface was not found.
+    facets: Vec<Facet<D>>,
 }
 
 /// A vertical or oblique column of the space in a hollow.
@@ -69,6 +78,14 @@ pub(crate) enum Place {
 impl<const D: usize> Hollow<D> {
     /// Returns the volume (m³; m² in 2-D) of the hollow at `pose` below the height `level` (m), and its first moment.
     pub(crate) fn volume_and_moment_below(&self, pose: &Pose<D>, level: f64) -> (f64, Vector<D>) {
+        if !self.facets.is_empty() {
+            let mut sum = (0.0, Vector::zeros());
+            for facet in &self.facets {
+                let facet = facet.map(|x| pose.point(&x));
+                add_wet(facet, facet.map(|x| x[D - 1] - level), level, &mut sum);
+            }
+            return sum;
+        }
         let along = pose.rotation * self.along;
         let (mut volume, mut first) = (0.0, Vector::zeros());
         for column in &self.columns {
@@ -87,15 +104,21 @@ impl<const D: usize> Hollow<D> {
     pub(crate) fn level_of(&self, pose: &Pose<D>, volume: f64) -> f64 {
         let along = pose.rotation * self.along;
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-        for column in &self.columns {
+        for column in self.columns.iter().filter(|_| self.facets.is_empty()) {
             let end = pose.point(&column.low)[D - 1];
             low = low.min(end);
             high = high.max(end + along[D - 1].max(0.0) * column.length);
         }
+        for height in self.facets.iter().flatten().map(|x| pose.point(x)[D - 1]) {
+            (low, high) = (low.min(height), high.max(height));
+        }
+        // Faces above the level and below it cancel, with more round-off than columns.
+        let accuracy = if self.facets.is_empty() { 1e-14 } else { 1e-12 };
+        let size = high - low;
         let mut level = 0.5 * (low + high);
         for _ in 0..50 {
             let excess = self.volume_and_moment_below(pose, level).0 - volume;
-            if excess.abs() <= 1e-14 * volume {
+            if excess.abs() <= accuracy * volume {
                 break;
             }
             if excess < 0.0 {
@@ -104,14 +127,19 @@ impl<const D: usize> Hollow<D> {
                 high = level
             }
             // Newton's method, with the area of the surface, and bisection where it leaves the bounds.
-            let step = level - excess / self.surface_area(pose, level);
+            let step = level - excess / self.surface_area(pose, level, size);
             level = if low < step && step < high { step } else { 0.5 * (low + high) };
         }
         level
     }
 
-    /// Returns the area (m²; m in 2-D) of the horizontal plane at `level` (m) in the hollow at `pose`.
-    fn surface_area(&self, pose: &Pose<D>, level: f64) -> f64 {
+    /// Returns the area (m²; m in 2-D) of the horizontal plane at `level` (m) in the hollow, which is `size` (m) high, at `pose`.
+    fn surface_area(&self, pose: &Pose<D>, level: f64, size: f64) -> f64 {
+        if !self.facets.is_empty() {
+            let step = 1e-6 * size;
+            let [more, less] = [step, -step].map(|step| self.volume_and_moment_below(pose, level + step).0);
+            return (more - less) / (2.0 * step);
+        }
         let along = (pose.rotation * self.along)[D - 1].max(1e-9);
         let cut = self.columns.iter().filter(|column| {
             let low = pose.point(&column.low)[D - 1];
@@ -425,11 +453,12 @@ impl<const D: usize> Enclosure<D> {
         let hollow = |(number, cells): (usize, &Vec<u32>)| {
             let level = spill[cells[0] as usize];
             let rim = if level.is_finite() { search.rim(cells, &mark, number as u32, level) } else { Vec::new() };
-            Hollow { rim, along, columns: Vec::new() }
+            Hollow { rim, along, columns: Vec::new(), facets: Vec::new() }
         };
         let hollows = found.iter().enumerate().map(hollow).collect();
         let mut made = Self { hollows, min: search.min, cell, count, hollow_of: mark };
         made.make_columns(&search, axis);
+        made.find_surfaces(&search, found.iter().map(|cells| (cells[0] as usize, spill[cells[0] as usize])));
         Some(made)
     }
 
@@ -477,6 +506,38 @@ impl<const D: usize> Enclosure<D> {
             stride *= self.count[i];
         }
         self.hollow_of[index]
+    }
+
+    /// Finds the surface of each hollow, which has a cell of the grid and a spill level (m), unless its columns are exact.
+    fn find_surfaces(&mut self, search: &Search<D>, hollows: impl Iterator<Item = (usize, f64)>) {
+        let (cell, full) = (self.cell, self.cell.powi(D as i32 - 1));
+        let Some(surface) = free_facets(search.shape) else { return };
+        for (number, (first, level)) in hollows.enumerate() {
+            let space = |x: &Vector<D>| match self.mark(x) {
+                MATERIAL => Space::Material,
+                mark if mark as usize == number => Space::Hollow,
+                _ => Space::Other,
+            };
+            let lid = level.is_finite().then(|| (search.centre(first), level));
+            let Some(facets) = hollow_facets(search.shape, &surface, &search.up, lid, cell, space) else { continue };
+            let hollow = &self.hollows[number];
+            let is_along_axis = |facet: &Facet<D>| {
+                let area = area_vector(facet);
+                area.amax() > (1.0 - 1e-12) * area.norm()
+            };
+            let fit = hollow.columns.iter().all(|column| (column.area / full - 1.0).abs() < 1e-9);
+            if fit && facets.iter().all(is_along_axis) {
+                continue;
+            }
+            let (at, high) =
+                (Pose::identity(), self.min.amax() + 2.0 * (self.cell * self.count.iter().sum::<usize>() as f64));
+            let by_columns = hollow.volume_and_moment_below(&at, high).0;
+            let exact = Hollow { facets, ..hollow.clone() };
+            let area: f64 = exact.facets.iter().map(|facet| area_vector(facet).norm()).sum();
+            if (exact.volume_and_moment_below(&at, high).0 - by_columns).abs() < 0.5 * cell * area {
+                self.hollows[number] = exact;
+            }
+        }
     }
 
     /// Adds the columns of all hollows: runs of whole cells, and the part of each cell that a face cuts.

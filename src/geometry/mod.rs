@@ -12,6 +12,7 @@ mod exposed;
 pub mod fill;
 mod fit;
 pub(crate) mod hollow;
+mod hollow_surface;
 pub(crate) mod mesh;
 mod moments;
 mod offset;

@@ -103,7 +103,7 @@ impl<const D: usize> Shape<D> {
 
 /// Adds the wetted part of a facet to the sums. The function splits a facet that crosses the water level until no part
 /// crosses it.
-fn add_wet<const D: usize>(facet: Facet<D>, height: [f64; D], level: f64, sum: &mut (f64, Vector<D>)) {
+pub(super) fn add_wet<const D: usize>(facet: Facet<D>, height: [f64; D], level: f64, sum: &mut (f64, Vector<D>)) {
     let above = height.iter().position(|z| *z > 0.0);
     let below = height.iter().position(|z| *z < 0.0);
     match (above, below) {

@@ -192,3 +192,64 @@ fn the_open_tank_is_a_hull_in_three_dimensions() {
     let (volume, _) = hollow.volume_and_moment_below(&Pose::identity(), 0.1);
     assert!((volume / 0.02 - 1.0).abs() < 1e-3, "{volume}");
 }
+
+/// A hull of V shape, 0.4 m high, with sides of slope 0.8 outside and 0.33/0.42 inside.
+fn vee() -> Shape<2> {
+    let points = [[-0.5, 0.4], [0.0, 0.0], [0.5, 0.4], [0.42, 0.4], [0.0, 0.07], [-0.42, 0.4]];
+    Shape::Polygon { points: points.map(Vector::from).to_vec() }
+}
+
+#[test]
+fn the_space_between_sloping_sides_is_exact_at_every_level_and_heel() {
+    for dp in [0.02, 0.031, 0.04] {
+        let found = enclosure(&vee(), dp).unwrap();
+        let [hollow] = &found.hollows[..] else { panic!("{} hollows", found.hollows.len()) };
+        for level in [0.1, 0.2, 0.37] {
+            let depth = level - 0.07;
+            let exact = depth * depth * 0.42 / 0.33;
+            let (volume, first) = hollow.volume_and_moment_below(&Pose::identity(), level);
+            assert!((volume / exact - 1.0).abs() < 1e-9, "dp {dp}, level {level}: {volume}, exact {exact}");
+            // The centroid of a triangle; the sides are mirror images.
+            assert!((first[1] / volume - (0.07 + 2.0 / 3.0 * depth)).abs() < 1e-9 && first[0].abs() < 1e-12);
+            assert!((hollow.level_of(&Pose::identity(), exact) - level).abs() < 1e-9);
+        }
+        // Heeled by φ, the sides have the slopes α + φ and α − φ: half the depth squared times the sum of their cotangents.
+        let (angle, slope) = (0.1, (0.33f64 / 0.42).atan());
+        let turn = Pose::<2>::rotated(Vector::zeros(), &[angle]);
+        let apex = turn.point(&Vector::from([0.0, 0.07]))[1];
+        let exact = 0.5 * 0.15 * 0.15 * (1.0 / (slope + angle).tan() + 1.0 / (slope - angle).tan());
+        let (volume, _) = hollow.volume_and_moment_below(&turn, apex + 0.15);
+        assert!((volume / exact - 1.0).abs() < 1e-9, "{volume}, exact {exact}");
+    }
+}
+
+#[test]
+fn the_space_in_a_hull_of_turned_plates_is_exact() {
+    // Two plates 0.05 m thick meet at a right angle over the keel, and overlap there: inside, a V of slope 1.
+    let plate = |side: f64| {
+        let at = Pose::rotated(Vector::from([side * 0.2, 0.2]), &[side * std::f64::consts::FRAC_PI_4]);
+        (at, Shape::<2>::Box { size: Vector::from([0.6, 0.05]) })
+    };
+    let hull = Shape::Compound(vec![plate(1.0), plate(-1.0)]);
+    let found = enclosure(&hull, 0.02).unwrap();
+    let keel = 0.025 * 2f64.sqrt();
+    let (volume, _) = found.hollows[0].volume_and_moment_below(&Pose::identity(), keel + 0.25);
+    assert!((volume / 0.0625 - 1.0).abs() < 1e-9, "{volume}");
+}
+
+#[test]
+fn the_space_in_a_trough_of_plates_is_exact_in_three_dimensions() {
+    // The same V, 0.5 m long, between two end plates; and the V as a mesh.
+    let plate = |side: f64| {
+        let turn = [0.0, -side * std::f64::consts::FRAC_PI_4, 0.0];
+        let at = Pose::<3>::rotated(Vector::from([side * 0.2, 0.0, 0.2]), &turn);
+        (at, Shape::Box { size: Vector::from([0.6, 0.7, 0.05]) })
+    };
+    let end = |y: f64| (Pose::at(Vector::from([0.0, y, 0.2])), Shape::Box { size: Vector::from([0.9, 0.1, 0.5]) });
+    let trough = Shape::Compound(vec![plate(1.0), plate(-1.0), end(0.3), end(-0.3)]);
+    let found = enclosure(&trough, 0.05).unwrap();
+    let keel = 0.025 * 2f64.sqrt();
+    let (volume, first) = found.hollows[0].volume_and_moment_below(&Pose::identity(), keel + 0.25);
+    assert!((volume / 0.03125 - 1.0).abs() < 1e-9, "{volume}");
+    assert!((first[2] / volume - keel - 0.25 * 2.0 / 3.0).abs() < 1e-9 && first[0].abs() < 1e-12, "{first}");
+}

@@ -199,3 +199,27 @@ fn water_inside_heaves_with_a_hull_and_lowers_its_metacentric_height() {
     let gm = 0.5 * draft + (1.0 - 0.8f64.powi(3)) / 12.0 / draft - heights;
     assert!((rest.tilts[0].gm_m - gm).abs() < 0.02 * gm, "GM {} m, exact {gm} m", rest.tilts[0].gm_m);
 }
+
+#[test]
+fn a_dry_hull_with_sloping_sides_has_its_draft_waterplane_and_metacentric_height() {
+    for dp in [0.04, 0.025] {
+        let (found, _) = judged::<2>(&format!(
+            "dimension = 2\ndp = {dp}\nuntil = 1.0\n\
+             [[water]]\nfill = {{ box = {{ min = [-1.2, -1.0], max = [1.2, 0.0] }} }}\n\
+             [[solid]]\nname = \"b\"\nfree = {{ mass = 60.0 }}\ndry = true\n\
+             shape = {{ polygon = [[-0.5, 0.4], [0.0, 0.0], [0.5, 0.4], [0.42, 0.4], [0.0, 0.07], [-0.42, 0.4]] }}\n\
+             at = {{ x = 0.0, draft = \"equilibrium\" }}\n"
+        ));
+        let rest = found.bodies[0].afloat.as_ref().unwrap();
+        // d²/0.8 = 0.06 m². The centre of mass is that of the outer triangle less the inner one.
+        let draft = (0.8f64 * 0.06).sqrt();
+        let (breadth, outer, inner) = (2.0 * draft / 0.8, 0.5 * 0.4, 0.42 * 0.33);
+        let kg = (outer * 0.8 / 3.0 - inner * (0.07 + 2.0 / 3.0 * 0.33)) / (outer - inner);
+        let gm = breadth.powi(3) / 12.0 / 0.06 + 2.0 / 3.0 * draft - kg;
+        assert!((rest.draft_m - draft).abs() < 1e-9, "draft {} m", rest.draft_m);
+        // Differences over ±1e-4: their error is of that order squared.
+        assert!((rest.waterplane_m2 / breadth - 1.0).abs() < 1e-6, "{} for {breadth}", rest.waterplane_m2);
+        assert!((rest.tilts[0].gm_m / gm - 1.0).abs() < 1e-5, "GM {} m for {gm} m", rest.tilts[0].gm_m);
+        assert!(!topics(&found).contains(&"turned_to_rest"), "a symmetric hull");
+    }
+}
