@@ -114,6 +114,11 @@ pub(crate) fn crossing(mesh: &Mesh, size: f64, one: usize, other: usize) -> Opti
     }
     let (a, b) = (mesh.facet_corners(one), mesh.facet_corners(other));
     let longest = |f: &[Vector<3>; 3]| (0..3).map(|i| (f[(i + 1) % 3] - f[i]).norm()).fold(0.0, f64::max);
+    // The normal of a facet that is as narrow as round-off is noise. What passes through it passes through its neighbours.
+    let width = |f: &[Vector<3>; 3]| (f[1] - f[0]).cross(&(f[2] - f[0])).norm() / longest(f);
+    if !(width(&a).min(width(&b)) > THROUGH_OF_MESH * size) {
+        return None;
+    }
     let least = (THROUGH * longest(&a).min(longest(&b))).max(THROUGH_OF_MESH * size);
     let (na, nb) = (facet_normal(&a)?, facet_normal(&b)?);
     // A shared corner lies in both planes, without round-off.

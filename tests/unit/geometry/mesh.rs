@@ -258,3 +258,30 @@ fn the_boundary_points_of_a_slab_of_any_thickness_represent_its_volume() {
         assert!((volume - 1.0).abs() < 0.01, "{thickness} dp: {volume} of the volume");
     }
 }
+
+/// A ball of rings of `n` points, its poles rings whose radius is the round-off of sin π.
+#[test]
+fn a_ball_with_rings_of_no_size_at_its_poles_does_not_pass_through_itself() {
+    for n in [8, 16, 24u32] {
+        let point = |i: u32, j: u32| {
+            let (across, up) = (0.5 * TAU * f64::from(i) / f64::from(n)).sin_cos();
+            let (y, x) = (TAU * f64::from(j % n) / f64::from(n)).sin_cos();
+            // sin 0 is exact; that of the lower pole is used for both.
+            let across = if i == 0 { (0.5 * TAU).sin() } else { across };
+            Vector::from([0.5 * across * x, 0.5 * across * y, -0.5 * up])
+        };
+        let points: Vec<_> = (0..=n).flat_map(|i| (0..n).map(move |j| point(i, j))).collect();
+        let ring = |i: u32| move |j: u32| i * n + j % n;
+        let mut facets = Vec::new();
+        for j in 0..n {
+            for i in 0..n {
+                let (low, high) = (ring(i), ring(i + 1));
+                facets.extend([[low(j), low(j + 1), high(j + 1)], [low(j), high(j + 1), high(j)]]);
+            }
+            if 0 < j && j + 1 < n {
+                facets.extend([[0, j + 1, j], [n * n, n * n + j, n * n + j + 1]]);
+            }
+        }
+        assert_eq!(refusal(&points, &facets), "", "{n} points");
+    }
+}
