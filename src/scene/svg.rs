@@ -1,5 +1,6 @@
 //! Outlines from a drawing in SVG: one closed path or basic shape, its curves drawn by straight lines.
 
+mod arcs;
 mod element;
 mod size;
 mod style;

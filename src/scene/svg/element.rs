@@ -4,7 +4,7 @@ use kurbo::{Affine, BezPath, Ellipse, PathEl, Point, Rect, Shape};
 use roxmltree::Node;
 use svgtypes::{Length, LengthUnit};
 
-use super::{size, style::Style};
+use super::{arcs::path_with_arcs, size, style::Style};
 
 /// The elements that draw lines.
 pub(super) const DRAWN: [&str; 7] = ["path", "polygon", "polyline", "line", "rect", "circle", "ellipse"];
@@ -38,7 +38,12 @@ pub(super) fn element_path(node: &Node, style: &Style) -> Result<BezPath, String
                 element.radii()?.filter(|(rx, ry)| *rx > 0.0 && *ry > 0.0).ok_or("its radii are not positive")?;
             element.ellipse(rx, ry)
         }
-        _ => BezPath::from_svg(node.attribute("d").unwrap_or("")).map_err(|why| why.to_string()),
+        _ => {
+            let text = node.attribute("d").unwrap_or("");
+            let path = BezPath::from_svg(text).map_err(|why| why.to_string())?;
+            // Its arcs have an error that does not depend on their size.
+            if text.contains(['a', 'A']) { path_with_arcs(text, ARCS) } else { Ok(path) }
+        }
     }
 }
 

@@ -343,3 +343,26 @@ fn outlines_that_are_clipped_or_masked_are_refused() {
     let other = format!("{cut}<path id='own' d='M 10,10 h 200 v 100 h -200 z' clip-path='none'/>");
     assert_200_by_100(&with(&other), Some("own"), Some(LengthUnit::Mm));
 }
+
+#[test]
+fn arcs_follow_their_ellipse_whatever_the_unit_of_the_drawing() {
+    // A disc of 0.5 m in units of 1 m and of 0.5 m; a half disc with a square on its left.
+    for (unit, data) in [
+        (1.0, "M0.5 0A0.5 0.5 0 1 1-0.5 0A0.5 0.5 0 1 1 0.5 0Z"),
+        (0.5, "M1 0a1 1 0 1 1-2 0a1 1 0 1 1 2 0z"),
+        (0.5, "M1 0a1 1 0 0 1-1 1h-1v-1h1v-1A1 1 0 0 1 1 0z"),
+    ] {
+        let svg = format!("<svg xmlns='http://www.w3.org/2000/svg'><path d='{data}'/></svg>");
+        let path = std::env::temp_dir().join(format!("pontoon-arc-{}-{}.svg", std::process::id(), data.len()));
+        fs::write(&path, &svg).unwrap();
+        let tolerance = 1e-6;
+        let result = outline(&path, &DrawingOptions { id: None, scale: unit, unit: None, tolerance });
+        fs::remove_file(&path).unwrap();
+        let points = result.unwrap().0;
+        let off = |[x, y]: &[f64; 2]| (x.hypot(*y) - 0.5).abs();
+        let on_arcs = points.iter().filter(|[x, _]| !data.contains('h') || *x > 1e-9);
+        let worst = on_arcs.map(off).fold(0.0, f64::max);
+        // The tolerance, and 10⁻⁶ of the radius for the curves.
+        assert!(worst < 2e-6, "{worst} m: {data}");
+    }
+}
