@@ -15,10 +15,10 @@ use super::{
         water::StillWater,
     },
     toml_source::ValueSource,
-    world_bounds,
 };
 use crate::{
     error::Result,
+    geometry::world_bounds,
     model::{Model, PressureGradient},
     probe::GaugeSurface,
 };
