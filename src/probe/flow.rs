@@ -113,7 +113,7 @@ impl<const D: usize> FlowProbe<D> {
 
     /// Returns the present flow.
     fn flow(&self, system: &System<D>) -> f64 {
-        let (fluid, half) = (system.fluid(), HALF_THICKNESS * system.model().dp);
+        let (fluid, half) = (system.water_and_buffers(), HALF_THICKNESS * system.model().dp);
         let mut sum = 0.0;
         for ((r, v), rho) in fluid.r.iter().zip(fluid.v).zip(fluid.rho) {
             let off = minimum_image(r - self.middle, system);

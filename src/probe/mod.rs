@@ -498,22 +498,36 @@ fn empty_row<const D: usize>(probe: &impl Probe<D>) -> Vec<f64> {
     vec![f64::NAN; probe.columns().len()]
 }
 
+/// Least share of the kernel's weight that the water fills where a quantity has a value: half of that at a flat wall. Less is spray.
+const WET: f64 = 0.25;
+
+/// Share of the kernel's weight in solids, from which on a point lies in a corner: it is half at a flat wall.
+const CORNER: f64 = 0.6;
+
+/// Least share that the water fills in a corner: half of that at the corner of a box in 3-D.
+const WET_CORNER: f64 = 0.06;
+
 /// Returns the mean of a quantity of the water at the point `x` (m), weighted by V_b W and normalised (Shepard). The
 /// mean is exact for a constant and of second order inside the water. Returns `None` if the water fills less than a
-/// quarter of the kernel's weight, as in air.
+/// quarter of the kernel's weight, as in air; in a corner, less than half of what the solids leave.
 fn interpolate<const D: usize, const C: usize>(
     system: &System<D>,
     x: &Vector<D>,
     quantity: impl Fn(usize, &Vector<D>) -> [f64; C],
 ) -> Option<[f64; C]> {
-    let (mass, rho) = (system.particle_mass(), system.fluid().rho);
+    let (mass, rho) = (system.particle_mass(), system.water_and_buffers().rho);
     let (mut sum, mut weight) = ([0.0; C], 0.0);
-    system.visit_fluid_near(x, &mut |b, r, w| {
+    system.visit_water_and_buffers_near(x, &mut |b, r, w| {
         let share = mass / rho[b] * w;
         weight += share;
         for (s, q) in sum.iter_mut().zip(quantity(b, r)) {
             *s += share * q;
         }
     });
-    (weight >= 0.25).then(|| sum.map(|s| s / weight))
+    let least = || {
+        let (volume, mut solid) = (system.model().dp.powi(D as i32), 0.0);
+        system.visit_boundary_near(x, &mut |_, _, w| solid += volume * w);
+        if solid < CORNER { WET } else { 0.5 * (1.0 - solid) }
+    };
+    (weight >= WET || weight > 0.0 && weight >= least().max(WET_CORNER)).then(|| sum.map(|s| s / weight))
 }

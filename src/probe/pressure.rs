@@ -97,7 +97,7 @@ impl<const D: usize> Probe<D> for PressureProbe<D> {
 
 /// Returns the pressure (Pa) at the point `at` (m), or 0 if the point is dry.
 pub(super) fn pressure<const D: usize>(system: &System<D>, at: &Vector<D>) -> f64 {
-    let (fluid, gravity) = (system.fluid(), system.gravity());
+    let (fluid, gravity) = (system.water_and_buffers(), system.gravity());
     let read = |b: usize, r: &Vector<D>| {
         let head = gravity.dot(&(at - r));
         [system.lattice_pressure(fluid.rho[b]) + system.properties().rho0 * head]

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::{
     Driving, FaceExchange, Fluid, OpenBoundary, Periodic, System, own_water, reflected,
     slip_rates::SlipRates,
-    symmetry::{SymmetryPlanes, reflected_turn},
+    symmetry::{AxisSet, SymmetryPlanes, reflected_turn},
 };
 use crate::{
     interaction::PairSums,
@@ -36,6 +36,11 @@ impl<const D: usize> System<D> {
     /// The water.
     pub fn fluid(&self) -> ParticlesView<'_, D> {
         self.fluid.particles.first_n(self.particle_count())
+    }
+
+    /// The water, and after it that of the buffers of open boundaries.
+    pub(crate) fn water_and_buffers(&self) -> ParticlesView<'_, D> {
+        self.fluid.particles.first_n(self.own_count())
     }
 
     /// How ranks share the water, if each has its own and none needs to have that of others.
@@ -321,12 +326,20 @@ impl<const D: usize> System<D> {
     /// Calls `visit` with index, place (m) and kernel value W (1/mᴰ) of each water particle whose support holds `x` (m). Across
     /// a periodic side or a symmetry plane the place is that of its image.
     pub fn visit_fluid_near(&self, x: &Vector<D>, visit: &mut dyn FnMut(usize, &Vector<D>, f64)) {
-        let (real, water) = (self.own_count(), self.particle_count());
+        let water = self.particle_count();
+        self.visit_water_and_buffers_near(x, &mut |b, r, w| {
+            if b < water {
+                visit(b, r, w);
+            }
+        });
+    }
+
+    /// The same with the water of the buffers of open boundaries, whose indices are those of [`System::water_and_buffers`].
+    pub(crate) fn visit_water_and_buffers_near(&self, x: &Vector<D>, visit: &mut dyn FnMut(usize, &Vector<D>, f64)) {
+        let real = self.own_count();
         self.neighbours.visit_fluid_around(x, &mut |i| {
             let own = i.checked_sub(real).map_or(i, |k| self.fluid.images.originals[k] as usize);
-            if own < water {
-                self.visit_within_support(&self.fluid.particles.r[i], x, own, visit);
-            }
+            self.visit_within_support(&self.fluid.particles.r[i], x, own, visit);
         });
     }
 
@@ -363,9 +376,14 @@ impl<const D: usize> System<D> {
         (self.neighbours.boundary_near_fluid(), &self.rates.boundary)
     }
 
-    /// Calls `visit` with the index of each boundary particle of solid number `solid` beside water, and the force (N; N/m in 2-D)
-    /// of the water on it at the last force pass. They sum up to the solid's load.
-    pub(crate) fn visit_boundary_forces(&self, solid: usize, visit: &mut dyn FnMut(usize, Vector<D>)) {
+    /// Calls `visit` with the index of each boundary particle of solid number `solid` beside water, that of the particle whose image
+    /// across symmetry planes it is with the axes of these planes (itself and none), and the force (N; N/m in 2-D) of the water on it
+    /// at the last force pass. They sum up to the solid's load.
+    pub(crate) fn visit_boundary_forces(
+        &self,
+        solid: usize,
+        visit: &mut dyn FnMut(usize, (usize, AxisSet), Vector<D>),
+    ) {
         let (mass, own) = (self.particle_mass(), &self.solids[solid]);
         let skin = if own.copied_axes != 0 { own.boundary.clone() } else { own.boundary_of_copy(0) };
         let (mut forces, (near, sums)) = (BTreeMap::new(), self.boundary_sums());
@@ -375,7 +393,7 @@ impl<const D: usize> System<D> {
                 continue;
             }
             if own.division.cut == 0 {
-                visit(i as usize, sums.acceleration * mass);
+                visit(i as usize, (i as usize, 0), sums.acceleration * mass);
                 continue;
             }
             // What lies on a plane gets the force from both sides.
@@ -384,12 +402,12 @@ impl<const D: usize> System<D> {
             let both = |f: Vector<D>, axis: usize| f + reflected(1 << axis, f);
             let axes = (0..D).filter(|axis| on_planes >> axis & 1 == 1);
             let force = axes.fold(sums.acceleration * (mass * share), both);
-            visit(i as usize, force);
+            visit(i as usize, (i as usize, 0), force);
             forces.insert(i as usize, force);
         }
         for (i, original, axes) in self.boundary.each_mirrored((solid, own)) {
             if let Some(force) = forces.get(&original).filter(|_| own.boundary_of_whole().contains(&i)) {
-                visit(i, reflected(axes, *force));
+                visit(i, (original, axes), reflected(axes, *force));
             }
         }
     }

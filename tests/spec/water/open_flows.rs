@@ -4,7 +4,7 @@ use std::path::Path;
 
 use pontoon::{
     math::Vector,
-    probe::{ElevationProbe, EnergyBudgetProbe, PatchProbe, PressureProbe, Probe},
+    probe::{ElevationProbe, EnergyBudgetProbe, FlowProbe, PatchProbe, PressureProbe, Probe},
     scene::Scene,
     simulation::Simulation,
 };
@@ -393,4 +393,22 @@ fn moving_levels_and_beds_that_cannot_be_are_refused_with_the_number_that_would_
         refused.contains("solid \"bed\", the bed, ends at open boundary") && refused.contains("let it reach to x = -"),
         "{refused}"
     );
+}
+
+/// Probes at a face also see the water of the buffer beyond it: after a step the flow and the pressure are exact within 2 %, the level
+/// within a fifth of dp.
+#[test]
+fn probes_at_a_face_read_as_those_in_the_water() {
+    let faces = "inflow = [{ x = 0.0, velocity = 0.5 }]\noutflow = [{ x = 2.0, velocity = 0.5 }]";
+    let text = channel(2.0, 0.05, 2.0, faces).replace("0.4] } }", "0.4] } }\nvelocity = [0.5, 0.0]");
+    let mut sim = common::scene_simulation::<2>(&text).expect("a sound scene");
+    common::steps(&mut sim, 1);
+    for x in [0.0, 0.01, 0.05, 1.0, 1.97, 2.0] {
+        let flow = FlowProbe::<2>::new(&[x, 0.0], &[x, 0.4]).expect("a section").sample(&sim)[0];
+        assert!((flow / 0.2 - 1.0).abs() < 0.02, "a flow of {flow} m²/s at {x} m");
+        let p = PressureProbe::<2>::new(&[x, 0.2]).expect("a place").sample(&sim)[0];
+        assert!((p / (9810.0 * 0.2) - 1.0).abs() < 0.02, "{p} Pa at {x} m");
+        let level = ElevationProbe::new(sim.system(), &[x]).expect("a place").sample(&sim)[0];
+        assert!((level - 0.4).abs() < 0.01, "a level of {level} m at {x} m");
+    }
 }
