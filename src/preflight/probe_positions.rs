@@ -183,7 +183,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         let outside = !all.contains(&column(low));
         let steps = ((high - low) / self.dp()).ceil().clamp(1.0, 10_000.0) as usize;
         let step = (high - low) / steps as f64;
-        let free = |k: usize| self.signed_distance(&column(low + (k as f64 + 0.5) * step), |_| true) > 0.0;
+        let free = |k: usize| self.signed_distance(&column(low + (k as f64 + 0.5) * step), |_| true) > -1e-9;
         let nearest = |level: f64| self.nearest_water(&column(level), |r| own.described(r));
         if outside || !(0..steps).any(free) {
             let why = if outside { "is outside of everything" } else { "stands inside a solid" };

@@ -204,7 +204,7 @@ impl<const D: usize> ElevationProbe<D> {
     /// Returns the heights (m) of the measured surfaces. The level comes first.
     fn surface_heights(&self, system: &System<D>) -> Vec<f64> {
         let at = self.at.position(system);
-        let mut found = system.surface_heights(&at);
+        let mut found = system.gauge_heights(&at);
         let all: Vec<f64> = match self.surface {
             GaugeSurface::Highest => found.next().into_iter().collect(),
             GaugeSurface::Lowest => found.last().into_iter().collect(),

@@ -7,7 +7,9 @@ use pontoon::{
     math::Vector,
     model::Model,
     output::SeriesTable,
-    probe::{ElevationProbe, FlowProbe, ForceProbe, GaugeSurface, PatchProbe, Probe, ProbeRow, RunupProbe},
+    probe::{
+        ElevationProbe, FlowProbe, ForceProbe, GaugeSurface, PatchProbe, PressureProbe, Probe, ProbeRow, RunupProbe,
+    },
     run::{self, Progress, RunOptions},
     scene::Scene,
     simulation::Simulation,
@@ -215,4 +217,117 @@ fn invalid_probe_positions_are_refused_with_the_reason() {
         let message = Scene::read(&file, &[]).and_then(|scene| scene.plan()).err().map(|e| e.to_string());
         assert!(message.as_ref().is_some_and(|message| message.contains(word)), "{probe}: {message:?}");
     }
+}
+
+/// A tank 0.5 m long with a wall of this `thickness` (m) from x = 0.5 m on, water 0.4 m deep before it, and `behind` (m) deep behind it.
+fn walled(thickness: f64, behind: f64) -> Result<Simulation<2>> {
+    let pool = |from: f64, to: f64, depth: f64| match depth > 0.0 {
+        true => format!("[[water]]\nfill = {{ box = {{ min = [{from:?}, 0.0], max = [{to:?}, {depth:?}] }} }}\n"),
+        false => String::new(),
+    };
+    let far = 0.5 + thickness;
+    let text = format!(
+        "dimension = 2\ndp = 0.02\nuntil = 1.0\n{}{}[[solid]]\nname = \"wall\"\nfixed = true\n\
+         shape = {{ box = {{ size = [{thickness:?}, 0.6] }} }}\nat = {{ x = {:?}, bottom = 0.0 }}\n\
+         [[solid]]\nname = \"tank\"\nfixed = true\nshape = {{ tank = {{ size = [1.0, 0.6] }} }}\n",
+        pool(0.0, 0.5, 0.4),
+        pool(far, 1.0, behind),
+        0.5 + 0.5 * thickness
+    );
+    common::scene_simulation::<2>(&text)
+}
+
+/// On a wall of two to five rows the patch on the wet face has all of the force, and that on the dry face none; the force of water on both
+/// faces is divided. The part between 0.1 and 0.3 m has the hydrostatic force within 2 %: the rows at its ends lie between particles.
+#[test]
+fn patches_on_thin_walls_read_the_force_of_the_water_on_their_side() -> Result<()> {
+    for rows in [2, 3, 5] {
+        let (thickness, far) = (0.02 * f64::from(rows), 0.5 + 0.02 * f64::from(rows));
+        for behind in [0.0, 0.4] {
+            let sim = walled(thickness, behind)?;
+            let patch = |x: f64| -> Result<f64> {
+                Ok(PatchProbe::new(sim.system(), "wall", &[x - 0.01, 0.1], &[x + 0.01, 0.3])?.sample(&sim)[0])
+            };
+            let exact = 9810.0 * 0.2 * 0.2;
+            let [near, other] = [patch(0.5)?, patch(far)?];
+            assert!((near / exact - 1.0).abs() < 0.02, "{rows} rows, {behind} m behind: {near} N/m instead of {exact}");
+            let of_other = if behind > 0.0 { -exact } else { 0.0 };
+            assert!(
+                (other - of_other).abs() < 0.02 * exact,
+                "{rows} rows, {behind} m behind: {other} N/m on the other face"
+            );
+        }
+    }
+    Ok(())
+}
+
+/// A wall of one row has its particles in its middle. Its two faces together have the force on the wall.
+#[test]
+fn a_patch_on_a_wall_of_one_row_is_read_on_its_wet_face() -> Result<()> {
+    let sim = walled(0.02, 0.0)?;
+    let patch = |x: f64| {
+        PatchProbe::new(sim.system(), "wall", &[x - 0.005, -0.1], &[x + 0.005, 0.7]).map(|own| own.sample(&sim))
+    };
+    let (wet, dry) = (patch(0.5)?, patch(0.52)?);
+    let whole = ForceProbe::new(sim.system(), "wall")?.sample(&sim)[0];
+    assert!((wet[0] / whole - 1.0).abs() < 0.01 && dry[0].abs() < 0.01 * whole, "{wet:?} and {dry:?} of {whole} N/m");
+    Ok(())
+}
+
+/// The default wall of a tank in 3-D is as thick as the support. Patches away from the edges have the hydrostatic force within 2 %, for
+/// the reason above; the mean pressure on a wall down to the bed is that at half the depth within 1 %.
+#[test]
+fn patches_and_gauges_on_the_default_tank_read_still_water_in_3d() -> Result<()> {
+    let text = "dimension = 3\ndp = 0.05\nuntil = 1.0\n[[water]]\nfill = { box = { min = [0.0, 0.0, 0.0], max = [0.8, 0.8, 0.5] } }\n\
+                [[solid]]\nname = \"tank\"\nfixed = true\nshape = { tank = { size = [0.8, 0.8, 0.7] } }\n";
+    let sim = common::scene_simulation::<3>(text)?;
+    let patch = |min: [f64; 3], max: [f64; 3]| -> Result<Vec<f64>> {
+        Ok(PatchProbe::new(sim.system(), "tank", &min, &max)?.sample(&sim))
+    };
+    let side = patch([-0.01, 0.2, 0.1], [0.01, 0.6, 0.4])?;
+    let exact = 9810.0 * 0.25 * 0.4 * 0.3;
+    assert!((-side[0] / exact - 1.0).abs() < 0.02, "{} N instead of {exact} N", -side[0]);
+    let bed = patch([0.2, 0.2, -0.01], [0.6, 0.6, 0.01])?;
+    let exact = 9810.0 * 0.5 * 0.16;
+    assert!((-bed[2] / exact - 1.0).abs() < 0.02, "{} N instead of {exact} N", -bed[2]);
+    let whole = patch([-0.01, 0.0, 0.0], [0.01, 0.8, 0.5])?;
+    assert!((whole[3] / (9810.0 * 0.25) - 1.0).abs() < 0.01, "a mean of {} Pa", whole[3]);
+    // Gauges in the corner of two walls read the level within a fifth of dp.
+    for (x, y) in [(0.0, 0.02), (0.01, 0.03), (0.8, 0.05), (0.0, 0.4)] {
+        let found = ElevationProbe::new(sim.system(), &[x, y])?.sample(&sim)[0];
+        assert!((found - 0.5).abs() < 0.01, "{found} m at {x}, {y} m");
+    }
+    Ok(())
+}
+
+/// The mean pressure on a wall down to the bed is that at half the depth, and the pressure in the edge that at the bed, within 1 %.
+#[test]
+fn pressures_down_to_an_inner_edge_are_hydrostatic() -> Result<()> {
+    let sim = pool();
+    let wall = PatchProbe::new(sim.system(), "tank", &[-0.005, 0.0], &[0.005, 0.2])?.sample(&sim);
+    assert!((wall[2] / (9810.0 * 0.1) - 1.0).abs() < 0.01, "a mean of {} Pa", wall[2]);
+    let edge = PressureProbe::<2>::new(&[0.0, 0.0])?.sample(&sim)[0];
+    assert!((edge / (9810.0 * 0.2) - 1.0).abs() < 0.01, "{edge} Pa in the edge");
+    Ok(())
+}
+
+/// A gauge reads the level of still water within a fifth of dp at any distance from a wall, on one side of a thin wall too.
+#[test]
+fn gauges_at_walls_read_the_level_of_still_water() -> Result<()> {
+    let level =
+        |sim: &Simulation<2>, x: f64| -> Result<f64> { Ok(ElevationProbe::new(sim.system(), &[x])?.sample(sim)[0]) };
+    let sim = pool();
+    for x in [0.0, 0.001, 0.005, 0.01, 0.02, 0.05, 0.1, 0.39, 0.4] {
+        let found = level(&sim, x)?;
+        assert!((found - 0.2).abs() < 0.2 * DP, "{found} m at {x} m");
+    }
+    for rows in [2, 5] {
+        let thickness = 0.02 * f64::from(rows);
+        let sim = walled(thickness, 0.2)?;
+        for (x, exact) in [(0.48, 0.4), (0.495, 0.4), (0.5, 0.4), (0.5 + thickness, 0.2), (0.51 + thickness, 0.2)] {
+            let found = level(&sim, x)?;
+            assert!((found - exact).abs() < 0.2 * DP, "{found} m at {x} m beside {rows} rows");
+        }
+    }
+    Ok(())
 }

@@ -588,3 +588,27 @@ fn a_towed_closed_tank_has_no_current() {
     let bed = "[[solid]]\nname = \"bed\"\nfixed = true\nshape = { box = { size = [6.0, 0.2] } }\nat = { x = 1.0, y = -0.1 }\n";
     finding(&format!("{towed}periodic = {{ x = [0.0, 2.0] }}\n{WATER}{bed}{post}"), "slow_current");
 }
+
+/// The first of two overlapping bodies of water has the water of both: a column on the floor stands on no layer that follows it, and on
+/// one that precedes it. Water of a hull counts in the numbers.
+#[test]
+fn water_stands_on_other_water_only_where_that_is_below_it() {
+    let water = |max: [f64; 2]| format!("[[water]]\nfill = {{ box = {{ min = [0.0, 0.0], max = {max:?} }} }}\n");
+    let (column, layer) = (water([0.3, 0.5]), water([2.0, 0.1]));
+    let start = "dimension = 2\ndp = 0.02\nuntil = 1.0\nframes = \"off\"\n";
+    let hull = "[[solid]]\nname = \"hull\"\nfixed = true\nshape = { tank = { size = [0.4, 0.4] } }\nat = [1.0, 0.5]\n";
+    let hold = "[[water]]\ninside = \"hull\"\nfill = { box = { min = [1.0, 0.5], max = [1.4, 0.7] } }\n";
+    has_no(&format!("{start}{column}{layer}{TANK}"), "stacked_water");
+    let found = finding(&format!("{start}{hold}{layer}{column}{TANK}{hull}"), "stacked_water");
+    assert!(found.what.starts_with("water.2 stands to 0.5 m on water.1"), "{}", found.what);
+}
+
+/// A gauge on a face reads the level of the water in front of it.
+#[test]
+fn gauges_on_faces_stand_in_no_solid() {
+    let wall = "[[solid]]\nname = \"wall\"\nfixed = true\nshape = { box = { size = [0.1, 1.0] } }\nat = { x = 0.35, bottom = 0.0 }\n";
+    let gauges =
+        |xs: &[f64]| -> String { xs.iter().map(|x| format!("[[probe]]\nelevation = {{ x = {x:?} }}\n")).collect() };
+    has_no(&format!("{WATER}{TANK}{wall}{}", gauges(&[0.0, 0.3, 0.4, 2.0])), "probe_inside_solid");
+    finding(&format!("{WATER}{TANK}{wall}{}", gauges(&[0.35])), "probe_inside_solid");
+}
