@@ -64,7 +64,9 @@ impl<const D: usize> MooringLine<D> {
     /// `gravity` is in m/s². Returns the largest residual force on a node over the weight of a node or, if this is less, over the
     /// [`SHARES`]. Without gravity a slack line rests straight, as it would in any shape.
     pub(crate) fn find_rest(&mut self, around: &dyn Fn(&Vector<D>) -> NodeSurroundings<D>, gravity: &Vector<D>) -> f64 {
-        let left = if self.may_float() {
+        let left = if gravity.norm_squared() == 0.0 && self.rests_straight(around, gravity) {
+            0.0
+        } else if self.may_float() {
             self.find_rest_afloat(around, gravity)
         } else {
             self.find_rest_in_rounds(around, gravity)
@@ -80,6 +82,18 @@ impl<const D: usize> MooringLine<D> {
         self.state.end_forces = [0, last].map(|i| forces[i]);
         self.store_pulls(&near, gravity);
         left.min(self.over_stretch(forces[1..last].iter().map(|force| force.norm()).fold(0.0, f64::max)))
+    }
+
+    /// Puts the nodes on the straight line between the ends. Returns whether they are at rest there, up to round-off of the stretch.
+    fn rests_straight(&mut self, around: &dyn Fn(&Vector<D>) -> NodeSurroundings<D>, gravity: &Vector<D>) -> bool {
+        let n = self.segments();
+        let [first, last] = [0, n].map(|i| self.state.x[i]);
+        for i in 1..n {
+            self.state.x[i] = first + (last - first) * (i as f64 / n as f64);
+        }
+        let near: Vec<_> = self.state.x.iter().map(around).collect();
+        let round_off = 1e-3 * SHARES[1] * self.material.stiffness;
+        self.forces(&near, gravity)[1..n].iter().all(|force| force.norm() <= round_off)
     }
 
     /// A `force` (N) over the [`SHARES`] of the tension at the last rest and of the stiffness.
