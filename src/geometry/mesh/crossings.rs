@@ -116,7 +116,7 @@ pub(crate) fn crossing(mesh: &Mesh, size: f64, one: usize, other: usize) -> Opti
     let longest = |f: &[Vector<3>; 3]| (0..3).map(|i| (f[(i + 1) % 3] - f[i]).norm()).fold(0.0, f64::max);
     // The normal of a facet that is as narrow as round-off is noise. What passes through it passes through its neighbours.
     let width = |f: &[Vector<3>; 3]| (f[1] - f[0]).cross(&(f[2] - f[0])).norm() / longest(f);
-    if !(width(&a).min(width(&b)) > THROUGH_OF_MESH * size) {
+    if width(&a).min(width(&b)) <= THROUGH_OF_MESH * size {
         return None;
     }
     let least = (THROUGH * longest(&a).min(longest(&b))).max(THROUGH_OF_MESH * size);
