@@ -204,8 +204,8 @@ pub(crate) const BODIES_IN_WAVES_H_OVER_DP: f64 = 2.0;
 /// Depth over dp at which α = 0.02 gives the viscosity that deep water gets, –: a body of ten rows in water as deep as itself.
 const VISCOUS_ROWS: f64 = 10.0;
 
-/// Default of h over dp for free bodies under water and in deep water, in 2-D, –.
-pub(crate) const UNDER_WATER_H_OVER_DP: f64 = 2.1;
+/// Default of h over dp in deep 2-D water, –.
+const DEEP_H_OVER_DP: f64 = 2.1;
 
 impl Model {
     /// Water `depth` (m) deep at spacing `dp` (m) in `dimension` 2 or 3, with the choices of a scene that names
@@ -259,9 +259,9 @@ impl Model {
     }
 
     /// The same model with the defaults for free bodies in water `depth` (m) deep: none changes up to 100 dp. Beyond, α becomes
-    /// 0.02 √(10 dp/depth), so that artificial viscosity, which goes with α c₀ h, does not grow with the depth. h becomes that of
-    /// [`Self::under_water`]: the arrangement of the particles resists slow bodies in proportion to the pressure, and less with a
-    /// wider kernel.
+    /// 0.02 √(10 dp/depth), so that artificial viscosity, which goes with α c₀ h, does not grow with the depth. In 2-D h
+    /// becomes 2.1 dp: the arrangement of the particles resists slow bodies in proportion to the pressure, and less with a wider
+    /// kernel.
     pub fn deep_water(mut self, depth: f64) -> Self {
         if depth <= DEEP * self.dp {
             return self;
@@ -269,14 +269,8 @@ impl Model {
         if let Viscosity::Artificial(law) = &mut self.viscosity {
             law.alpha *= (VISCOUS_ROWS * self.dp / depth).sqrt();
         }
-        self.under_water()
-    }
-
-    /// The same model with the defaults for free bodies wholly under water: in 2-D h = 2.1 dp, with which the particles resist slow bodies
-    /// less in the same time.
-    pub fn under_water(self) -> Self {
         let in_3d = self.h / self.dp;
-        self.h_over_dp([UNDER_WATER_H_OVER_DP, in_3d])
+        self.h_over_dp([DEEP_H_OVER_DP, in_3d])
     }
 
     /// The same model with these h over dp (–) in 2-D and in 3-D.

@@ -119,7 +119,7 @@ impl Rows {
     /// too little.
     fn across(length: f64, dp: f64) -> Self {
         let (count, ratio) = (parts(length, dp), length / dp);
-        if ratio < THIN_BOX[0] || ratio > THIN_BOX[1] || (ratio - count as f64).abs() < 1e-6 {
+        if !(THIN_BOX[0]..=THIN_BOX[1]).contains(&ratio) || (ratio - count as f64).abs() < 1e-6 {
             return Self::Cells { count, length };
         }
         let count = count.max(2);

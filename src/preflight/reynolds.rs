@@ -172,9 +172,15 @@ fn slow_body<const D: usize>(context: &PreflightContext<D>, i: usize, speed: f64
     let mend = if is_wide && is_corrected {
         format!("it {slower}")
     } else {
+        let wider = match is_wide || D == 3 {
+            true => "",
+            false => {
+                "  h_over_dp = 2.1  in [model] reduces it to a third in the same time (films on the bed then err by 15 %),"
+            }
+        };
         format!(
-            "it {slower};  h_over_dp = 2.0  and  gradient = \"corrected\"  in [model] reduce it to a tenth, at {} times the time of a run; \
-             bodies at the surface gain energy by them, and free ones more than 50 dp below it sink",
+            "it {slower};{wider}  h_over_dp = 2.0  and  gradient = \"corrected\"  in [model] reduce it to a tenth, at {} times the time of a \
+             run; bodies at the surface gain energy by them, and free ones more than 50 dp below it sink",
             COST_CORRECTED[D - 2]
         )
     };

@@ -284,7 +284,7 @@ impl Scene {
         })
     }
 
-    pub(super) fn water_bodies<const D: usize>(&self, ctx: &Context) -> Result<Vec<WaterBody<D>>> {
+    fn water_bodies<const D: usize>(&self, ctx: &Context) -> Result<Vec<WaterBody<D>>> {
         let body = |(i, water): (usize, &WaterConfig)| {
             let mut body = water.build(ctx, &format!("water.{i}"))?;
             if let Some(name) = &water.inside {

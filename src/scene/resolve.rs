@@ -11,14 +11,12 @@ use super::{
         gravity::{self, GravityValues},
         joint::verify_names,
         open_boundary::{self, FaceFlow},
-        solid::{self, SolidConfig},
-        water::StillWater,
+        solid,
     },
     toml_source::ValueSource,
 };
 use crate::{
     error::Result,
-    geometry::world_bounds,
     model::{Model, PressureGradient},
     probe::GaugeSurface,
 };
@@ -156,30 +154,11 @@ impl Scene {
         if weightless || !free {
             return usual;
         }
-        // Of water and solids that cannot be built, their construction reports the error.
-        if self.dimension == 2 && !self.makes_waves() && self.moves_under_water().unwrap_or(false) {
-            usual = usual.under_water();
-        }
+        // Water that cannot be built has no depth; its construction reports the error.
         match self.still_water() {
             Ok(still) => usual.deep_water(still.depth / self.dp),
             Err(_) => usual,
         }
-    }
-
-    /// Whether all solids of a 2-D scene that move are wholly under water at the start.
-    fn moves_under_water(&self) -> Result<bool> {
-        let ctx = &self.context();
-        let pool = StillWater::of(&self.water_bodies::<2>(ctx)?);
-        let moving = self.solid.iter().enumerate().filter(|(_, solid)| solid.free.is_some() || solid.driven.is_some());
-        let is_under = |(i, solid): (usize, &SolidConfig)| -> Result<bool> {
-            if solid.is_afloat() {
-                return Ok(false);
-            }
-            let spec = solid.build::<2>(ctx, &format!("solid.{i}"), &pool)?;
-            let bounds = world_bounds(&spec.shape, &spec.initial_kinematics().pose);
-            Ok(pool.level_at(&bounds).is_some_and(|level| bounds.max[1] <= level))
-        };
-        Ok(moving.map(is_under).collect::<Result<Vec<_>>>()?.into_iter().all(|is_under| is_under))
     }
 
     /// Returns the scene with every default filled in, and the reasons of the defaults.

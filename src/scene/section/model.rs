@@ -169,7 +169,7 @@ impl ModelConfig {
                     "waves keep most height, and bodies move as in theory; about 50 neighbours"
                 }
                 _ if ratio > default_h_over_dp(dimension) => {
-                    "free bodies under water: below, the pressure's errors slow them; about 55 neighbours"
+                    "free bodies in water deeper than 100 dp: below, the pressure's errors slow them; about 55 neighbours"
                 }
                 _ => "waves lose height below 1.7 dp; about 36 neighbours",
             };

@@ -96,8 +96,7 @@ fn a_disc_driven_in_sway_meets_the_added_mass_and_damping_of_linear_theory() -> 
     Ok(())
 }
 
-/// Particles under pressure resist slow motion: h = 2.1 dp, the default for free bodies under water, reduces this, and corrected gradients,
-/// which `inspect` advises, more.
+/// Particles under pressure resist slow motion: h = 2.1 dp and, more so, corrected gradients reduce this, as `inspect` advises.
 #[test]
 fn a_slow_disc_under_water_has_the_added_mass_of_potential_flow() -> Result<()> {
     for (model, most) in [("{ h_over_dp = 2.1 }", 45.0), ("{ gradient = \"corrected\", h_over_dp = 2.0 }", 25.0)] {
