@@ -53,7 +53,8 @@ impl<const D: usize> Cover<'_, D> {
     /// Adds the parts of a facet that are not covered. It cuts them off along straight lines, and misses a cover that reaches neither a
     /// corner nor the middle of the facet or of an edge.
     pub(super) fn add_exposed_parts(&self, facet: Facet<D>, into: &mut Vec<Facet<D>>) {
-        self.add_exposed(facet, &self.step_before(&facet), HALVINGS, into);
+        let step = self.step_before(&facet);
+        self.add_exposed((facet, facet.map(|x| self.state(&x, &step))), &step, HALVINGS, into);
     }
 
     /// The step from a facet to the points before it, m.
@@ -77,13 +78,22 @@ impl<const D: usize> Cover<'_, D> {
         if is_known { distance < 0.0 } else { halves(&facet).into_iter().all(|half| self.covers(half, step)) }
     }
 
-    fn add_exposed(&self, facet: Facet<D>, step: &Vector<D>, halvings: usize, into: &mut Vec<Facet<D>>) {
-        // 1: exposed; -1: covered; 0: at the edge of the cover.
-        let state = |x: &Vector<D>| {
-            let distance = self.distance(x, step) / (0.5 * OFFSET * self.size);
-            if distance.abs() < 1.0 { 0 } else { distance.signum() as i32 }
-        };
-        let (corners, within) = (facet.map(|x| state(&x)), state(&middle(&facet)));
+    /// 1 where the facet is exposed, -1 where it is covered, 0 at the edge of the cover.
+    fn state(&self, x: &Vector<D>, step: &Vector<D>) -> i32 {
+        let distance = self.distance(x, step) / (0.5 * OFFSET * self.size);
+        if distance.abs() < 1.0 { 0 } else { distance.signum() as i32 }
+    }
+
+    /// The same of a facet whose corners have these states.
+    fn add_exposed(
+        &self,
+        (facet, corners): (Facet<D>, [i32; D]),
+        step: &Vector<D>,
+        halvings: usize,
+        into: &mut Vec<Facet<D>>,
+    ) {
+        let state = |x: &Vector<D>| self.state(x, step);
+        let within = state(&middle(&facet));
         let [exposed, covered] = [1, -1].map(|one| corners.iter().position(|state| *state == one));
         if let (Some(i), Some(j)) = (exposed, covered) {
             let (mut out, mut inside) = (facet[i], facet[j]);
@@ -91,9 +101,10 @@ impl<const D: usize> Cover<'_, D> {
                 let half = (out + inside) * 0.5;
                 if self.distance(&half, step) > 0.0 { out = half } else { inside = half }
             }
+            // The corner at the edge of the cover ends the search, also where the distance of a part jumps there.
             for end in [i, j] {
-                let mut part = facet;
-                part[end] = out;
+                let mut part = (facet, corners);
+                (part.0[end], part.1[end]) = (out, 0);
                 self.add_exposed(part, step, halvings, into);
             }
             return;
@@ -104,7 +115,9 @@ impl<const D: usize> Cover<'_, D> {
             (0..D).flat_map(|i| (0..i).map(move |j| (i, j))).filter(|(i, j)| corners[*i] != 0 || corners[*j] != 0);
         let mut others = sides.map(|(i, j)| state(&((facet[i] + facet[j]) * 0.5))).chain([within]);
         if halvings > 0 && others.any(|state| state == -whole) {
-            halves(&facet).into_iter().for_each(|half| self.add_exposed(half, step, halvings - 1, into));
+            for half in halves(&facet) {
+                self.add_exposed((half, half.map(|x| state(&x))), step, halvings - 1, into);
+            }
         } else if whole > 0 && within > 0 {
             into.push(facet);
         }

@@ -163,7 +163,9 @@ impl<const D: usize> Filling<'_, D> {
                 |(shape, pose, _): &(&Shape<D>, &Pose<D>, bool)| shape.signed_distance(&pose.local(x)) < 0.5 * dp;
             !self.solids.iter().any(near)
         };
-        let opens = |x: &Vector<D>| (0..lattices.len()).any(|k| is_water(k, x)) && is_free(x);
+        // Buffers of open boundaries, whose beds end at the face, have no levels.
+        let without_buffers = if self.levels.is_empty() { lattices.len() } else { self.levels.len() };
+        let opens = |x: &Vector<D>| (0..without_buffers).any(|k| is_water(k, x)) && is_free(x);
         obstacles.iter_mut().for_each(|o| o.keep_beds(opens));
         let own = ranks::equal_part(lattices.iter().map(Lattice::point_count).sum(), self.owners);
         let mut point = 0;

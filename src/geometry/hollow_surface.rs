@@ -13,6 +13,9 @@ use crate::math::{Pose, Vector};
 /// Most pairs of facets of different parts of a compound.
 const MOST_PAIRS: usize = 20_000_000;
 
+/// Most pieces into which the planes of other parts divide a facet, and most pieces in all.
+const MOST_PIECES: usize = 20_000;
+
 /// Depths (cells) of the plane below the spill level that are tried: the grid gives the level of a rim that is not flat too high.
 const LOWERED: [f64; 5] = [1e-6, 0.1, 0.25, 0.5, 1.0];
 
@@ -58,11 +61,17 @@ pub(super) fn free_facets<const D: usize>(shape: &Shape<D>) -> Option<Vec<Facet<
         for facet in part {
             let step = area_vector(facet).try_normalize(0.0).unwrap_or_else(Vector::zeros) * offset;
             let mut pieces = vec![*facet];
+            if free.len() > MOST_PIECES {
+                return None;
+            }
             for cut in others().flat_map(|i| &facets[i]) {
                 let normal = area_vector(cut);
                 if box_meets(facet, cut, offset) && normal.norm() > 0.0 {
                     pieces =
                         pieces.into_iter().flat_map(|piece| split(piece, cut, &normal.normalize(), offset)).collect();
+                    if pieces.len() > MOST_PIECES {
+                        return None;
+                    }
                 }
             }
             let is_free = |piece: &Facet<D>| {

@@ -139,9 +139,9 @@ impl<const D: usize> Probe<D> for JointProbe {
     }
 
     fn continue_from(&self, before: &[f64], now: &mut [f64], _: f64) {
-        let hinge = (self.kind == JointKind::Hinge).then_some(0);
+        // The angle of a hinge counts its turns itself.
         let turns = (0..self.free.len()).filter(|&i| self.free[i] >= D);
-        for angle in hinge.into_iter().chain(turns).map(|i| load_columns::<D>() + i) {
+        for angle in turns.map(|i| load_columns::<D>() + i) {
             now[angle] = super::motion::unwrapped(before[angle], now[angle]);
         }
     }

@@ -119,7 +119,7 @@ impl<const D: usize> PatchProbe<D> {
         let (of, dp, reach) = (&system.solids()[number], system.model().dp, system.model().support_radius());
         let (shape, pose) = (&of.spec.shape, of.kinematics.pose);
         // A place on an edge of the box belongs to it; no boundary particle lies deeper than the kernel reaches.
-        let near = part.grown(reach + dp);
+        let (near, around) = (part.grown(reach + dp), part.grown(dp));
         let mut own = Self {
             solid: number,
             part: (part.grown(1e-9), pose),
@@ -146,14 +146,15 @@ impl<const D: usize> PatchProbe<D> {
             let foot = at + way * depth;
             let is_chosen = own.holds(&foot);
             own.behind.push(is_chosen);
-            let opposite = exit(shape, &at, &-way, reach, dp).filter(|_| !exits.is_empty());
+            let opposite = if exits.is_empty() { None } else { exit(shape, &at, &-way, reach, dp) };
             for place in [Some(foot), opposite].into_iter().flatten() {
                 let is_first = (place - at).norm() < FIRST_LAYER * dp;
                 if is_first && own.holds(&place) && !is_in_corner(shape, &place, &(place - at), dp) {
                     own.places.push(place);
                 }
             }
-            if exits.iter().any(|exit| (exit - at).dot(&way) <= 0.0) {
+            let is_near_part = is_chosen || exits.iter().any(|exit| around.contains(&pose.point(exit)));
+            if is_near_part && exits.iter().any(|exit| (exit - at).dot(&way) <= 0.0) {
                 own.between.insert(k, Between { at, way, is_thin: opposite.is_some() });
             }
         }
@@ -173,7 +174,7 @@ impl<const D: usize> PatchProbe<D> {
     /// is the image of particle `original` of all, along `axes`.
     fn force_on_part(
         &self,
-        system: &System<D>,
+        (system, slope): (&System<D>, &dyn Fn(f64) -> f64),
         k: usize,
         (original, axes): (usize, AxisSet),
         force: Vector<D>,
@@ -181,7 +182,7 @@ impl<const D: usize> PatchProbe<D> {
         let on_nearest = if self.behind[k] { force } else { Vector::zeros() };
         let Some(between) = self.between.get(&k) else { return on_nearest };
         let solid = &system.solids()[self.solid];
-        let sides = sides(system, solid, &between.way, (original, axes));
+        let sides = sides((system, slope), solid, &between.way, (original, axes));
         let towards = sides[0].towards + sides[1].towards;
         let weight = sides[0].weight + sides[1].weight;
         let is_before_nearest = match between.is_thin {
@@ -219,7 +220,9 @@ impl<const D: usize> Probe<D> for PatchProbe<D> {
     fn water_ranges(&self, system: &System<D>) -> Option<Vec<Bounds<D>>> {
         let pose = system.solids()[self.solid].kinematics.pose;
         let between = self.between.values().map(|between| system.wrapped(&pose.point(&between.at)));
-        Some(self.places(system).chain(between).map(|place| system.reading_range(&place)).collect())
+        let around = |a: Bounds<D>, b: Bounds<D>| Bounds { min: a.min.inf(&b.min), max: a.max.sup(&b.max) };
+        let between = between.map(|place| system.reading_range(&place)).reduce(around);
+        Some(self.places(system).map(|place| system.reading_range(&place)).chain(between).collect())
     }
 
     fn columns(&self) -> Vec<String> {
@@ -234,9 +237,9 @@ impl<const D: usize> Probe<D> for PatchProbe<D> {
         if solid.is_removed() {
             return empty_row(self);
         }
-        let mut force = Vector::<D>::zeros();
+        let (mut force, slope) = (Vector::<D>::zeros(), system.model().kernel_slope::<D>());
         system.visit_boundary_forces(self.solid, &mut |i, origin, f| {
-            force += self.force_on_part(system, i - solid.boundary.start, origin, f);
+            force += self.force_on_part((system, &*slope), i - solid.boundary.start, origin, f);
         });
         let (mut sum, mut most) = (0.0, f64::NEG_INFINITY);
         for place in self.places(system) {
@@ -257,7 +260,9 @@ fn is_deep<const D: usize>(shape: &Shape<D>, at: &Vector<D>, way: &Vector<D>, (d
 fn exits<const D: usize>(shape: &Shape<D>, at: &Vector<D>, reach: f64, dp: f64) -> Vec<Vector<D>> {
     let way = |n: u32| Vector::<D>::from_fn(|i, _| f64::from((n / 3u32.pow(i as u32)) % 3) - 1.0);
     let ways = (0..3u32.pow(D as u32)).map(way).filter(|way| way.norm() > 0.5);
-    ways.filter_map(|way| exit(shape, at, &way.normalize(), reach, dp)).collect()
+    let exits = ways.filter_map(|way| exit(shape, at, &way.normalize(), reach, dp));
+    // A particle on a face, by round-off, has no way to it.
+    exits.filter(|exit| (exit - at).norm() > 1e-6 * dp).collect()
 }
 
 /// Returns the place (m) on the face where the ray from `at`, inside the solid, along the unit vector `way` leaves the solid; `None`
@@ -283,19 +288,19 @@ fn exit<const D: usize>(shape: &Shape<D>, at: &Vector<D>, way: &Vector<D>, reach
 /// Whether the place (m) on the face, in the direction `way` of a boundary particle behind it, is an inner edge: water fills less than
 /// half of the kernel there.
 fn is_in_corner<const D: usize>(shape: &Shape<D>, place: &Vector<D>, way: &Vector<D>, dp: f64) -> bool {
-    shape.signed_distance(&(place + way.normalize() * (0.1 * dp))) < 0.09 * dp
+    way.try_normalize(0.0).is_some_and(|way| shape.signed_distance(&(place + way * (0.1 * dp))) < 0.09 * dp)
 }
 
 /// Returns the water on the boundary particle that is the image of particle `original` of all along `axes`, in front of it in the direction
 /// `way` (in the frame of `solid`) and behind.
 fn sides<const D: usize>(
-    system: &System<D>,
+    (system, slope): (&System<D>, &dyn Fn(f64) -> f64),
     solid: &Solid<D>,
     way: &Vector<D>,
     (original, axes): (usize, AxisSet),
 ) -> [Side<D>; 2] {
     let (boundary, water, mass) = (system.boundary(), system.fluid(), system.particle_mass());
-    let (r, rho, slope) = (boundary.r[original], boundary.rho[original], system.model().kernel_slope::<D>());
+    let (r, rho) = (boundary.r[original], boundary.rho[original]);
     let (p, rho0) = (system.lattice_pressure(rho), system.properties().rho0);
     let way = solid.kinematics.pose.rotation * way;
     let mut sides = [Side { weight: 0.0, towards: Vector::zeros(), push: Vector::zeros() }; 2];

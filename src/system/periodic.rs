@@ -369,6 +369,11 @@ fn side_reached<const D: usize>(
 ) -> Option<usize> {
     let reaches = |axis: &usize| {
         let Some(sides) = periodic[*axis].filter(|_| motion_along(spec, *axis).is_some()) else { return false };
+        // The smallest box of a mesh takes long: a box around it that ends before the sides decides alone.
+        let loose = spec.shape.bounds_at(pose);
+        if loose.min[*axis] > sides[0] + width && loose.max[*axis] < sides[1] - width {
+            return false;
+        }
         ends_near(&world_bounds(&spec.shape, pose), *axis, sides, width)
             && !is_copied(periodic, has_planes, spec, (*axis, width))
     };

@@ -332,13 +332,11 @@ impl<const D: usize> Assembly<D> {
     ) {
         let pulls = self.pulls(engine, before, dt, told);
         for (i, (joint, (_, reading))) in self.joints.iter().zip(&mut self.state.joints).enumerate() {
-            // The coordinate of a joint that begins later refers to frames that it has not yet.
-            let last = if self.state.phases.joints[i] == Phase::Acting { reading.position } else { 0.0 };
             let (was, is) = (joint.end_kinematics(before), joint.end_kinematics(after));
             let held: Load<D> = pulls[i].iter().map(|pull| pull.loads()[1]).sum();
             let arm = joint.position_on_second(&was) - was[1].centre;
             (reading.force, reading.torque) = (held.force, held.torque + Bivector::torque(&arm, &held.force) * -1.0);
-            reading.position = joint.position_after(last, &is);
+            reading.position = joint.position_after(reading.position, &is);
             let rate = |ends: &[Kinematics<D>; 2]| joint.coordinate_jacobian(ends).map_or(0.0, |row| row.rate(ends));
             reading.absorbed_energy -= reading.motor_force * 0.5 * (rate(&was) + rate(&is)) * dt;
             reading.rate = rate(&is);

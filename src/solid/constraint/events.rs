@@ -49,6 +49,7 @@ impl<const D: usize> Assembly<D> {
             if next == Phase::Acting {
                 joint.frames = joint.frames_at(solids);
                 phases.joint_frames[i] = Some(joint.frames);
+                self.state.joints[i].1.position = 0.0;
             }
             engine.set_joint(i, (next == Phase::Acting).then_some(&joint.frames));
             phases.record(t, format!("joint {:?}", joint.spec.name), change(next));

@@ -5,7 +5,7 @@ use crate::{
     solid::{
         Constraints, Dim, ForceSpec, HasEngine, JointKind, JointSpec, Lifetime, LineEnd, RopeSpec, SpringSpec,
         TimeFunction,
-        constraint::assembly::tests::{DrySystem, G, bar, body, joined, point},
+        constraint::assembly::tests::{DrySystem, G, bar, body, hinge, joined, point},
     },
 };
 
@@ -65,6 +65,27 @@ where
 fn joints_and_springs_end_at_their_times() {
     ends_at_a_time::<2>();
     ends_at_a_time::<3>();
+}
+
+fn counts_from_its_begin<const D: usize>()
+where
+    Dim<D>: HasEngine<D>,
+{
+    // A bar turns by 3 rad, nearly half a turn, before a hinge begins to act, and by 1 rad after that.
+    let pin = hinge([None, Some(0)], Vector::zeros()).lifetime(Lifetime::default().since(0.75));
+    let mut air = DrySystem::new(vec![bar::<D>("bar", 0.4, Vector::zeros(), true)], joined(pin), 0.0);
+    let spin = Bivector::torque(&point(1.0, 0.0), &point(0.0, 1.0)) * 4.0;
+    air.engine.set_velocity(0, &Vector::zeros(), &spin);
+    air.run(DT, 1.0);
+    // The first step of the joint may begin within a step of its time.
+    let turned = air.assembly.joint_reading(0).position.abs();
+    assert!((turned - 1.0).abs() < 4.0 * DT + 1e-6, "{D}-D: {turned} rad");
+}
+
+#[test]
+fn a_hinge_that_begins_later_counts_its_angle_from_then() {
+    counts_from_its_begin::<2>();
+    counts_from_its_begin::<3>();
 }
 
 fn begins_at_a_time<const D: usize>()

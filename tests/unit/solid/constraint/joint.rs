@@ -189,7 +189,7 @@ where
     let mut air = DrySystem::new(hung, joined(hinge([None, Some(0)], Vector::zeros()).motor(spring)), 0.0);
     air.run(1e-3, 20.0);
     let reading = air.assembly.joint_reading(0);
-    // Of the start e^(−10) is left after 20 s: k/c = 0.83/s.
+    // Of the start e^(−16) is left after 20 s: k/c = 0.83/s.
     assert!((reading.position - 4.0).abs() < 1e-4, "{D}-D: {reading:?}");
     // A motor with too small a maximum does not lift the bar.
     let mut air = pendulum::<D>(Some(Motor { max_force: 0.1 * m * G * 0.2, ..drive }));
