@@ -24,8 +24,7 @@ fn check_sideways<const D: usize>(context: &PreflightContext<D>, findings: &mut 
     let (system, gravity) = (context.system, context.system.gravity());
     let Some(axis) = (0..D - 1).max_by(|a, b| gravity[*a].abs().total_cmp(&gravity[*b].abs())) else { return };
     let (pull, water, rho0) = (gravity[axis], system.fluid(), system.properties().rho0);
-    let is_open = system.periodic()[axis].is_some() || system.open_boundaries().iter().any(|face| face.axis == axis);
-    if gravity[D - 1].abs() > 0.9 * gravity.norm() || pull == 0.0 || is_open {
+    if gravity[D - 1].abs() > 0.9 * gravity.norm() || pull == 0.0 || system.is_open(axis) {
         return;
     }
     let bounds = Bounds::around(water.r).grown(0.5 * context.dp());

@@ -144,12 +144,8 @@ pub(crate) fn driven_speeds<const D: usize>(system: &System<D>, t: f64) -> impl 
 
 /// Those of [`driven_speeds`] with which water passes: walls take the water of a closed tank along with a towed frame.
 pub(crate) fn passing_speeds<const D: usize>(system: &System<D>, t: f64) -> impl Iterator<Item = f64> {
-    let is_open = |axis: usize| {
-        system.periodic()[axis].is_some() || system.open_boundaries().iter().any(|face| face.axis == axis)
-    };
-    held_speed(system)
-        .into_iter()
-        .chain(towing_speed(system, t).filter(|(axis, _)| is_open(*axis)).map(|(_, speed)| speed))
+    let past = towing_speed(system, t).filter(|(axis, _)| system.is_open(*axis));
+    held_speed(system).into_iter().chain(past.map(|(_, speed)| speed))
 }
 
 /// Speed (m/s) of the current that is held.

@@ -43,6 +43,11 @@ impl<const D: usize> System<D> {
         self.fluid.particles.first_n(self.own_count())
     }
 
+    /// Whether water passes the ends of `axis`: through periodic sides or open boundaries.
+    pub(crate) fn is_open(&self, axis: usize) -> bool {
+        self.periodic()[axis].is_some() || self.open_boundaries().iter().any(|face| face.axis == axis)
+    }
+
     /// How ranks share the water, if each has its own and none needs to have that of others.
     pub(crate) fn divided_water(&self) -> Option<&Division> {
         own_water::divided(&self.neighbours)

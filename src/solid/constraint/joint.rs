@@ -213,7 +213,7 @@ impl<const D: usize> Joint<D> {
     /// The distance (m, or rad from −π to π) from the value `from` of a mode's coordinate to the value `to`.
     pub(in crate::solid) fn distance(mode: usize, from: f64, to: f64) -> f64 {
         let apart = to - from;
-        if mode < D { apart } else { apart - TAU * (apart / TAU).round() }
+        if mode < D { apart } else { apart - whole_turns(apart) }
     }
 
     /// Distance (m) and angle (rad) between its ends along the locked modes.
@@ -297,7 +297,7 @@ impl<const D: usize> Joint<D> {
     /// Its coordinate, m or rad, where it was `last` (m or rad) a step ago: an angle goes on past π.
     pub(in crate::solid) fn position_after(&self, last: f64, ends: &[Kinematics<D>; 2]) -> f64 {
         let at = self.position(ends);
-        if self.spec.coordinate_mode() == Some(D) { at + TAU * ((last - at) / TAU).round() } else { at }
+        if self.spec.coordinate_mode() == Some(D) { at + whole_turns(last - at) } else { at }
     }
 
     /// The force (N or N m) of the motor at the coordinate `position` (m or rad) over a step of `dt` (s). `known` and `reaction` (m/s²
@@ -402,6 +402,11 @@ impl<const D: usize> JointSpec<D> {
         };
         modes_rotations_first::<D>().filter_map(|mode| Some((mode, of(mode)?))).collect()
     }
+}
+
+/// The whole turns nearest to an `angle`, rad.
+fn whole_turns(angle: f64) -> f64 {
+    TAU * (angle / TAU).round()
 }
 
 /// Turning once about `axis`; in 2-D counter-clockwise.
