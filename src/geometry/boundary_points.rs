@@ -106,9 +106,9 @@ enum Rows {
     Spread { count: i64, span: f64 },
 }
 
-/// Lengths of a box, dp, between which its rows are placed by the water that they displace. Shorter ones have one row; in longer ones
-/// equal cells displace up to 3 % too much.
-const THIN_BOX: [f64; 2] = [1.45, 5.0];
+/// Lengths of a box, dp, between which its rows are placed by the water that they displace. Shorter ones have one row. In longer ones
+/// equal cells err by up to 3.5 %, and their outer rows lie nearer to half a dp from the faces, as in a wall with water on one side.
+const THIN_BOX: [f64; 2] = [1.45, 3.0];
 
 /// Share of the distance of the outer faces of the rows' cells in the thickness that n rows displace, –; the rest is n dp. Plates of one
 /// to three rows in still water, 0.25 to 1.25 dp apart, displace this within 0.06 dp (2-D, h = 1.7 dp).

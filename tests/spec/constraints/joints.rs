@@ -210,13 +210,13 @@ fn the_angle_of_a_hinge_counts_the_turns_between_two_rows() -> Result<()> {
     let mut sim = Simulation::<2>::new(pool(0.1, wheel)?.build()?.setup)?;
     let axle = JointProbe::new(sim.system(), "axle")?;
     common::run_to(&mut sim, 0.1)?;
-    let before = axle.sample(&sim);
+    let (start, before) = (sim.time(), axle.sample(&sim));
     common::run_to(&mut sim, 0.6)?;
     let mut now = axle.sample(&sim);
     Probe::<2>::continue_from(&axle, &before, &mut now, 0.5);
-    // The motor holds its speed within the torque of a step; the steps end within 1e-9 s of the times.
-    let turned = (now[3] - before[3]).to_radians();
-    assert!((turned - 10.0).abs() < 1e-3, "{turned} rad");
+    // Without a load on the wheel the motor holds its speed up to round-off.
+    let (turned, exact) = ((now[3] - before[3]).to_radians(), 20.0 * (sim.time() - start));
+    assert!((turned - exact).abs() < 1e-6, "{turned} rad in place of {exact} rad");
     Ok(())
 }
 
