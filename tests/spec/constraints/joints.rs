@@ -214,9 +214,9 @@ fn the_angle_of_a_hinge_counts_the_turns_between_two_rows() -> Result<()> {
     common::run_to(&mut sim, 0.6)?;
     let mut now = axle.sample(&sim);
     Probe::<2>::continue_from(&axle, &before, &mut now, 0.5);
-    // Without a load on the wheel the motor holds its speed up to round-off.
+    // The motor holds its speed. In 2-D the engine turns by atan(ω Δt) in a step, 0.16 % too little with 3.5 ms. A lost turn is 6.28 rad.
     let (turned, exact) = ((now[3] - before[3]).to_radians(), 20.0 * (sim.time() - start));
-    assert!((turned - exact).abs() < 1e-6, "{turned} rad in place of {exact} rad");
+    assert!((turned - exact).abs() < 0.03, "{turned} rad in place of {exact} rad");
     Ok(())
 }
 
