@@ -78,8 +78,8 @@ pub(super) fn load_error(thickness_dp: f64) -> &'static str {
 pub(super) fn buoyancy_error(thickness_dp: f64) -> &'static str {
     match thickness_dp {
         x if (x - x.round()).abs() < 0.1 => "",
-        x if (1.0..2.0).contains(&x) => "; its buoyancy errs by up to 15 %, unless it is 1 or 2 dp thick",
-        x if (2.0..3.0).contains(&x) => "; its buoyancy errs by up to 6 %, unless it is 2 or 3 dp thick",
+        x if (1.0..2.0).contains(&x) => "; as it is no whole number of dp thick, its buoyancy errs by up to 15 %",
+        x if (2.0..3.0).contains(&x) => "; as it is no whole number of dp thick, its buoyancy errs by up to 6 %",
         _ => "",
     }
 }
