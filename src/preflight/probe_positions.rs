@@ -60,22 +60,18 @@ impl<const D: usize> PreflightContext<'_, D> {
             match probe.kind.location() {
                 Some(ProbeLocation::Points(places, on)) => {
                     let in_world = places.iter().filter(|_| on.is_none());
-                    findings.extend(
-                        in_world.filter_map(|at| self.beyond_plane(name, at).or_else(|| self.beyond_side(name, at))),
-                    );
+                    findings.extend(in_world.filter_map(|at| self.beyond_the_water(name, at)));
                     let points = places.iter().filter(|at| at.len() == D);
                     findings.extend(points.filter_map(|at| self.point(&place(at, on), all, sound)));
                 }
                 Some(ProbeLocation::Columns(places, on)) => {
                     let in_world = places.iter().filter(|_| on.is_none());
-                    findings.extend(
-                        in_world.filter_map(|at| self.beyond_plane(name, at).or_else(|| self.beyond_side(name, at))),
-                    );
+                    findings.extend(in_world.filter_map(|at| self.beyond_the_water(name, at)));
                     let columns = places.iter().filter(|at| at.len() == D - 1);
                     findings.extend(columns.filter_map(|at| self.gauge(&place(at, on), all, sound)));
                 }
                 Some(ProbeLocation::Section([from, to])) if from.len() == D && to.len() == D => {
-                    let ends = [from, to].map(|at| self.beyond_plane(name, at).or_else(|| self.beyond_side(name, at)));
+                    let ends = [from, to].map(|at| self.beyond_the_water(name, at));
                     if let [Some(finding), Some(_)] = ends {
                         findings.push(finding);
                     }
@@ -85,6 +81,11 @@ impl<const D: usize> PreflightContext<'_, D> {
                 _ => {}
             }
         }
+    }
+
+    /// A place beyond a symmetry plane or a periodic side has no particles.
+    fn beyond_the_water(&self, name: &str, at: &[f64]) -> Option<Finding> {
+        self.beyond_plane(name, at).or_else(|| self.beyond_side(name, at))
     }
 
     /// A place beyond a symmetry plane has no particles: only one side is computed.
