@@ -109,7 +109,7 @@ fn channel(length: f64, dp: f64, until: f64, faces: &str) -> String {
         until = {until}
         {faces}
         [[water]]
-        fill = {{ box = {{ min = [0.0, 0.0], max = [{length}, 0.4] }} }}
+        fill = {{ box = {{ min = [0.0, 0.0], max = [{length:?}, 0.4] }} }}
         [[solid]]
         name = "bed"
         fixed = true
