@@ -238,8 +238,12 @@ impl<const D: usize> System<D> {
         }
         self.fluid.permute(&order);
         let Particles { r, v, .. } = &mut self.fluid.particles;
-        for (i, new) in (first_created..real).zip(&created) {
-            (r[i], v[i]) = (new.r, new.v);
+        // A new particle took the arrays of its source, and so did its images.
+        let originals = (first_created..real).chain(copies.iter().map(|image| image.original as usize));
+        for (i, original) in (first_created..).zip(originals) {
+            if let Some(new) = original.checked_sub(first_created).and_then(|k| created.get(k)) {
+                (r[i], v[i]) = (new.r, new.v);
+            }
         }
         let images = &mut self.fluid.images;
         images.originals = copies.iter().map(|image| image.original).collect();

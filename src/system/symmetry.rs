@@ -146,7 +146,7 @@ impl<const D: usize> SymmetryPlanes<D> {
     }
 
     /// The axes that have a plane.
-    fn axes(&self) -> AxisSet {
+    pub(super) fn axes(&self) -> AxisSet {
         self.each().fold(0, |set, (axis, _)| set | 1 << axis)
     }
 

@@ -10,7 +10,7 @@ use super::{
 use crate::{
     math::Vector,
     particles::Particles,
-    system::{Fluid, System},
+    system::{Fluid, System, symmetry::AxisSet},
 };
 
 /// What has passed through a face since the start.
@@ -33,14 +33,16 @@ impl<const D: usize> FaceExchange<D> {
         Self { entered: 0, left: 0, momentum: Vector::zeros(), energy: 0.0 }
     }
 
-    /// Counts a particle that enters (`sense` 1) or leaves (−1).
-    fn count(&mut self, sense: f64, mass: f64, v: &Vector<D>, energy: f64) {
+    /// Counts a particle that enters (`sense` 1) or leaves (−1), with its mirror images by the planes normal to `axes`.
+    fn count(&mut self, sense: f64, (mass, axes): (f64, AxisSet), v: &Vector<D>, energy: f64) {
         if sense > 0.0 {
             self.entered += 1;
         } else {
             self.left += 1;
         }
-        self.momentum += v * (sense * mass);
+        // The momentum of the images along the normal is opposite.
+        let moves = |axis: usize| axes >> axis & 1 == 0;
+        self.momentum += Vector::from_fn(|i, _| if moves(i) { v[i] * (sense * mass) } else { 0.0 });
         self.energy += sense * energy;
     }
 }
@@ -139,7 +141,7 @@ pub(in crate::system) fn exchange_at_faces<const D: usize>(
         return Vec::new();
     }
     let (water, length, mass) = (system.particle_count(), buffer_length(&system.model), system.particle_mass());
-    let mass = mass * system.water_multiplicity();
+    let mass = (mass * system.water_multiplicity(), system.symmetry_planes().axes());
     let is_kept = |i: usize| system.fluid_domain.open_boundaries[i].keeps_rows();
     let kept: Vec<usize> = (0..system.fluid_domain.open_boundaries.len()).filter(|&i| is_kept(i)).collect();
     let moved: Vec<(usize, Vector<D>)> = kept.iter().flat_map(|&face| rows::spread(system, face)).collect();
