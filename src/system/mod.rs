@@ -341,7 +341,7 @@ impl<const D: usize> System<D> {
     /// Sorts the water along the columns and rebuilds the neighbour lists, if necessary. Returns the reordering for particle
     /// arrays that are stored elsewhere.
     pub(crate) fn rebuild_neighbours(&mut self) -> Option<Reordering<D>> {
-        if !self.needs_rebuild() && !open_boundary::needs_exchange(self) {
+        if !self.needs_rebuild() && !open_boundary::needs_exchange(self) && !self.is_water_far_out() {
             return None;
         }
         let start = Instant::now();

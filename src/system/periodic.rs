@@ -12,6 +12,8 @@
 //! other copies take its density. A copy moves by two periods when the middle of the solid passes the middle between the sides;
 //! at that time no water is near the copy.
 
+use rayon::prelude::*;
+
 use super::{
     Fluid, RemovedParticle, System, open_boundary,
     symmetry::{AxisSet, SymmetryPlanes, reflected, reflected_tensor},
@@ -155,6 +157,15 @@ impl<const D: usize> Images<D> {
         r[0]
     }
 
+    /// Whether `x` (m) lies further than `distance` (m) beyond a periodic side or a symmetry plane.
+    fn is_far_out(&self, x: &Vector<D>, distance: f64) -> bool {
+        let beyond_side = |(x, side): (&f64, &Option<[f64; 2]>)| {
+            side.is_some_and(|[from, to]| *x < from - distance || *x > to + distance)
+        };
+        x.iter().zip(&self.periodic).any(beyond_side)
+            || self.planes.each().any(|(axis, plane)| plane.depth(x[axis]) < -distance)
+    }
+
     /// Whether `x` (m) lies between the sides.
     pub(super) fn is_inside(&self, x: &Vector<D>) -> bool {
         let inside = |(x, side): (&f64, &Option<[f64; 2]>)| side.is_none_or(|[from, to]| (from..to).contains(x));
@@ -260,6 +271,13 @@ impl<const D: usize> System<D> {
         }
         open_boundary::name_created(self, created.len());
         (SortedWater { order, reflections }, lost)
+    }
+
+    /// Whether water is so far beyond a periodic side or a symmetry plane that walls and images soon end before it. Lists that are
+    /// rebuilt within a step leave the water there; in steady flow all of them may be.
+    pub(super) fn is_water_far_out(&self) -> bool {
+        let (images, far) = (&self.fluid.images, self.model.support_radius());
+        images.any() && self.fluid.particles.r[..self.own_count()].par_iter().any(|r| images.is_far_out(r, far))
     }
 
     /// Makes the images of the water anew at its present places; the water keeps its order.
