@@ -1,5 +1,7 @@
 //! Set-up with symmetry planes: which side is computed, what contradicts the symmetry, and the locks of the bodies on a plane.
 
+mod water;
+
 use super::{
     Setup,
     setup::gravity_at,
@@ -7,13 +9,10 @@ use super::{
 };
 use crate::{
     error::{Error, ErrorCode, Result},
-    geometry::{cells::PointCells, world_bounds},
+    geometry::world_bounds,
     math::{Bounds, Vector},
     solid::{ForceSpec, Kinematics, LineEnd, Role, SolidSpec, TimeFunction},
 };
-
-/// Largest distance of the rows next to a plane from their place half a dp before it, dp.
-const ROW_TOLERANCE: f64 = 0.05;
 
 /// Largest difference between the depths of a boundary particle and of its image below the faces of their solid, dp.
 const SHAPE_TOLERANCE: f64 = 0.05;
@@ -116,6 +115,12 @@ impl<const D: usize> Setup<D> {
             let what =
                 format!("gravity has a component of {} m/s² along {name}, normal to {}", gravity(t), plane.title());
             return Err(Error::scene(what).help("gravity must lie in the plane: turn it, or compute both sides"));
+        }
+        if self.driving.towed.as_ref().is_some_and(|frame| frame.axis == axis) {
+            let what = format!("the frame is towed along {name}, normal to {}", plane.title());
+            return Err(Error::scene(what)
+                .with_code(ErrorCode::ConflictingKeys)
+                .help("tow along the plane, or compute both sides"));
         }
         Ok(())
     }
@@ -381,59 +386,6 @@ impl<const D: usize> Setup<D> {
     /// Whether `x` (m) lies on the plane.
     fn is_on(&self, plane: &Named, x: &Vector<D>) -> bool {
         plane.depth(x).abs() <= TOLERANCE * self.model.dp
-    }
-
-    /// Leaves the water on the computed side only, whose rows must begin half a dp before the plane.
-    fn cut_water(&mut self, plane: &Named) -> Result<()> {
-        let (dp, axis, title) = (self.model.dp, plane.axis, plane.title());
-        let depths: Vec<f64> = self.water.iter().map(|r| plane.depth(r)).collect();
-        let mut near: Vec<f64> = depths.iter().copied().filter(|depth| (0.0..dp).contains(depth)).collect();
-        near.sort_by(f64::total_cmp);
-        if let Some(&row) = near.get(near.len() / 2)
-            && (row / dp - 0.5).abs() > ROW_TOLERANCE
-        {
-            let shift = (row - 0.5 * dp) * if plane.plane.is_upper { 1.0 } else { -1.0 };
-            let at = plane.plane.at + shift;
-            let what = format!("the row of water next to {title} lies {:.3} dp before it, not half a dp", row / dp);
-            let help = format!(
-                "write  symmetry.{} = {}, or let the water begin a whole number of dp from the plane",
-                plane.name(),
-                (at * 1e9).round() / 1e9
-            );
-            return Err(Error::scene(what).help(help));
-        }
-        if depths.iter().all(|depth| *depth >= 0.0) {
-            return Ok(());
-        }
-        let kept: Vec<usize> = (0..depths.len()).filter(|&i| depths[i] >= 0.0).collect();
-        let places: Vec<Vector<D>> = kept.iter().map(|&i| self.water[i]).collect();
-        let cells = PointCells::new(&places, dp);
-        let poses: Vec<_> = self.solids.iter().map(|solid| (&solid.shape, solid.initial_kinematics().pose)).collect();
-        for i in (0..depths.len()).filter(|&i| depths[i] < 0.0) {
-            let mut image = self.water[i];
-            image[axis] = 2.0 * plane.plane.at - image[axis];
-            let mut is_near = false;
-            cells.visit_near(&image, dp, |_, x| is_near = is_near || (x - image).norm() < dp);
-            // A solid beside the plane displaces water that its image, which is not given, does not.
-            let is_displaced = || poses.iter().any(|(shape, pose)| shape.signed_distance(&pose.local(&image)) < dp);
-            if !is_near && !is_displaced() {
-                let what = format!(
-                    "the water is not symmetric about {title}: there is water at {:?} m and none at {:?} m",
-                    self.water[i].as_slice(),
-                    image.as_slice()
-                );
-                return Err(Error::scene(what).help("give the water on one side of the plane only, or alike on both"));
-            }
-        }
-        self.water = places;
-        self.surface_levels = kept.iter().map(|&i| self.surface_levels[i]).collect();
-        if !self.pressure.is_empty() {
-            self.pressure = kept.iter().map(|&i| self.pressure[i]).collect();
-        }
-        if !self.velocity.is_empty() {
-            self.velocity = kept.iter().map(|&i| self.velocity[i]).collect();
-        }
-        Ok(())
     }
 
     /// Locks the bodies that `plane` cuts.

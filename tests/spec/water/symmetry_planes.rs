@@ -336,6 +336,18 @@ fn what_contradicts_the_symmetry_is_refused_with_a_remedy() {
         }
     };
     let plane = "symmetry = { x = 0.4 }";
+    let still = |keys: &str| {
+        let tank = &BOX[..BOX.rfind("[[solid]]").unwrap_or(0)];
+        tank.replace("max = [0.8, 0.3] } }", &format!("max = [0.8, 0.3] }} }}, {keys}")).replace(", }", " }")
+    };
+    let lower_beyond = still("").replace(
+        "{ fill = { box = { min = [0.0",
+        "{ fill = { box = { min = [0.0, 0.0], max = [0.4, 0.2] } } }, { fill = { box = { min = [0.4",
+    );
+    for keys in ["velocity = [\"0.2*(x-0.4)\", \"0.1*cos(4*(x-0.4))\"]", "pressure = \"50*(x-0.4)^2\""] {
+        let scene = Scene::parse(&format!("{plane}\n{}", still(keys)), Path::new(""), &[]).expect("a readable scene");
+        assert_eq!(scene.build::<2>().err().map(|error| error.to_string()), None, "{keys} is symmetric");
+    }
     let line = |from: [f64; 2], to: [f64; 2]| {
         format!(
             "{BOX}[[spring]]\nname = \"s{}\"\nbetween = [\"box\"]\nfrom = {from:?}\nto = {to:?}\nstiffness = 50.0\n",
@@ -364,6 +376,11 @@ fn what_contradicts_the_symmetry_is_refused_with_a_remedy() {
         (plane, BOX.replace("x = 0.4, draft", "x = 0.2, draft"), "lies beyond"),
         (plane, BOX.replace("density = 500.0", "density = 500.0, velocity = [0.1, 0.0]"), "out of the symmetry"),
         (plane, BOX.replace("max = [0.8, 0.3]", "max = [0.7, 0.3]"), "the water is not symmetric"),
+        (plane, lower_beyond, "the water is not symmetric"),
+        (plane, still("velocity = [0.2, 0.0]"), "the velocity of the water at the start"),
+        (plane, still("velocity = [0.0, \"0.2*(x-0.4)\"]"), "the velocity of the water at the start"),
+        (plane, still("pressure = \"50*x\""), "the pressure of the water at the start"),
+        ("symmetry = { x = 0.4 }\ntowed = { along = \"x\", velocity = \"0.2*t\" }", still(""), "towed along x"),
         (plane, format!("{BOX}[[force]]\nname = \"f\"\non = \"box\"\nforce = [1.0, 0.0]\n"), "leave out its component"),
         (plane, line([0.35, 0.3], [0.1, 0.3]), "mirror image too"),
         (plane, force("at = [0.45, 0.3]\nforce = [0.0, -1.0]"), "mirror image at"),
