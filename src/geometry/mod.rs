@@ -36,7 +36,7 @@ pub(crate) use fill::fill_around;
 pub use fill::{FilledWater, WaterRegion, fill};
 pub use mesh::{ContactGeometry, Mesh};
 pub(crate) use projected_area::Silhouette;
-pub(crate) use support::{greatest_length, world_bounds};
+pub(crate) use support::{farthest_along, greatest_length, world_bounds};
 
 /// A shape in its own frame, m. The last axis is vertical if the shape is not rotated.
 #[derive(Clone, Debug, PartialEq)]

@@ -13,6 +13,11 @@ pub(crate) fn world_bounds<const D: usize>(shape: &Shape<D>, pose: &Pose<D>) -> 
     Bounds { min: Vector::from_fn(|i, _| -extent(i, -1.0)), max: Vector::from_fn(|i, _| extent(i, 1.0)) }
 }
 
+/// The largest x·`way` of the posed shape, m; `way` is a unit vector.
+pub(crate) fn farthest_along<const D: usize>(shape: &Shape<D>, pose: &Pose<D>, way: &Vector<D>) -> f64 {
+    pose.position.dot(way) + support(shape, &(pose.rotation.transpose() * way))
+}
+
 /// The greatest length (m) of the shape along a line in any orientation: exact for round shapes, else that of the diagonal of its
 /// box.
 pub(crate) fn greatest_length<const D: usize>(shape: &Shape<D>) -> f64 {

@@ -147,7 +147,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         }
         let swing = self.driven_stroke(solid, motion, &bounds)?;
         let named = motion.wave();
-        let [stand, behind] = [swing.direction, -swing.direction].map(|way| WavemakerSite::new(&bounds, way, level));
+        let [stand, behind] = [swing.direction, -swing.direction].map(|way| WavemakerSite::new(solid, way, level));
         // A motion that the scene gives makes waves to both sides; the waves with the longer path are evaluated.
         let stand = if named.is_none() && self.water_end(&behind) > self.water_end(&stand) { behind } else { stand };
         let depth = named.map_or(depth, |wave| wave.depth());

@@ -73,7 +73,7 @@ impl<const D: usize> PreflightContext<'_, D> {
             ));
         }
         let Some(way) = wave_direction(motion, &(0.5 * (bounds.min + bounds.max))) else { return };
-        let site = WavemakerSite::new(&bounds, way, level);
+        let site = WavemakerSite::new(solid, way, level);
         findings.extend(self.dry_gap(solid, &site));
         let Some(depth) = self.depth_at(&site) else { return };
         let under = bottom - (level - depth);
@@ -125,7 +125,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         }
         let (dp, others) = (self.dp(), || self.solids().iter().filter(|other| !std::ptr::eq(*other, flap)));
         let bottom = world_bounds(&flap.spec.shape, &flap.kinematics.pose).min[D - 1];
-        let deep = site.thickness();
+        let deep = site.thickness;
         let heights = (under / (0.25 * dp)).round() as usize;
         let across = (deep / (0.25 * dp)).ceil() as usize;
         let is_wall = |x: &Vector<D>| others().any(|other| other.distance(x) < 1e-6 * dp);
@@ -342,7 +342,7 @@ fn hinge_aside<const D: usize>(
 ) -> Option<Finding> {
     let hinge = motion.hinged()?;
     let ahead = (hinge - site.face).dot(&site.direction);
-    let aside = ahead.max(-ahead - site.thickness());
+    let aside = ahead.max(-ahead - site.thickness);
     (aside > ASIDE * arm).then(|| {
         let mut foot = site.face;
         foot[D - 1] = hinge[D - 1];

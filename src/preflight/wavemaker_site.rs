@@ -2,7 +2,7 @@
 
 use super::{Finding, GeneratedWave, PreflightContext};
 use crate::{
-    geometry::{Shape, world_bounds},
+    geometry::{Shape, farthest_along, world_bounds},
     math::{
         Bounds, Vector,
         format::{coordinates, three_digits, two_digits_up},
@@ -20,8 +20,10 @@ const LARGEST_LOSS: f64 = 0.02;
 
 /// A paddle at rest, and the direction of its waves.
 pub(super) struct WavemakerSite<const D: usize> {
-    /// The box around it, m.
-    bounds: Bounds<D>,
+    /// Thickness from its back to its face, m.
+    pub(super) thickness: f64,
+    /// The level direction across that of its waves, and how far it reaches from the middle of its face this way and against it, m.
+    across: (Vector<D>, [f64; 2]),
     /// Direction of its waves: a horizontal unit vector.
     pub(super) direction: Vector<D>,
     /// The middle of its face in the still level, m.
@@ -38,29 +40,28 @@ pub(super) fn is_wall<const D: usize>(shape: &Shape<D>) -> bool {
 }
 
 impl<const D: usize> WavemakerSite<D> {
-    /// The site of a paddle in the box `bounds`, whose waves go along `way`, in water with the still level `level` (m).
-    pub(super) fn new(bounds: &Bounds<D>, way: Vector<D>, level: f64) -> Self {
+    /// The site of a `paddle`, whose waves go along `way`, in water with the still level `level` (m).
+    pub(super) fn new(paddle: &Solid<D>, way: Vector<D>, level: f64) -> Self {
+        let (shape, pose) = (&paddle.spec.shape, &paddle.kinematics.pose);
+        let bounds = world_bounds(shape, pose);
+        let reach = |way: &Vector<D>| farthest_along(shape, pose, way);
         let middle = 0.5 * (bounds.min + bounds.max);
-        let mut face = middle + way * (support(bounds, &way) - middle.dot(&way));
+        let mut face = middle + way * (reach(&way) - middle.dot(&way));
         face[D - 1] = level;
-        Self { bounds: *bounds, direction: way, face }
-    }
-
-    /// Thickness from its back to its face, m.
-    pub(super) fn thickness(&self) -> f64 {
-        support(&self.bounds, &self.direction) + support(&self.bounds, &-self.direction)
+        // In 2-D there is none.
+        let mut aside = Vector::zeros();
+        if D == 3 {
+            (aside[0], aside[1]) = (-way[1], way[0]);
+        }
+        let breadth = [aside, -aside].map(|side| reach(&side) - side.dot(&face));
+        Self { thickness: reach(&way) + reach(&-way), across: (aside, breadth), direction: way, face }
     }
 
     /// Distance (m) of `x` (m) before the face; `None` if the waves pass beside it.
     pub(super) fn distance_ahead(&self, x: &Vector<D>) -> Option<f64> {
-        let off = x - self.face;
-        let ahead = off.dot(&self.direction);
-        let mut beside = off - self.direction * ahead;
-        beside[D - 1] = 0.0;
-        let breast = beside
-            .try_normalize(1e-9)
-            .is_none_or(|side| beside.norm() < support(&self.bounds, &side) - side.dot(&self.face));
-        breast.then_some(ahead)
+        let (off, (aside, [breadth, back])) = (x - self.face, &self.across);
+        let beside = off.dot(aside);
+        (D == 2 || beside < *breadth && -beside < *back).then(|| off.dot(&self.direction))
     }
 
     /// Distance (m) from the face to the beginning of a zone; `None` unless the waves run into it.

@@ -117,7 +117,7 @@ impl<const D: usize> System<D> {
             let solid = &self.solids[i];
             let Role::Driven(motion) = &solid.spec.role else { continue };
             let Some(gauge) = motion.gauge_position(&solid.absorption, t) else { continue };
-            let level = self.surface_heights(&gauge).next();
+            let level = self.surface_heights(&self.wrapped(&gauge)).next();
             self.solids[i].absorption = motion.update_absorption(&solid.absorption, t, level);
         }
     }
@@ -125,7 +125,9 @@ impl<const D: usize> System<D> {
     /// The boxes (m) in which absorbing paddles read the surface at time `t` (s), the start of a step.
     pub(crate) fn absorption_ranges(&self, t: f64) -> Vec<Bounds<D>> {
         let range = |solid: &Solid<D>| match &solid.spec.role {
-            Role::Driven(motion) => Some(self.surface_range(&motion.gauge_position(&solid.absorption, t)?)),
+            Role::Driven(motion) => {
+                Some(self.surface_range(&self.wrapped(&motion.gauge_position(&solid.absorption, t)?)))
+            }
             _ => None,
         };
         self.solids.iter().filter_map(range).collect()

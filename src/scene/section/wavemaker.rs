@@ -13,7 +13,7 @@ use super::{
 };
 use crate::{
     error::{Error, Result},
-    geometry::{Shape, world_bounds},
+    geometry::{Shape, farthest_along, world_bounds},
     math::{
         Bivector, Bounds, Pose, Vector,
         time_series::{SampleScaling, TimeSeries},
@@ -41,10 +41,18 @@ struct AbsorberSite<const D: usize> {
 }
 
 impl<const D: usize> AbsorberSite<D> {
-    /// The site of a paddle in the box `own`, whose waves go along `way`.
-    fn of(own: &Bounds<D>, way: Vector<D>, level: f64) -> Self {
-        let middle = 0.5 * (own.min + own.max);
-        Self { face: middle + way * (support(own, &way) - middle.dot(&way)), way, level }
+    /// The site of a paddle of this shape and pose, whose waves go along `way`, beside the water in the box `water`. Where the paddle
+    /// is wider than the water on one side, the middle is that of the part beside the water.
+    fn of((shape, pose): (&Shape<D>, &Pose<D>), way: Vector<D>, (water, level): (&Bounds<D>, f64)) -> Self {
+        let own = world_bounds(shape, pose);
+        let mut middle = 0.5 * (own.min + own.max);
+        for i in 0..D - 1 {
+            let [least, most] = [own.min[i].max(water.min[i]), own.max[i].min(water.max[i])];
+            if least <= most && !(water.min[i]..=water.max[i]).contains(&middle[i]) {
+                middle[i] = 0.5 * (least + most);
+            }
+        }
+        Self { face: middle + way * (farthest_along(shape, pose, &way) - middle.dot(&way)), way, level }
     }
 }
 
@@ -67,26 +75,26 @@ pub(super) fn build<const D: usize>(
     let g = ctx.gravity.as_ref().and_then(|g| g.initial.last()).map_or(0.0, |g| -g);
     let maker = Wavemaker { depth, g, paddle: Paddle::Piston };
     let motion = match &config.along {
-        Some(along) => piston_motion(ctx, key, wave, vector::<D>(along).normalize(), &maker, (&own, pool)),
-        None => flap_motion(ctx, key, config, wave, &maker, (&own, pool)),
+        Some(along) => piston_motion(ctx, key, wave, vector::<D>(along).normalize(), &maker, (shape, pose, pool)),
+        None => flap_motion(ctx, key, config, wave, &maker, (shape, pose, pool)),
     };
     motion.map_err(|e| record::with_unit_notes(ctx, &format!("{key}.wave.elevation"), e))
 }
 
-/// The motion of a piston in the direction `along`; `own` is the box around it.
+/// The motion of a piston of this shape and pose in the direction `along`.
 fn piston_motion<const D: usize>(
     ctx: &Context,
     key: &str,
     wave: &WaveConfig,
     along: Vector<D>,
     maker: &Wavemaker,
-    (own, pool): (&Bounds<D>, &StillWater<D>),
+    (shape, pose, pool): (&Shape<D>, &Pose<D>, &StillWater<D>),
 ) -> Result<PrescribedMotion<D>> {
     let refuse = |what: &str, help: &str| Err(ctx.error_with_help(&format!("{key}.along"), what, help));
     if along[D - 1].abs() > 1e-6 {
         return refuse("a piston that makes waves slides level", "write  along = [1.0, 0.0]");
     }
-    let ahead = support(&pool.bounds, &along) - support(own, &along);
+    let ahead = support(&pool.bounds, &along) - farthest_along(shape, pose, &along);
     if ahead <= ctx.dp {
         let help = "along is the direction in which the waves go: turn it round, or put the paddle behind the water";
         return refuse("there is no water before the paddle in this direction", help);
@@ -98,22 +106,24 @@ fn piston_motion<const D: usize>(
         let help = "waves so long need a longer tank: take a shorter period or a lower height";
         return Err(ctx.error_with_help(&key, what, help));
     }
-    let site = AbsorberSite::of(own, along, pool.basin(own).level);
+    let level = pool.basin(&world_bounds(shape, pose)).level;
+    let site = AbsorberSite::of((shape, pose), along, (&pool.bounds, level));
     note_distance(ctx, &key, wave, ahead);
     with_absorption(ctx, &key, wave, maker, &site, PrescribedMotion::slide(along, TimeFunction::Wave(Box::new(law))))
 }
 
-/// The motion of a flap; `own` is the box around it.
+/// The motion of a flap of this shape and pose.
 fn flap_motion<const D: usize>(
     ctx: &Context,
     key: &str,
     config: &DrivenConfig,
     wave: &WaveConfig,
     maker: &Wavemaker,
-    (own, pool): (&Bounds<D>, &StillWater<D>),
+    (shape, pose, pool): (&Shape<D>, &Pose<D>, &StillWater<D>),
 ) -> Result<PrescribedMotion<D>> {
     let hinge: Vector<D> = vector(config.hinge.as_deref().unwrap_or(&[]));
-    let level = pool.basin(own).level;
+    let own = world_bounds(shape, pose);
+    let level = pool.basin(&own).level;
     let arm = level - hinge[D - 1];
     if arm <= 0.0 {
         let what = format!("the hinge is {:.3} m above the still level: such a flap makes no wave by theory", -arm);
@@ -134,7 +144,7 @@ fn flap_motion<const D: usize>(
     let axis: Vec<f64> = axis.iter().map(|x| sense * x).collect();
     let (key, maker) = (format!("{key}.wave"), Wavemaker { paddle: Paddle::Flap { arm }, ..*maker });
     let law = wave_from_config(ctx, &key, wave, &maker)?;
-    let site = AbsorberSite::of(own, way.normalize() * sense, level);
+    let site = AbsorberSite::of((shape, pose), way.normalize() * sense, (&pool.bounds, level));
     note_distance(ctx, &key, wave, support(&pool.bounds, &site.way) - site.face.dot(&site.way));
     with_absorption(
         ctx,

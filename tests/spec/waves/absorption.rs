@@ -153,3 +153,65 @@ fn preflight_reports_the_absorbing_paddles() {
     let own = &absorbers(flap)[0];
     assert!((own.stroke_m - 0.2).abs() < 1e-12 && (own.period_s - 1.2).abs() < 1e-12, "{own:?}");
 }
+
+/// A basin in 3-D, 0.8 m long, 0.5 m wide and 0.2 m deep, turned by `turn` (degrees) in plan, whose water moves towards an absorbing
+/// paddle at 0.3 m/s. `sides` are planes or periodic sides in place of its walls; the paddle reaches from the first to the second y of
+/// `paddle`.
+fn turned_basin(turn: f64, sides: &str, paddle: [f64; 2]) -> Simulation<3> {
+    let (sin, cos) = turn.to_radians().sin_cos();
+    let at = |[x, y, z]: [f64; 3]| {
+        format!("{{ x = {}, y = {}, z = {z}, turn_deg = [0.0, 0.0, {turn:?}] }}", x * cos - y * sin, x * sin + y * cos)
+    };
+    let solid = |name: &str, size: [f64; 3], place: [f64; 3], role: &str| {
+        format!("[[solid]]\nname = \"{name}\"\nshape = {{ box = {{ size = {size:?} }} }}\nat = {}\n{role}\n", at(place))
+    };
+    let wall = |name: &str, size: [f64; 3], place: [f64; 3]| solid(name, size, place, "fixed = true");
+    let walls = match sides {
+        "" => wall("right", [2.0, 0.3, 0.6], [0.4, -0.15, 0.3]) + &wall("left", [2.0, 0.3, 0.6], [0.4, 0.65, 0.3]),
+        sides if sides.contains("symmetry") => wall("left", [2.0, 0.3, 0.6], [0.4, 0.65, 0.3]),
+        _ => String::new(),
+    };
+    let absorbs = format!("driven = {{ along = [{cos}, {sin}, 0.0], wave = {{ absorb = {{ period = 1.0 }} }} }}");
+    let (wide, middle) = (paddle[1] - paddle[0], 0.5 * (paddle[0] + paddle[1]));
+    common::scene_simulation::<3>(&format!(
+        "dimension = 3\ndp = 0.05\nuntil = 1.0\n{sides}\n[[water]]\nfill = {{ shape = {{ box = {{ size = [0.8, 0.5, 0.2] }} }}, at = {} }}\n\
+         velocity = [{}, {}, 0.0]\n{}{}{}{walls}",
+        at([0.4, 0.25, 0.1]),
+        -0.3 * cos,
+        -0.3 * sin,
+        wall("bed", [2.0, 3.6, 0.2], [0.4, 0.0, -0.1]),
+        wall("end", [0.2, 3.6, 0.6], [0.9, 0.0, 0.3]),
+        solid("paddle", [0.2, wide, 0.6], [-0.1, middle, 0.3], &absorbs)
+    ))
+    .expect("a sound scene")
+}
+
+/// How far (m) the paddle has yielded to the water after 0.3 s.
+fn yielded(turn: f64, sides: &str, paddle: [f64; 2]) -> f64 {
+    let mut sim = turned_basin(turn, sides, paddle);
+    common::run_to(&mut sim, 0.3).expect("a sound run");
+    let (sin, cos) = turn.to_radians().sin_cos();
+    let paddle = sim.system().solids().iter().find(|solid| solid.spec.name == "paddle").expect("a paddle");
+    (paddle.spec.pose.position - paddle.kinematics.pose.position).dot(&Vector::from([cos, sin, 0.0]))
+}
+
+/// The gauge of an oblique paddle is before its face, not before the box around it, where the water has not risen yet.
+#[test]
+fn an_absorbing_paddle_yields_alike_in_every_direction() {
+    let [straight, oblique] = [0.0, 45.0].map(|turn| yielded(turn, "", [0.0, 0.5]));
+    // The water is packed to the walls in another way: 5 % of the way.
+    assert!(straight > 0.005 && (oblique / straight - 1.0).abs() < 0.1, "{oblique} m instead of {straight} m");
+}
+
+/// A paddle that reaches beyond a periodic side or a symmetry plane has its gauge in the water all the same.
+#[test]
+fn an_absorbing_paddle_wider_than_the_water_has_its_gauge_in_the_water() {
+    for (sides, centred, aside) in [
+        ("periodic = { y = [0.0, 0.5] }", [-0.6, 1.1], [-1.4, 1.0]),
+        ("symmetry = { y = 0.0 }", [-0.5, 0.9], [-1.3, 0.5]),
+    ] {
+        let [centred, aside] = [centred, aside].map(|paddle| yielded(0.0, sides, paddle));
+        // The water rises alike over the width, so the place of the gauge across it matters little.
+        assert!(centred > 0.005 && (aside / centred - 1.0).abs() < 0.01, "{sides}: {aside} m instead of {centred} m");
+    }
+}
