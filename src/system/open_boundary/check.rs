@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 use super::{MOST_FACES, OpenBoundary};
 use crate::{
     error::{Error, ErrorCode, Result},
-    geometry::world_bounds,
+    geometry::{cells::PointCells, world_bounds},
     math::{
         Bounds, Vector, find_pole,
-        format::{three_digits, two_digits_down, two_digits_up},
+        format::{coordinates, three_digits, two_digits_down, two_digits_up},
     },
     solid::{Role, SolidSpec},
     system::Setup,
@@ -26,6 +26,9 @@ const FASTEST_LEVEL: f64 = 0.1;
 
 /// Least height of a level that changes above the bed, dp: the kernel spans that many rows.
 const LEAST_ROWS: f64 = 4.0;
+
+/// Distance from the water before a face within which its buffer goes on, dp: rows that are packed beside solids may be shifted.
+const BESIDE_ROWS: f64 = 1.5;
 
 /// Number of parts of a run at whose ends a level is looked at.
 const LEVEL_SAMPLES: u32 = 2000;
@@ -95,6 +98,9 @@ pub(crate) fn check<const D: usize>(setup: &Setup<D>, i: usize, until: f64) -> R
             }
         };
         return Err(Error::scene(what).help(help));
+    }
+    if setup.initial_gravity()[D - 1] < 0.0 {
+        check_water_beside(setup, face)?;
     }
     if let Some(solid) = bed_that_ends(setup, face) {
         let end = at + face.outward() * length;
@@ -190,6 +196,33 @@ fn bed_that_ends<'a, const D: usize>(setup: &'a Setup<D>, face: &OpenBoundary<D>
         });
         solid_at(&inside).filter(|_| solid_at(&outside).is_none())
     })
+}
+
+/// Refuses a face whose buffer has water at a height or place where neither water nor a solid is before the face, as beside channels
+/// with different levels. The buffer is filled up to one level, between solids.
+fn check_water_beside<const D: usize>(setup: &Setup<D>, face: &OpenBoundary<D>) -> Result<()> {
+    let dp = setup.model.dp;
+    let within = |rows: f64| setup.water.iter().filter(move |r| (0.0..dp).contains(&(rows * face.beyond(r))));
+    let before: Vec<Vector<D>> = within(-1.0).copied().collect();
+    let cells = PointCells::new(&before, dp);
+    let opposite = |r: &Vector<D>| {
+        let mut x = *r;
+        x[face.axis] = face.at - face.outward() * 0.5 * dp;
+        x
+    };
+    let has_none = |r: &&Vector<D>| {
+        let (x, mut lone) = (opposite(r), true);
+        cells.visit_near(&x, BESIDE_ROWS * dp, |_, y| lone &= (y - x).norm() >= BESIDE_ROWS * dp);
+        lone && setup.solids.iter().all(|s| s.shape.signed_distance(&s.initial_kinematics().pose.local(&x)) > dp)
+    };
+    let Some(lone) = within(1.0).find(has_none) else { return Ok(()) };
+    let what = format!(
+        "the buffer of open boundary {:?} has water at {} m, and there is none before the face",
+        face.name,
+        coordinates(lone.iter())
+    );
+    let help = "give all water beside the face one level and the whole section between the solids, or close the rest by a solid";
+    Err(Error::scene(what).help(help))
 }
 
 /// Refuses open boundary number `i` if one before it is in its place.

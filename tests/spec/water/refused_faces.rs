@@ -166,3 +166,33 @@ fn inspect_tells_what_of_a_sea_a_current_stops() {
     let (none, all) = report("jonswap = { height = 0.03, peak_period = 1.3 }", 0.3);
     assert!(all[0].left_out == 0.0 && none.iter().all(|f| f.topic != "waves_left_out"), "{none:?}");
 }
+
+/// A buffer is filled to one level: channels with different levels at one face are refused.
+#[test]
+fn channels_with_different_levels_at_one_face_are_refused() {
+    let scene = |level: f64| {
+        let water = |y: [f64; 2], level: f64| {
+            format!(
+                "{{ fill = {{ box = {{ min = [0.0, {:?}, 0.0], max = [0.8, {:?}, {level:?}] }} }}, velocity = [0.3, 0.0, 0.0] }}",
+                y[0], y[1]
+            )
+        };
+        let solid = |name: &str, size: [f64; 3], at: [f64; 3]| {
+            format!("{{ name = \"{name}\", fixed = true, shape = {{ box = {{ size = {size:?} }} }}, at = {at:?} }}")
+        };
+        format!(
+            "dimension = 3\ndp = 0.05\nuntil = 1.0\ninflow = [{{ x = 0.0, velocity = 0.3 }}]\n\
+             outflow = [{{ x = 0.8, velocity = 0.3 }}]\nwater = [{}, {}]\nsolid = [{}, {}, {}, {}]\n",
+            water([0.0, 0.3], 0.5),
+            water([0.5, 0.8], level),
+            solid("bed", [4.0, 1.6, 0.2], [0.4, 0.4, -0.1]),
+            solid("right", [4.0, 0.3, 0.8], [0.4, -0.15, 0.4]),
+            solid("middle", [4.0, 0.2, 0.8], [0.4, 0.4, 0.4]),
+            solid("left", [4.0, 0.3, 0.8], [0.4, 0.95, 0.4])
+        )
+    };
+    let build = |text: &str| common::scene_simulation::<3>(text).map(|_| ());
+    build(&scene(0.5)).expect("one level");
+    let error = build(&scene(0.3)).expect_err("two levels").to_string();
+    assert!(error.contains("buffer of open boundary \"inflow\"") && error.contains("one level"), "{error}");
+}
