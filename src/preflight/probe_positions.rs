@@ -46,7 +46,8 @@ impl<const D: usize> PreflightContext<'_, D> {
     /// Adds findings about probes inside solids, outside all water and solids, or above the height that water can reach.
     pub(super) fn check_probes(&self, sound: &SoundSpeed, findings: &mut Vec<Finding>) {
         let solids = self.solids().iter().map(|s| world_bounds(&s.spec.shape, &s.kinematics.pose));
-        let all = &solids.fold(Bounds::around(self.system.fluid().r), |a, b| a.union(&b));
+        let water = Bounds::around(self.system.fluid().r).grown(0.5 * self.dp());
+        let all = &solids.fold(water, |a, b| a.union(&b));
         for probe in &self.plan.probes {
             let name = &probe.name;
             let frame_of =

@@ -612,3 +612,18 @@ fn gauges_on_faces_stand_in_no_solid() {
     has_no(&format!("{WATER}{TANK}{wall}{}", gauges(&[0.0, 0.3, 0.4, 2.0])), "probe_inside_solid");
     finding(&format!("{WATER}{TANK}{wall}{}", gauges(&[0.35])), "probe_inside_solid");
 }
+
+/// Water meets its image at a periodic side also where no solid reaches beyond the side.
+#[test]
+fn a_point_on_a_periodic_side_is_in_the_water() {
+    let scene = |place: &str| {
+        format!(
+            "dimension = 2\ndp = 0.02\nuntil = 1.0\ngravity = 0.0\nperiodic = {{ x = [0.0, 1.0], y = [0.0, 0.4] }}\n\
+             water = [{{ fill = {{ box = {{ min = [0.0, 0.0], max = [1.0, 0.4] }} }} }}]\nmodel = {{ c0 = 10.0 }}\n\
+             probe = [{{ pressure = {place} }}]\n"
+        )
+    };
+    has_no(&scene("[0.0, 0.2]"), "probe_outside");
+    has_no(&scene("[0.5, 0.4]"), "probe_outside");
+    finding(&scene("[1.2, 0.2]"), "probe_outside");
+}
