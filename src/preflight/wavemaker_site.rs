@@ -123,9 +123,13 @@ impl<const D: usize> PreflightContext<'_, D> {
         let water = self.system.fluid().r;
         let beside = |r: &&Vector<D>| stand.distance_ahead(r).is_some_and(|ahead| (-dp..reach).contains(&ahead));
         let lowest = |least: f64, r: &Vector<D>| least.min(r[D - 1]);
-        let rise = water.iter().filter(beside).fold(f64::INFINITY, lowest) - water.iter().fold(f64::INFINITY, lowest);
+        let bottom = water.iter().fold(f64::INFINITY, lowest);
+        let rise = water.iter().filter(beside).fold(f64::INFINITY, lowest) - bottom;
+        // A solid may fill the lowest part of the region of the water.
+        let filled = bottom - 0.5 * dp - (self.still_water.level - self.still_water.depth);
         let lower = self.still_water.level - stand.face[D - 1];
-        rise.is_finite().then_some(self.still_water.depth - lower - if rise > dp { rise } else { 0.0 })
+        let least = |rise: f64| if rise > dp { rise } else { 0.0 };
+        rise.is_finite().then_some(self.still_water.depth - lower - least(rise) - least(filled))
     }
 
     /// Adds findings about damping zones without water.

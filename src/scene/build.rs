@@ -1,7 +1,9 @@
 //! Builds a scene: opens the files that it names, makes shapes and poses, fills the water.
 
+mod open_water;
+
 use super::{
-    CurrentConfig, OpenBoundaryConfig, Scene,
+    CurrentConfig, Scene,
     afloat::{PlacedSolids, placed_solids},
     constraints::build_constraints,
     context::{Context, FileNote},
@@ -10,7 +12,6 @@ use super::{
         analysis::{CheckConfig, ProbeSeries},
         gravity,
         model::require_depth,
-        open_boundary::FaceFlow,
         shape::vector,
         solid::require_solid,
         water::{StillWaterLevel, WaterBody, WaterConfig, open_boxes},
@@ -24,13 +25,13 @@ use crate::{
         hollow::Enclosure,
         world_bounds,
     },
-    math::{Bounds, Pose, Vector, format::three_digits, in_dimension},
+    math::{Bounds, Pose, Vector, in_dimension},
     model::{Model, TimeScheme},
     plan::{ControlPlan, FramesPlan, Plan},
     ranks::{RankPart, Ranks},
-    simulation::{Driving, OpenBoundary, Setup, TowedFrame},
+    simulation::{Driving, Setup},
     solid::{Constraints, Role, SolidSpec, TimeFunction},
-    system::{Periodic, buffer_length, check_open_boundary, own_water::allow_division, periodic},
+    system::{Periodic, check_open_boundary, own_water::allow_division, periodic},
 };
 
 /// Largest number of particles of a process: they need about 100 GB of memory.
@@ -296,28 +297,6 @@ impl Scene {
         self.water.iter().enumerate().map(body).collect()
     }
 
-    /// Returns the key, the configuration and the sense of the flow of each open boundary.
-    fn open_faces(&self) -> impl Iterator<Item = (String, &OpenBoundaryConfig, FaceFlow)> {
-        let sections = [(&self.inflow, FaceFlow::In), (&self.outflow, FaceFlow::Out)];
-        sections.into_iter().flat_map(|(faces, flow)| {
-            faces.iter().enumerate().map(move |(i, face)| (format!("{}.{i}", flow.section()), face, flow))
-        })
-    }
-
-    /// Returns the open boundaries beside `water`, and the water of their buffers.
-    fn open_boundaries<const D: usize>(
-        &self,
-        ctx: &Context,
-        water: &[WaterBody<D>],
-        model: &Model,
-    ) -> Result<(Vec<OpenBoundary<D>>, Vec<WaterBody<D>>)> {
-        let length = buffer_length(model);
-        let build = |(key, face, flow): (String, &OpenBoundaryConfig, FaceFlow)| {
-            face.build(ctx, (&key, flow), water, (length, self.until))
-        };
-        Ok(self.open_faces().map(build).collect::<Result<Vec<_>>>()?.into_iter().unzip())
-    }
-
     /// Returns the plan of a run. The defaults of the scene must be filled in.
     fn resolved_plan(&self, ctx: &Context, still: &StillWaterLevel) -> Result<Plan> {
         let series = ProbeSeries { probes: &self.probe, names: &self.probe_names() };
@@ -379,7 +358,7 @@ impl<const D: usize> SceneParts<D> {
         let boxes = open_boxes(&water);
         let box_numbers = (0..water.len()).filter(|i| water[*i].inside.is_none()).collect();
         let first_buffer = water.len();
-        let (open_boundaries, buffers) = scene.open_boundaries(ctx, &water, &model)?;
+        let (mut open_boundaries, buffers) = open_water::open_boundaries(&scene, ctx, &water, &model)?;
         water.extend(buffers);
         let regions: Vec<WaterRegion<D>> =
             water.iter().map(|b| WaterRegion { shape: b.region.shape.clone(), pose: b.region.pose }).collect();
@@ -404,6 +383,8 @@ impl<const D: usize> SceneParts<D> {
             Filling { regions: &regions, inside, levels, solids: &solid_shapes, spaces: &spaces, ranks, owners };
         let Filled { water: mut filled, home, has_own_water } =
             filling.fill(scene.dp).map_err(|e| ctx.with_location(e, "water"))?;
+        let (bodies, buffers) = water.split_at(first_buffer);
+        open_water::set_depths_at_faces(&scene, ctx, &mut open_boundaries, (bodies, buffers, &filled.r), &model)?;
         let part = owners.part(filled.r.len());
         if part.count == 0 {
             return Err(no_water_error(ctx, &water, solids));
@@ -430,7 +411,9 @@ impl<const D: usize> SceneParts<D> {
             pressure.push(p);
         }
         if let Some(towed) = &driving.towed {
-            note_start_of_tow(ctx, towed, &velocity);
+            let moving =
+                velocity.iter().zip(&home).filter(|(_, home)| (**home as usize) < first_buffer).map(|(v, _)| v);
+            open_water::note_start_of_tow(ctx, towed, moving);
         }
         if let Some(part) = scene.jitter {
             jitter(&mut filled.r, part * scene.dp);
@@ -459,7 +442,7 @@ impl<const D: usize> SceneParts<D> {
             open_boundaries,
             driving,
         };
-        for (i, (key, _, _)) in scene.open_faces().enumerate() {
+        for (i, (key, _, _)) in open_water::open_faces(&scene).enumerate() {
             check_open_boundary(&setup, i, scene.until).map_err(|e| ctx.with_location(e, &key))?;
         }
         setup.apply_symmetry().map_err(|e| ctx.with_location(e, "symmetry"))?;
@@ -478,23 +461,6 @@ impl<const D: usize> SceneParts<D> {
             },
             file_notes: ctx.file_notes.take(),
         })
-    }
-}
-
-/// Adds a note if the water, with this `velocity` in the frame of the carriage, moves over the ground at the start.
-fn note_start_of_tow<const D: usize>(ctx: &Context, towed: &TowedFrame, velocity: &[Vector<D>]) {
-    let speed = towed.velocity.value_and_rate(0.0).0;
-    let mean = velocity.iter().map(|v| v[towed.axis]).sum::<f64>() / velocity.len().max(1) as f64;
-    if (mean + speed).abs() > 0.01 * speed.abs() {
-        // Without the sign of a zero.
-        let [carriage, water, ground, still] = [speed, mean, mean + speed, 0.0 - speed].map(three_digits);
-        let what = format!(
-            "the carriage starts at {carriage} m/s and the water at {water} m/s in its frame, which is {ground} m/s over the ground"
-        );
-        let mend = format!(
-            "water at rest over the ground has a [[water]] velocity of {still} along the way, or let the carriage start from rest"
-        );
-        ctx.add_note(FileNote::note("towed_start", what, mend));
     }
 }
 

@@ -282,12 +282,14 @@ impl OpenBoundaryConfig {
     }
 
     /// The face beside `water` in a run until the time `until` (s), and the buffer of length `length` (m) that is to be filled beyond it.
+    /// `bed` (m) is the height of the bed there; if it is not known, the water reaches down to the end of its region.
     pub(crate) fn build<const D: usize>(
         &self,
         ctx: &Context,
         (key, flow): (&str, FaceFlow),
         water: &[WaterBody<D>],
         (length, until): (f64, f64),
+        bed: Option<f64>,
     ) -> Result<(OpenBoundary<D>, WaterBody<D>)> {
         let Some((axis, at)) = self.place() else { return Err(ctx.error_at(key, "where is the face?")) };
         let along = ["x", "y"][axis];
@@ -336,7 +338,7 @@ impl OpenBoundaryConfig {
             (_, velocity) => OpenBoundary::outflow(name, axis, at, velocity),
         };
         let face = OpenBoundary { is_lower, factor: law(&self.factor, "factor")?, ..face };
-        let (g, depth) = (ctx.gravity_norm(), top - bounds.min[D - 1]);
+        let (g, depth) = (ctx.gravity_norm(), top - bed.unwrap_or(bounds.min[D - 1]));
         let middle = 0.5 * (bounds.min + bounds.max);
         let waves = self.wave.as_ref().map(|wave| {
             let current = face.steady_current().ok_or_else(|| {

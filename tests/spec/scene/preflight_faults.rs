@@ -613,6 +613,22 @@ fn gauges_on_faces_stand_in_no_solid() {
     finding(&format!("{WATER}{TANK}{wall}{}", gauges(&[0.35])), "probe_inside_solid");
 }
 
+/// The buffers beyond faces do not count as water at rest in the frame.
+#[test]
+fn water_at_rest_over_the_ground_passes_a_carriage_between_faces_without_a_note() {
+    let river = |speed: f64| {
+        format!(
+            "dimension = 2\ndp = 0.02\nuntil = 1.0\ntowed = {{ along = \"x\", velocity = 0.5 }}\n\
+             inflow = [{{ x = 2.0, velocity = 0.5 }}]\noutflow = [{{ x = 0.0, velocity = 0.5 }}]\n\
+             water = [{{ fill = {{ box = {{ min = [0.0, 0.0], max = [2.0, 0.3] }} }}, velocity = [{speed:?}, 0.0] }}]\n\
+             [[solid]]\nname = \"bed\"\nfixed = true\nshape = {{ box = {{ size = [5.0, 0.1] }} }}\nat = [1.0, -0.05]\n"
+        )
+    };
+    has_no(&river(-0.5), "towed_start");
+    let found = finding(&river(-0.4), "towed_start");
+    assert!(found.what.contains("the water at -0.4 m/s"), "{found:?}");
+}
+
 /// Water meets its image at a periodic side also where no solid reaches beyond the side.
 #[test]
 fn a_point_on_a_periodic_side_is_in_the_water() {
@@ -626,4 +642,23 @@ fn a_point_on_a_periodic_side_is_in_the_water() {
     has_no(&scene("[0.0, 0.2]"), "probe_outside");
     has_no(&scene("[0.5, 0.4]"), "probe_outside");
     finding(&scene("[1.2, 0.2]"), "probe_outside");
+}
+
+/// A solid fills the lowest part of the region of the water: its waves are made for the whole depth of the region, which is told.
+#[test]
+fn a_paddle_before_water_whose_region_reaches_into_the_bed_is_told_the_depth() {
+    let flume = |bottom: f64| {
+        format!(
+            "dimension = 2\ndp = 0.02\nuntil = 5.0\n\
+             water = [{{ fill = {{ box = {{ min = [0.0, {bottom:?}], max = [4.0, 0.3] }} }} }}]\n\
+             [[solid]]\nname = \"bed\"\nfixed = true\nshape = {{ box = {{ size = [6.0, 0.3] }} }}\nat = [2.0, -0.15]\n\
+             [[solid]]\nname = \"end\"\nfixed = true\nshape = {{ box = {{ size = [0.2, 0.6] }} }}\nat = [4.1, 0.3]\n\
+             [[solid]]\nname = \"p\"\nshape = {{ box = {{ size = [0.1, 0.6] }} }}\nat = {{ x = -0.05, bottom = 0.0 }}\n\
+             driven = {{ along = [1.0, 0.0], wave = {{ regular = {{ height = 0.05, period = 1.2 }} }} }}\n"
+        )
+    };
+    has_no(&flume(0.0), "wrong_depth");
+    let found = finding(&flume(-0.2), "wrong_depth");
+    assert!(found.mend.contains("wave.depth = 0.3"), "{found:?}");
+    assert!(find(&report(&flume(-0.2)), "lifted_paddle").is_none(), "the piston reaches the bed");
 }

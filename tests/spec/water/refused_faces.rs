@@ -196,3 +196,23 @@ fn channels_with_different_levels_at_one_face_are_refused() {
     let error = build(&scene(0.3)).expect_err("two levels").to_string();
     assert!(error.contains("buffer of open boundary \"inflow\"") && error.contains("one level"), "{error}");
 }
+
+/// Where a solid fills the lowest part of the region of the water, waves at a face are those of the depth above it.
+#[test]
+fn waves_at_a_face_have_the_depth_above_the_bed() {
+    let faces = "inflow = [{ x = 0.0, velocity = 0.4, wave = { regular = { height = 0.02, period = 1.2 } } }]\n\
+         outflow = [{ x = 4.0, velocity = 0.4 }]";
+    let scene = |bottom: &str| {
+        let text = channel(faces, false, 0.04).replace("min = [0.0, 0.0]", &format!("min = [0.0, {bottom}]"));
+        Scene::parse(&text, Path::new(""), &[]).expect("a readable scene")
+    };
+    let at_faces = |bottom: &str| {
+        let built = scene(bottom).build::<2>().expect("a sound scene");
+        let faces = &built.setup.open_boundaries;
+        let length = common::preflight_report(&scene(bottom)).face_waves[0].length_m;
+        [length, faces[0].absorbed_speed.expect("it absorbs"), faces[1].absorbed_speed.expect("it absorbs")]
+    };
+    for (above, below) in at_faces("0.0").into_iter().zip(at_faces("-0.2")) {
+        assert!((below / above - 1.0).abs() < 1e-9, "{below} instead of {above}");
+    }
+}
