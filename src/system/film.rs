@@ -518,7 +518,7 @@ pub(super) fn gap<const D: usize>(system: &System<D>, film: &Film<D>, particle: 
 }
 
 /// Velocity (m/s) of the point `x` (m) of `solid`.
-fn velocity_at<const D: usize>(solid: &Solid<D>, x: &Vector<D>) -> Vector<D> {
+pub(super) fn velocity_at<const D: usize>(solid: &Solid<D>, x: &Vector<D>) -> Vector<D> {
     let Kinematics { velocity, spin, centre, .. } = &solid.kinematics;
     velocity + spin.velocity_at(&(x - centre))
 }

@@ -7,8 +7,8 @@
 //!   u = s min(√(2 (p − |g| dp)), √(|g| dp)),
 //!
 //! with p the mean of what they press more, over ρ₀, and s the share of [`Gap::narrow`]. |g| dp is the pressure of one row, which
-//! rows of water near a face have more or less. Slower water receives this speed in a step; one half of the opposite impulse acts on
-//! each solid.
+//! rows of water near a face have more or less. Water that is slower relative to the mean of both faces receives this speed in a step;
+//! one half of the opposite impulse acts on each solid.
 
 use rayon::prelude::*;
 
@@ -97,7 +97,10 @@ fn pushes_of<const D: usize>(system: &System<D>, film: &Film<D>, speed: f64) -> 
             }
         });
         let Some((k, Place { gap, way: Some(way) })) = nearest.1.map(|k| (k, &places[k])) else { return Vec::new() };
-        let lack = speed * gap.narrow - water.v[i as usize].dot(way);
+        // The gap may move along: the speed is relative to the mean of both faces.
+        let [one, other] = [film.solid, film.other].map(|solid| &system.solids[solid]);
+        let along = (film::velocity_at(one, &gap.at[0]) + film::velocity_at(other, &gap.at[1])) * 0.5;
+        let lack = speed * gap.narrow - (water.v[i as usize] - along).dot(way);
         if lack <= 0.0 {
             return Vec::new();
         }

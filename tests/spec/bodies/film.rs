@@ -7,7 +7,7 @@ use pontoon::{
     solid::Dim,
 };
 
-use crate::common::{scene_simulation, time_mean};
+use crate::common::{run_to, scene_simulation, time_mean};
 
 const G: f64 = 9.81;
 
@@ -279,6 +279,43 @@ free = {{ density = {density} }}
         println!("{density} kg/m³: {force:.1} N/m of {exact:.1} N/m, {:.2} mm above the bed", 1e3 * height);
         assert!(height.abs() < 0.05 * 0.02, "{density} kg/m³: {height} m above the bed");
         assert!((force - exact).abs() < 0.02 * 1000.0 * G * 0.5 * 0.2, "{density} kg/m³: {force} N/m of {exact} N/m");
+    }
+    Ok(())
+}
+
+/// A slab sinks to the bed of a tank that moves steadily with its water as to that of a tank at rest.
+#[test]
+fn water_leaves_the_gap_under_a_body_in_a_moving_tank_as_at_rest() -> Result<()> {
+    let end = |speed: f64| -> Result<[f64; 3]> {
+        let text = format!(
+            r#"dimension = 2
+dp = 0.02
+until = 0.6
+[[water]]
+fill = {{ box = {{ min = [0.0, 0.0], max = [0.8, 0.24] }} }}
+velocity = [{speed:?}, 0.0]
+[[solid]]
+name = "tank"
+shape = {{ tank = {{ size = [0.8, 0.4] }} }}
+driven = {{ along = [1.0, 0.0], distance = {{ formula = "{speed:?}*t" }} }}
+[[solid]]
+name = "slab"
+shape = {{ box = {{ size = [0.4, 0.1] }} }}
+at = {{ x = 0.4, bottom = 0.02 }}
+free = {{ density = 2000.0, velocity = [{speed:?}, 0.0] }}
+"#
+        );
+        let mut sim = scene_simulation::<2>(&text)?;
+        run_to(&mut sim, 0.6)?;
+        let pose = sim.system().solids()[1].kinematics.pose;
+        Ok([pose.position[0] - 0.4 - 0.6 * speed, pose.position[1], pose.rotation_vector()[0].to_degrees()])
+    };
+    let still = end(0.0)?;
+    for speed in [0.5, -0.5] {
+        let moving = end(speed)?;
+        // A tenth of a dp, and the turn by which one end of the slab is as much higher.
+        let far = (moving[0] - still[0]).abs().max((moving[1] - still[1]).abs());
+        assert!(far < 0.002 && (moving[2] - still[2]).abs() < 0.3, "{moving:?} for {still:?} at {speed} m/s");
     }
     Ok(())
 }
