@@ -14,6 +14,9 @@ use crate::{
 /// Largest distance of water from the origin, in supports of the kernel: beyond, differences of coordinates are not exact.
 const FARTHEST: f64 = 1e8;
 
+/// Round-off of the sides and levels of bodies of water that join, over their size, –.
+const CLOSE: f64 = 1e-9;
+
 /// A body of water.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -237,8 +240,8 @@ pub(crate) fn level_at<const D: usize>(boxes: &[Bounds<D>], own: &Bounds<D>) -> 
     boxes.iter().filter(overlaps).map(|water| water.max[D - 1]).reduce(f64::max)
 }
 
-/// Returns the still water of the basin nearest to a solid in the box `own`: the water in `boxes` with the level of the nearest one,
-/// or of the highest of several as near. `None` without boxes.
+/// Returns the still water of the basin nearest to a solid in the box `own`: of the nearest of `boxes`, or the highest of several as
+/// near, and of those of its level that join it. `None` without boxes.
 pub(crate) fn basin<const D: usize>(boxes: &[Bounds<D>], own: &Bounds<D>) -> Option<StillWaterLevel> {
     let gap = |water: &Bounds<D>, axis: usize| {
         (water.min[axis] - own.max[axis]).max(own.min[axis] - water.max[axis]).max(0.0)
@@ -246,9 +249,21 @@ pub(crate) fn basin<const D: usize>(boxes: &[Bounds<D>], own: &Bounds<D>) -> Opt
     let away = |water: &Bounds<D>| (0..D - 1).map(|axis| gap(water, axis).powi(2)).sum::<f64>();
     let level = |water: &Bounds<D>| water.max[D - 1];
     let order = |a: &&Bounds<D>, b: &&Bounds<D>| away(a).total_cmp(&away(b)).then(level(b).total_cmp(&level(a)));
-    let level = level(boxes.iter().min_by(order)?);
-    let own = boxes.iter().filter(|water| water.max[D - 1] == level);
-    let bottom = own.map(|water| water.min[D - 1]).fold(f64::INFINITY, f64::min);
+    let nearest = boxes.iter().min_by(order)?;
+    let close = CLOSE * boxes.iter().map(|water| water.size().max()).fold(0.0, f64::max);
+    let meet = |a: &Bounds<D>, b: &Bounds<D>| {
+        (level(a) - level(b)).abs() <= close
+            && (0..D).all(|axis| a.min[axis] <= b.max[axis] + close && b.min[axis] <= a.max[axis] + close)
+    };
+    let (mut joined, mut apart): (Vec<&Bounds<D>>, Vec<_>) = (vec![nearest], boxes.iter().collect());
+    let mut next = 0;
+    while let Some(&last) = joined.get(next) {
+        let (more, rest) = apart.into_iter().partition(|water| meet(last, water));
+        (joined, apart) = ([joined, more].concat(), rest);
+        next += 1;
+    }
+    let level = level(nearest);
+    let bottom = joined.iter().map(|water| water.min[D - 1]).fold(f64::INFINITY, f64::min);
     Some(StillWaterLevel { level, depth: level - bottom })
 }
 

@@ -1,7 +1,8 @@
-//! Unit tests of `src/scene/section/water.rs`: the motion at the start.
+//! Unit tests of `src/scene/section/water.rs`: the motion at the start, and basins.
 
 use std::path::Path;
 
+use super::*;
 use crate::scene::Scene;
 
 /// The message of the build of a pool 1 m deep with this key of its water, empty without an error.
@@ -26,4 +27,24 @@ fn a_velocity_without_a_value_or_beyond_sound_is_refused_with_its_key_and_place(
     assert!(found.contains("31.3 m/s") && found.contains("model.c0"), "{found}");
     assert!(message("pressure = \"1/(x-0.025)\"").contains("pressure"));
     assert_eq!(message("velocity = [\"0.4*x\", \"-0.4*y\"]"), "");
+}
+
+/// Two basins with the same level, of which the first has a step in its bed and a fill beside it that is higher by round-off.
+#[test]
+fn a_basin_has_the_depth_of_its_own_water() {
+    let water = |[x, bed]: [f64; 2], [end, level]: [f64; 2]| Bounds {
+        min: Vector::from([x, bed]),
+        max: Vector::from([end, level]),
+    };
+    let boxes = [
+        water([0.0, 0.1], [2.0, 0.3]),
+        water([2.0, 0.0], [4.0, 0.1 + 0.2]),
+        water([6.0, -0.5], [8.0, 0.3]),
+        water([8.0, -0.9], [9.0, 0.2]),
+    ];
+    let depth_at = |x: f64| basin(&boxes, &water([x, 0.0], [x + 0.1, 1.0])).unwrap().depth;
+    // A wet bed beside lower or separate water has no part in it.
+    for (x, depth) in [(0.5, 0.3), (3.0, 0.3), (4.5, 0.3), (5.8, 0.8), (7.0, 0.8), (8.5, 1.1)] {
+        assert!((depth_at(x) - depth).abs() < 1e-12, "{} m for {depth} m at {x} m", depth_at(x));
+    }
 }
