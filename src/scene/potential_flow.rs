@@ -8,12 +8,17 @@ use std::{
 
 use serde::Serialize;
 
-use super::{Scene, build::SceneParts};
+use super::{
+    Scene,
+    build::SceneParts,
+    section::water::{StillWaterLevel, basin, open_boxes},
+};
 use crate::{
     error::{Error, ErrorCode, ErrorKind, Result, nearest_name},
     geometry::{
         hollow::{Hollow, Place},
         panels::{panel_area, panel_volume, wetted_panels},
+        world_bounds,
     },
     math::Vector,
     output::{gdf::gdf_text, write_atomically},
@@ -22,6 +27,9 @@ use crate::{
 
 /// Size of the panels that measure the wetted area, over the largest size of a solid.
 const COARSE: f64 = 0.1;
+
+/// Round-off of levels and depths of the same water, over the depth, –.
+const SAME: f64 = 1e-9;
 
 /// A scene as a solver of potential flow needs it. The origin of its frame is that of the scene, at the still water; the last
 /// axis is vertical.
@@ -40,8 +48,8 @@ impl PanelledScene {
     /// about `panel_count` panels each. No particles are created.
     ///
     /// # Errors
-    /// `Usage` if the scene is 2-D, gravity is not constant downwards, or a solid does not exist or does not reach into the
-    /// water; those of [`Scene::build`].
+    /// `Usage` if the scene is 2-D, gravity is not constant downwards, a solid does not exist or does not reach into the
+    /// water, or the solids are in water of different levels or depths; those of [`Scene::build`].
     pub fn new(scene: &Scene, names: &[String], panel_count: usize) -> Result<Self> {
         if scene.dimension != 3 {
             let what = "the scene is 2-D, and a panel method computes 3-D bodies";
@@ -55,8 +63,8 @@ impl PanelledScene {
         let parts = scene.parts::<3>(1)?;
         let gravity = parts.gravity()?;
         let chosen = chosen_solids(&parts, names)?;
+        let (density_kg_m3, still) = (parts.model.rho0, parts.still_water_of(&chosen)?);
         let bodies = chosen.into_iter().map(|i| parts.panelled_body(i, gravity, panel_count)).collect();
-        let (density_kg_m3, still) = (parts.model.rho0, parts.still);
         let water = WaterForPanels { density_kg_m3, depth_m: still.depth, gravity_m_s2: gravity, level_m: still.level };
         Ok(Self { title: parts.scene.title.clone().unwrap_or_default(), water, bodies })
     }
@@ -189,14 +197,33 @@ impl SceneParts<3> {
         }
     }
 
+    /// Returns the still water of the basin of solid number `i`.
+    fn still_water_around(&self, i: usize) -> StillWaterLevel {
+        let spec = &self.placed.specs[i];
+        basin(&open_boxes(&self.water), &world_bounds(&spec.shape, &spec.pose)).unwrap_or(self.still)
+    }
+
+    /// Returns the still water of the basin of all these solids, at least one.
+    fn still_water_of(&self, chosen: &[usize]) -> Result<StillWaterLevel> {
+        let first = self.still_water_around(chosen[0]);
+        let is_other = |i: &usize| {
+            let own = self.still_water_around(*i);
+            (own.level - first.level).abs().max((own.depth - first.depth).abs()) > SAME * first.depth
+        };
+        let Some(other) = chosen.iter().copied().find(is_other) else { return Ok(first) };
+        let [first, other] = [chosen[0], other].map(|i| &self.placed.specs[i].name);
+        let what = format!("{first:?} and {other:?} are in water of different levels or depths");
+        Err(usage(what, format!("name the solids of one basin, as  --solid {first}")))
+    }
+
     /// Returns the volume (m³) of the water that solid number `i` displaces, and its centroid.
     fn displaced(&self, i: usize) -> (f64, Vector<3>) {
-        let (pose, level) = (&self.placed.specs[i].pose, self.still.level);
+        let (pose, level) = (&self.placed.specs[i].pose, self.still_water_around(i).level);
         self.placed.hull_at(i, pose, level, &self.water).submerged_volume(pose, level)
     }
 
     fn panelled_body(&self, i: usize, gravity: f64, panel_count: usize) -> PanelledBody {
-        let (spec, level): (&SolidSpec<3>, f64) = (&self.placed.specs[i], self.still.level);
+        let (spec, level): (&SolidSpec<3>, f64) = (&self.placed.specs[i], self.still_water_around(i).level);
         let (shape, pose) = (&spec.shape, &spec.pose);
         let hull = self.placed.hull_at(i, pose, level, &self.water).with_own_water_at(pose);
         let enclosed = self.model.rho0 * hull.enclosed_volume(pose);
