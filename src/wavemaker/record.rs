@@ -14,7 +14,7 @@ const LEFT_OUT: f64 = 0.005;
 /// Returns the components η = a cos(ω t + φ) of `series` (m over s).
 ///
 /// # Errors
-/// `Scene` if the series has fewer than eight samples or is constant.
+/// `Scene` if the series has fewer than eight samples, is constant, or is so long that its waves have too many frequencies.
 pub(super) fn fourier_components(series: &TimeSeries) -> Result<Vec<WaveComponent>> {
     let count = series.times().len();
     if count < 8 {
@@ -35,17 +35,28 @@ pub(super) fn fourier_components(series: &TimeSeries) -> Result<Vec<WaveComponen
         let amplitude = 2.0 * cosine.hypot(sine) / many as f64;
         WaveComponent { amplitude, omega, phase: -sine.atan2(cosine) - omega * first }
     };
-    let most = ((many - 1) / 2).min(COMPONENTS_MAX);
-    let parts: Vec<WaveComponent> = (1..=most).map(part).collect();
-    let energy: f64 = parts.iter().map(|c| c.amplitude.powi(2)).sum();
+    // By Parseval's theorem, without the highest frequency of an even number of samples, whose phase is not known.
+    let sign = |i: usize| if i.is_multiple_of(2) { 1.0 } else { -1.0 };
+    let highest: f64 = samples.iter().enumerate().map(|(i, x)| sign(i) * (x - mean)).sum::<f64>() / many as f64;
+    let highest = if many.is_multiple_of(2) { highest } else { 0.0 };
+    let variance = samples.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / many as f64;
+    let energy = 2.0 * (variance - highest * highest);
     if energy.is_nan() || energy <= 0.0 {
         return Err(Error::scene("nothing moves in this record"));
     }
-    let mut below = 0.0;
-    let within = |c: &WaveComponent| {
-        let before = below;
-        below += c.amplitude.powi(2) / energy;
-        below > LEFT_OUT && before < 1.0 - LEFT_OUT
-    };
-    Ok(parts.into_iter().filter(within).collect())
+    let (mut below, mut kept) = (0.0, Vec::new());
+    for component in (1..=(many - 1) / 2).map(part) {
+        if below >= 1.0 - LEFT_OUT {
+            break;
+        }
+        below += component.amplitude.powi(2) / energy;
+        if below > LEFT_OUT {
+            kept.push(component);
+        }
+        if kept.len() > COMPONENTS_MAX {
+            let what = format!("the waves of this record of {span} s have more than {COMPONENTS_MAX} frequencies");
+            return Err(Error::scene(what).help("a shorter record has fewer: keep the part that the run needs"));
+        }
+    }
+    Ok(kept)
 }

@@ -218,6 +218,30 @@ fn a_wave_from_a_record_reproduces_the_recorded_elevation() {
     assert_eq!(wave.coordinate_and_rate(25.1), (0.0, 0.0), "the record ends at 22 s and has a delay of 3 s");
 }
 
+/// Of 3000 s, the first 2000 frequencies end at 0.67 Hz.
+#[test]
+fn a_wave_from_a_long_record_keeps_its_short_waves_or_is_refused() {
+    let maker = maker(0.4, Paddle::Piston);
+    let record = |eta: &dyn Fn(f64) -> f64| {
+        let times: Vec<f64> = (0..=15_000).map(|i| 0.2 * f64::from(i)).collect();
+        let values: Vec<f64> = times.iter().map(|t| eta(*t)).collect();
+        maker.measured(&TimeSeries::new(times, values).unwrap(), 0.0, 0.0)
+    };
+    let eta = |t: f64| 0.02 * (TAU * t / 1.25 + 0.3).sin() + 0.01 * (TAU * t / 0.8).cos();
+    let wave = record(&eta).unwrap();
+    for t in [4.0, 700.2, 1500.8, 2900.0] {
+        let reproduced = wave.elevation(0.0, t).unwrap();
+        assert!((reproduced - eta(t)).abs() < 1e-4, "{t}: {reproduced} against {}", eta(t));
+    }
+    // A sweep from 0.2 Hz to 1.8 Hz has 4800 frequencies.
+    let sweep = |t: f64| 0.02 * (TAU * t * (0.2 + 1.6 * t / 6000.0)).sin();
+    let message = record(&sweep).unwrap_err().to_string();
+    assert!(
+        message.contains("3000 s have more than 2000 frequencies") && message.contains("keep the part"),
+        "{message}"
+    );
+}
+
 #[test]
 fn breaking_and_invalid_waves_are_refused_with_the_possible_height() {
     let piston = maker(0.4, Paddle::Piston);
