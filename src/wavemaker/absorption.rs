@@ -38,7 +38,7 @@ const MODES: usize = 30;
 /// Largest kδ: beyond, the gauge is too far from the face to absorb the wave.
 const FARTHEST: f64 = 1.0;
 
-/// Number of periods of the own motion that the code samples for the stroke, and samples per period.
+/// Least number of periods of the own motion that the code samples for the stroke, and samples per period.
 const PERIODS: u32 = 100;
 const SAMPLES: u32 = 40;
 
@@ -295,7 +295,12 @@ fn allowed_motion(
 /// Returns twice the largest displacement (m) of the paddle's own motion, and its largest speed, m/s.
 fn extent(wave: &PaddleMotion, train: &LinearWave) -> (f64, f64) {
     let step = train.period() / f64::from(SAMPLES);
-    let motion = (0..PERIODS * SAMPLES).map(|i| wave.displacement(f64::from(i) * step));
+    let first = f64::from(PERIODS) * train.period();
+    // The paddle moves most for the crest of a group, and a record has an end: both may come later.
+    let group = wave.facts.focus.map_or(0.0, |(_, time)| time + 2.0 * wave.peak(train.g).period());
+    let [from, until] = if wave.end.is_finite() { [first, wave.end] } else { [first.max(group - first), group] };
+    let later = (0..((until - from) / step).ceil() as u64).map(|i| from + i as f64 * step);
+    let motion = (0..PERIODS * SAMPLES).map(|i| f64::from(i) * step).chain(later).map(|t| wave.displacement(t));
     motion.fold((0.0, 0.0), |most, (x, v)| (most.0.max(2.0 * x.abs()), most.1.max(v.abs())))
 }
 

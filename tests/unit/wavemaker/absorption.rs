@@ -3,9 +3,13 @@
 use std::f64::consts::TAU;
 
 use super::{
-    super::tests::{G, all, maker},
+    super::{
+        WaveSpectrum,
+        tests::{G, all, maker},
+    },
     *,
 };
+use crate::math::time_series::TimeSeries;
 
 /// A paddle in 0.4 m of water without a wave of its own that absorbs waves of `period` (s), with its gauge at least 0.04 m before it.
 fn absorber(paddle: Paddle, period: f64) -> Absorber {
@@ -92,4 +96,30 @@ fn an_absorbing_paddle_does_not_react_to_its_own_wave() {
     let mut own = Absorber::new(&maker(0.4, Paddle::Piston), &wave, &tuning).unwrap();
     own.own[0].staying = 0.0;
     assert!((own.wanted(&wave, 1.2, 7.0) - wave.elevation(1.2, 7.0).unwrap()).abs() < 1e-12);
+}
+
+/// A group and a record whose largest waves come after 300 periods have the limits of the same waves after 30 periods.
+#[test]
+fn a_late_crest_has_the_room_of_an_early_one() {
+    let maker = maker(0.4, Paddle::Piston);
+    let tuning = AbsorptionSettings {
+        period: Some(1.2),
+        gauge_distance: 0.04,
+        water_level: 0.4,
+        max_stroke: None,
+        max_speed: None,
+    };
+    let limits = |wave: &PaddleMotion| Absorber::new(&maker, wave, &tuning).unwrap().motion_limits();
+    let group = |time: f64| maker.focused(0.05, &WaveSpectrum::jonswap(1.2, 3.3), 4.0, time, 100).unwrap();
+    let record = |time: f64| {
+        let times: Vec<f64> = (0..=4000).map(|i| 0.1 * f64::from(i)).collect();
+        let eta = |t: f64| 0.02 * (-((t - time) / 10.0).powi(2)).exp() * (TAU * t / 1.25).sin();
+        let values: Vec<f64> = times.iter().map(|t| eta(*t)).collect();
+        maker.measured(&TimeSeries::new(times, values).unwrap(), 0.0, 0.0).unwrap()
+    };
+    for (early, late) in [(group(36.0), group(360.0)), (record(40.0), record(340.0))] {
+        let (early, late) = (limits(&early), limits(&late));
+        // Forty samples in a period catch a crest to 1 − cos(π/40), 0.3 %; the components of a late group have other round-off.
+        assert!((late.0 / early.0 - 1.0).abs() < 0.01 && (late.1 / early.1 - 1.0).abs() < 0.01, "{late:?} {early:?}");
+    }
 }
