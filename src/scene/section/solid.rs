@@ -556,7 +556,7 @@ pub(crate) fn require_solid(ctx: &Context, solids: &[SolidConfig], key: &str, na
 /// Refuses a free body under gravity that is small and weighs less than half a water particle: it would ride on single particles.
 fn verify_weight<const D: usize>(ctx: &Context, key: &str, spec: &SolidSpec<D>) -> Result<()> {
     let (rho0, heavy) = (ctx.rho0.unwrap_or_default(), ctx.has_gravity());
-    let Role::Free(body) = &spec.role else { return Ok(()) };
+    let Some(body) = spec.initial_body() else { return Ok(()) };
     let least = 0.5 * rho0 * ctx.dp.powi(D as i32);
     let small = spec.shape.bounds_at(&Pose::identity()).size().max() < SMALL * ctx.dp;
     if !heavy || !small || body.mass >= least {
@@ -576,7 +576,7 @@ fn verify_weight<const D: usize>(ctx: &Context, key: &str, spec: &SolidSpec<D>) 
 /// Refuses a light free plate with a single row of boundary particles, which cannot have the pressures of both sides.
 fn verify_thickness<const D: usize>(ctx: &Context, key: &str, spec: &SolidSpec<D>) -> Result<()> {
     let (rho0, heavy) = (ctx.rho0.unwrap_or_default(), ctx.has_gravity());
-    let Role::Free(body) = &spec.role else { return Ok(()) };
+    let Some(body) = spec.initial_body() else { return Ok(()) };
     let thickness = spec.shape.bounds_at(&Pose::identity()).size().min();
     let density = body.mass / (rho0 * spec.shape.volume_properties().volume);
     if !heavy || thickness >= THIN * ctx.dp || density >= THIN_DENSITY {

@@ -266,3 +266,20 @@ fn ballast_by_number_formula_and_table_is_the_same_and_what_cannot_be_is_refused
         assert!(message.contains(what), "{ballast}: {message}");
     }
 }
+
+/// A case of 1.5 kg/m with 6 kg/m in it is no light plate, and one of 0.1 kg/m with 0.7 kg/m weighs two particles.
+#[test]
+fn ballast_counts_in_the_weight_of_thin_and_small_bodies() -> Result<()> {
+    let body = |size: &str, mass: f64, ballast: &str| {
+        let free = format!("free = {{ mass = {mass:?}, ballast = [{ballast}] }}");
+        let shape = format!("shape = {{ box = {{ size = {size} }} }}\nat = {{ x = 0.5, draft = \"equilibrium\" }}\n");
+        scene_simulation::<2>(&BASIN.replace("BODY", &(shape + &free)).replace("dp = 0.01", "dp = 0.02"))
+    };
+    let inside = |mass: f64| format!("{{ at = [0.0, 0.0], mass = {mass:?} }}");
+    for (size, mass, ballast) in [("[0.5, 0.026]", 1.5, 6.0), ("[0.04, 0.04]", 0.1, 0.7)] {
+        assert!(body(size, mass, "").is_err(), "{size}");
+        body(size, mass, &inside(ballast))?;
+        body(size, mass + ballast, "")?;
+    }
+    Ok(())
+}
