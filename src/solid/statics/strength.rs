@@ -61,7 +61,7 @@ impl<const D: usize> StaticSystem<'_, D> {
         let lifted = |j: usize, at: &Vector<D>| at + self.raised(j);
         for j in own.iter().copied() {
             let (body, pose) = (&self.bodies[j], self.pose(j));
-            let (volume, centroid) = body.hull.submerged_volume(&pose, self.water.level);
+            let (volume, centroid) = body.hull.submerged_volume(&pose, body.level);
             add(pose.point(&body.body.centre), up::<D>() * (-self.water.g * body.body.mass));
             add(centroid, up::<D>() * (self.water.g * self.water.rho0 * volume));
             for line in &self.lines {

@@ -104,6 +104,18 @@ fn a_fixed_joint_that_breaks_by_the_torque_at_rest_is_told() {
 }
 
 #[test]
+fn the_torque_of_a_joint_at_rest_is_that_of_the_water_around_its_bodies() {
+    // Two bodies afloat at their own drafts load the joint between them by nothing, also with higher water in another tank.
+    let boxes =
+        [("a", 0.8), ("b", 1.2)].map(|(name, x)| body(name, [0.2, 0.2], 500.0, &format!("x = {x}, y = 0.6"))).concat();
+    let water = WATER.replace("} } }]", "} } }, { fill = { box = { min = [3.0, 0.0], max = [3.4, 1.0] } } }]");
+    let other =
+        "[[solid]]\nname = \"other\"\nfixed = true\nshape = { tank = { size = [0.4, 1.4] } }\nat = [3.0, 0.0]\n";
+    let joint = "[[joint]]\nname = \"j\"\nkind = \"fixed\"\nbetween = [\"a\", \"b\"]\nat = [1.0, 0.6]\nbreaks = { torque = 5.0 }\n";
+    has_no(&format!("{water}{TANK}{boxes}{other}{joint}"), "breaks_at_rest");
+}
+
+#[test]
 fn water_without_walls_on_a_side_or_above_them_is_a_warning() {
     let tank = |height: f64| TANK.replace("1.0]", &format!("{height:?}]"));
     let side = "[[solid]]\nname = \"t\"\nfixed = true\nshape = { polyline = [[0.0, 1.0], [0.0, 0.0], [2.0, 0.0]] }\n";
