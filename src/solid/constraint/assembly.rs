@@ -158,7 +158,8 @@ impl<const D: usize> Assembly<D> {
         let joints: Vec<Joint<D>> = links.joints.iter().map(|joint| Joint::new(joint.clone(), &start)).collect();
         let start_reading = |joint: &Joint<D>| {
             let ends = joint.end_kinematics(&start);
-            JointReading { rate: joint.coordinate_jacobian(&ends).map_or(0.0, |row| row.rate(&ends)), ..none }
+            let rate = joint.coordinate_jacobian(&ends).map_or(0.0, |row| row.rate(&ends));
+            JointReading { position: joint.spec.coordinate_at_start(&start), rate, ..none }
         };
         let springs: Vec<Spring<D>> = links.springs.iter().map(attached_spring).collect();
         Self {
