@@ -186,7 +186,7 @@ fn equilibrium_rises<const D: usize>(
     let specs: Vec<&SolidSpec<D>> = placed.specs.iter().collect();
     let afloat: Vec<bool> = scene.solid.iter().map(SolidConfig::is_afloat).collect();
     let bottom = level - pool.still.depth;
-    let g = ctx.gravity_norm();
+    let g = ctx.initial_gravity_norm();
     let mut pulls = vec![Vector::zeros(); specs.len()];
     let lines = (&constraints.moorings[..], &constraints.mooring_points[..]);
     let at_rest = forces_at_rest(lines, &specs, &WaterAtRest { rho0, g, level });

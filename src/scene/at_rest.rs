@@ -201,7 +201,7 @@ impl<const D: usize> RestState<'_, D> {
         let bodies: Vec<Option<FreeBody<D>>> = specs.iter().map(|spec| spec.initial_body()).collect();
         let water = WaterAtRest {
             rho0: self.ctx.rho0.unwrap_or_default(),
-            g: self.ctx.gravity_norm(),
+            g: self.ctx.initial_gravity_norm(),
             level: self.pool.still.level,
         };
         let body = |(i, body)| self.static_body(placed, i, (body, &poses[i]), (&specs, poses));

@@ -5,7 +5,7 @@ use std::{cell::RefCell, collections::BTreeMap, path::Path};
 
 use super::{
     diagnostics,
-    section::gravity::GravityValues,
+    section::gravity::{self, GravityValues},
     toml_source::{SceneSource, ValueSource},
 };
 use crate::error::{Error, ErrorCode, Result};
@@ -97,6 +97,12 @@ impl Context<'_> {
     /// Returns `|g|`, m/s², or its largest value during the run if gravity changes.
     pub(crate) fn gravity_norm(&self) -> f64 {
         self.gravity.as_ref().map_or(0.0, |gravity| gravity.strongest)
+    }
+
+    /// Returns `|g|` at the start, m/s², or its largest value during the run if it is 0 at the start.
+    pub(crate) fn initial_gravity_norm(&self) -> f64 {
+        let initial = self.gravity.as_ref().map_or(0.0, |gravity| gravity::norm(gravity.initial.iter().copied()));
+        if initial > 0.0 { initial } else { self.gravity_norm() }
     }
 
     /// Returns `error` with the location of `key` in the scene.

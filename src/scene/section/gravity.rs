@@ -113,6 +113,6 @@ fn components(config: &TimeVectorConfig, dimension: usize) -> Vec<TimeValueConfi
 }
 
 /// The magnitude of a vector.
-fn norm(components: impl Iterator<Item = f64>) -> f64 {
+pub(crate) fn norm(components: impl Iterator<Item = f64>) -> f64 {
     components.map(|g| g * g).sum::<f64>().sqrt()
 }

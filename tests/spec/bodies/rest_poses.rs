@@ -146,6 +146,20 @@ fn a_buoy_under_a_short_rope_starts_with_the_rope_taut_and_its_tension_is_the_ex
 }
 
 #[test]
+fn a_steady_load_sinks_a_body_by_its_part_of_the_gravity_at_the_start() {
+    let barge = barge("barge", [0.3, 0.2], 1.2, "density = 500.0, locked = [\"turn\"]", "");
+    let load = "[[force]]\nname = \"load\"\non = \"barge\"\nforce = [0.0, -98.1]\n";
+    for gravity in ["-9.81", "\"-9.81*(1+0.5*sin(2*pi*t))\"", "\"-4.905*(2-cos(2*pi*t))\""] {
+        let text = format!("gravity = [0.0, {gravity}]\n{}", flat(&format!("{barge}{load}")));
+        // 30 kg/m and a load of 10 kg/m, or 20 kg/m at half of the gravity, on 300 kg/m².
+        let borne = if gravity.contains("4.905") { 20.0 } else { 10.0 };
+        let exact = 0.4 - (30.0 + borne) / 300.0 + 0.1;
+        let found = placed::<2>(&text)[1].pose.position[1];
+        assert!((found - exact).abs() < 1e-9, "{found} m for {exact} m with {gravity}");
+    }
+}
+
+#[test]
 fn a_taut_spring_to_the_bed_sinks_a_buoy_and_turns_it_if_it_pulls_beside_its_middle() {
     let free = "density = 300.0, centre_offset = [0.0, -0.04]";
     for aside in [0.0, 0.03] {
