@@ -194,7 +194,8 @@ impl<const D: usize> PreflightContext<'_, D> {
             let [start, _] = hull.extent(&pose);
             // Under a body without water and ties, which falls, the ground is not known.
             let falls = self.level_around(i).is_none() && constraints.constraint_on(i, 0.0).is_none();
-            let bottom = if lies[i] || falls { start } else { start.min(level - self.still_water.depth) };
+            let bed = self.basin(&world_bounds(&solid.spec.shape, &pose)).bottom();
+            let bottom = if lies[i] || falls { start } else { start.min(bed) };
             let level = self.level_around(i).unwrap_or(NO_WATER);
             Some(StaticBody { solid: i, hull, body, pose, bottom, level })
         };

@@ -303,7 +303,7 @@ impl<const D: usize> PreflightContext<'_, D> {
         self.level_around(i).unwrap_or(self.still_water.level)
     }
 
-    /// Returns the still water of the basin of a paddle in the box `own`.
+    /// Returns the still water of the basin nearest to a solid in the box `own`.
     fn basin(&self, own: &Bounds<D>) -> StillWaterLevel {
         basin(&self.open_water, own).unwrap_or(self.still_water)
     }

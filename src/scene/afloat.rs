@@ -185,7 +185,6 @@ fn equilibrium_rises<const D: usize>(
     let (rho0, level) = (ctx.rho0.unwrap_or_default(), pool.still.level);
     let specs: Vec<&SolidSpec<D>> = placed.specs.iter().collect();
     let afloat: Vec<bool> = scene.solid.iter().map(SolidConfig::is_afloat).collect();
-    let bottom = level - pool.still.depth;
     let g = ctx.initial_gravity_norm();
     let mut pulls = vec![Vector::zeros(); specs.len()];
     let lines = (&constraints.moorings[..], &constraints.mooring_points[..]);
@@ -198,7 +197,10 @@ fn equilibrium_rises<const D: usize>(
         specs: &specs,
         afloat: &afloat,
         displaced: &|i| if sheltered[i] { 0.0 } else { placed.displaced_mass(i, rho0, water) },
-        above_bottom: &|i| world_bounds(&specs[i].shape, &specs[i].pose).min[D - 1] - bottom - 0.5 * scene.dp,
+        above_bottom: &|i| {
+            let own = world_bounds(&specs[i].shape, &specs[i].pose);
+            own.min[D - 1] - pool.basin(&own).bottom() - 0.5 * scene.dp
+        },
         moored: &|i| pulls[i],
         g,
     };

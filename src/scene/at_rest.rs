@@ -250,7 +250,8 @@ impl<const D: usize> RestState<'_, D> {
             // A deck moves along.
             !self.decks.contains(&[i, j]) && !self.decks.contains(&[j, i])
         });
-        let bottom = if is_borne { low } else { low.min(self.pool.still.level - self.pool.still.depth) };
+        let bed = self.pool.basin(&world_bounds(&placed.specs[i].shape, pose)).bottom();
+        let bottom = if is_borne { low } else { low.min(bed) };
         StaticBody { solid: i, hull, body, pose: *pose, bottom, level }
     }
 

@@ -214,6 +214,11 @@ pub struct StillWaterLevel {
 }
 
 impl StillWaterLevel {
+    /// Height (m) of the lowest point of the water.
+    pub(crate) fn bottom(&self) -> f64 {
+        self.level - self.depth
+    }
+
     /// The still water of all bodies of water outside solids, or of all bodies if there are none outside.
     pub(crate) fn of<const D: usize>(water: &[WaterBody<D>]) -> Self {
         let level = outside_solids(water).map(|body| body.level).fold(f64::NEG_INFINITY, f64::max);

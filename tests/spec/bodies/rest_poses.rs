@@ -145,6 +145,31 @@ fn a_buoy_under_a_short_rope_starts_with_the_rope_taut_and_its_tension_is_the_ex
     assert!((slack.pose.position[1] - 0.44).abs() < 1e-12 && tilt(slack) == 0.0, "{}", slack.pose.position);
 }
 
+/// The same water 1 m deeper, in another tank on the left.
+const DEEPER: &str = "[[water]]\nfill = { box = { min = [-1.0, -1.0], max = [-0.5, 0.4] } }\n\
+     [[solid]]\nname = \"deep\"\nfixed = true\nshape = { tank = { size = [0.5, 1.8] } }\nat = [-1.0, -1.0]\n";
+
+#[test]
+fn the_bed_under_a_body_is_that_of_its_own_basin() {
+    // A weight on the bed, on a rope with 0.1 m of slack from a barge above it.
+    let weight = "[[solid]]\nname = \"weight\"\nshape = { box = { size = [0.1, 0.06] } }\nat = { x = 1.2, bottom = 0.01 }\n\
+                  free = { density = 2000.0 }\n\
+                  [[rope]]\nname = \"line\"\nbetween = [\"barge\", \"weight\"]\nfrom = [1.2, 0.4]\nto = [1.2, 0.07]\nlength = 0.43\n";
+    let barge = barge("barge", [0.3, 0.2], 1.2, "density = 300.0", ", angle_deg = 0.0");
+    let start = |more: &str| {
+        let text = flat(&format!("{barge}{weight}{more}"));
+        let body = placed::<2>(&text).iter().find(|solid| solid.name == "barge").unwrap().pose.position[1];
+        (body, inspected(&text))
+    };
+    let [(alone, one), (beside, two)] = [start(""), start(DEEPER)];
+    // Free, it floats 0.06 m deep.
+    assert!((alone - 0.44).abs() < 1e-9 && (beside - 0.44).abs() < 1e-9, "{alone} m, {beside} m");
+    let told = |report: &Preflight| report.findings.iter().map(|own| own.what.clone()).collect::<Vec<_>>();
+    assert_eq!(told(&one), told(&two));
+    let rest = |report: &Preflight| report.bodies[0].afloat.as_ref().unwrap().heave_s;
+    assert_eq!(rest(&one), rest(&two));
+}
+
 #[test]
 fn a_steady_load_sinks_a_body_by_its_part_of_the_gravity_at_the_start() {
     let barge = barge("barge", [0.3, 0.2], 1.2, "density = 500.0, locked = [\"turn\"]", "");
