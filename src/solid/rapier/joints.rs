@@ -167,7 +167,7 @@ impl RapierJoints {
         let at_start: Vec<_> = bodies.iter().map(|&body| kinematics_of(&world.bodies[body])).collect();
         let loaded = |(i, now): (usize, &Kinematics<D>)| {
             if let Some(to) = driven[i] {
-                return Kinematics { velocity: (to.centre - now.centre) / dt, spin: to.spin, ..*now };
+                return moved_towards(now, &to, dt);
             }
             let body = &world.bodies[bodies[i]];
             let (ease, load) = (mobility_of(body), load_on(world.gravity, body));
@@ -216,7 +216,7 @@ impl RapierJoints {
         }
         let motion = |(body, target): (&RigidBodyHandle, &Option<Kinematics<D>>)| {
             let now = kinematics_of(&world.bodies[*body]);
-            target.map_or(now, |to| Kinematics { velocity: (to.centre - now.centre) / dt, spin: to.spin, ..now })
+            target.map_or(now, |to| moved_towards(&now, &to, dt))
         };
         let solids: Vec<_> = bodies.iter().zip(driven).map(motion).collect();
         let loads: Vec<Load<D>> = bodies.iter().map(|body| load_on(world.gravity, &world.bodies[*body])).collect();
@@ -355,6 +355,12 @@ fn give(
     for (load, &body) in loads.iter().zip(bodies) {
         let body = &mut world.bodies[body];
         if body.is_dynamic() {
+/// Returns the motion in a step of `dt` (s) of a driven solid from the kinematics `now` of its body to those at the end. These may have
+/// another centre, the hinge; that of its body is the origin of its frame.
+fn moved_towards(now: &Kinematics<D>, to: &Kinematics<D>, dt: f64) -> Kinematics<D> {
+    Kinematics { velocity: (to.pose.position - now.pose.position) / dt, spin: to.spin, ..*now }
+}
+
             act(body, load);
         }
     }
