@@ -31,6 +31,8 @@ pub(in crate::solid) struct SeriesRow<const D: usize> {
     pub(in crate::solid) mobility: [Mobility<D>; 2],
     /// Rate at which a rope reaches its limit at the end of the step, m/s; `None` for a lock, whose rate is 0.
     pub(in crate::solid) limit: Option<f64>,
+    /// Part of the pull in this step by which a rope can give way, N.
+    pub(in crate::solid) pull: f64,
 }
 
 impl<const D: usize> SeriesRow<D> {
@@ -96,7 +98,8 @@ pub(in crate::solid) fn series_forces<const D: usize>(
         let given = sum_loads(rows, &forces, loads.len());
         let mut changed = false;
         for (i, row) in rows.iter().enumerate().filter(|(i, row)| row.limit.is_some() && movable[*i]) {
-            let slack = if active[i] { forces[i] > 0.0 } else { row.acceleration(&given) <= wanted[i] + 1e-9 * scale };
+            let slack =
+                if active[i] { forces[i] > row.pull } else { row.acceleration(&given) <= wanted[i] + 1e-9 * scale };
             changed |= active[i] == slack;
             active[i] = !slack;
         }

@@ -221,7 +221,7 @@ impl RapierJoints {
         let solids: Vec<_> = bodies.iter().zip(driven).map(motion).collect();
         let loads: Vec<Load<D>> = bodies.iter().map(|body| load_on(world.gravity, &world.bodies[*body])).collect();
         let in_series = |i: usize| self.ends(i).into_iter().filter_map(free).any(|solid| count[solid] > 1);
-        let chosen: Vec<bool> = (0..self.added_impulses.len()).map(in_series).collect();
+        let chosen: Vec<_> = (0..self.added_impulses.len()).map(|i| in_series(i).then_some(0.0)).collect();
         let (rows, sizes) = self.rows(world, bodies, &solids, &chosen, dt);
         world.integration_parameters.num_internal_pgs_iterations = SWEEPS_IN_SERIES;
         let forces = series_forces(&rows, &solids, &loads, dt);
@@ -249,8 +249,18 @@ impl RapierJoints {
             target.unwrap_or_else(|| kinematics_of(&world.bodies[*body]))
         };
         let solids: Vec<_> = bodies.iter().zip(driven).map(motion).collect();
-        let pulled = |i: usize| i.checked_sub(self.joints.len()).is_none_or(|i| self.rope_impulse(world, i, 1) > 0.0);
-        let chosen: Vec<bool> = (0..self.added_impulses.len()).map(pulled).collect();
+        let iterations = world.integration_parameters.num_solver_iterations;
+        let is_driven = |i: usize| self.ends(i).into_iter().flatten().any(|solid| driven[solid].is_some());
+        // Only behind a driven solid that slows down do ends of taut ropes approach each other.
+        let share = if (0..self.added_impulses.len()).any(is_driven) { 1.0 } else { 0.0 };
+        let pull = |i: usize| match i.checked_sub(self.joints.len()) {
+            None => Some(0.0),
+            Some(rope) => {
+                let pull = self.rope_impulse(world, rope, iterations) / dt;
+                (pull > 0.0).then_some(share * pull)
+            }
+        };
+        let chosen: Vec<_> = (0..self.added_impulses.len()).map(pull).collect();
         let (rows, sizes) = self.rows(world, bodies, &solids, &chosen, dt);
         let forces = series_forces(&rows, &solids, &vec![Load::zero(); solids.len()], dt);
         give(world, bodies, &sum_loads(&rows, &forces, bodies.len()), |body, load| {
@@ -278,22 +288,22 @@ impl RapierJoints {
     }
 
     /// Returns the rows of the locks and ropes of the `chosen` ties that act, with `bodies` at `solids` in a step of `dt` (s),
-    /// and the number of rows of each tie.
+    /// and the number of rows of each tie. A chosen rope can give way by that much of its pull, N.
     fn rows(
         &mut self,
         world: &PhysicsWorld,
         bodies: &[RigidBodyHandle],
         solids: &[Kinematics<D>],
-        chosen: &[bool],
+        chosen: &[Option<f64>],
         dt: f64,
     ) -> (Vec<SeriesRow<D>>, Vec<usize>) {
         let (mut rows, mut sizes) = (Vec::new(), Vec::new());
         for (i, chosen) in chosen.iter().enumerate() {
             let (between, before) = (self.ends(i), rows.len());
-            if *chosen && let Some(tie) = self.enabled(world, i) {
+            if let (Some(pull), Some(tie)) = (*chosen, self.enabled(world, i)) {
                 let mobility =
                     between.map(|end| end.map_or_else(Mobility::none, |i| mobility_of(&world.bodies[bodies[i]])));
-                let row = |jacobian, limit| SeriesRow { between, jacobian, mobility, limit };
+                let row = |jacobian, limit| SeriesRow { between, jacobian, mobility, limit, pull };
                 if let Some(own) = self.specs.0.get_mut(i) {
                     own.frames = [&tie.data.local_frame1, &tie.data.local_frame2].map(from_frame);
                     let (all, locks) = own.jacobians(&own.end_kinematics(solids), &mobility);
@@ -345,6 +355,12 @@ impl RapierJoints {
     }
 }
 
+/// Returns the motion in a step of `dt` (s) of a driven solid from the kinematics `now` of its body to those at the end. These may have
+/// another centre, the hinge; that of its body is the origin of its frame.
+fn moved_towards(now: &Kinematics<D>, to: &Kinematics<D>, dt: f64) -> Kinematics<D> {
+    Kinematics { velocity: (to.pose.position - now.pose.position) / dt, spin: to.spin, ..*now }
+}
+
 /// Gives each of `bodies` that is free its load (N, N m) of `loads`, as `act` does.
 fn give(
     world: &mut PhysicsWorld,
@@ -355,12 +371,6 @@ fn give(
     for (load, &body) in loads.iter().zip(bodies) {
         let body = &mut world.bodies[body];
         if body.is_dynamic() {
-/// Returns the motion in a step of `dt` (s) of a driven solid from the kinematics `now` of its body to those at the end. These may have
-/// another centre, the hinge; that of its body is the origin of its frame.
-fn moved_towards(now: &Kinematics<D>, to: &Kinematics<D>, dt: f64) -> Kinematics<D> {
-    Kinematics { velocity: (to.pose.position - now.pose.position) / dt, spin: to.spin, ..*now }
-}
-
             act(body, load);
         }
     }
