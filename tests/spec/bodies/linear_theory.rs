@@ -2,9 +2,13 @@
 //!
 //! Exact figures by tests/references/linear_waves.py (panel method with mode matching, error 1e-4).
 
-use std::f64::consts::PI;
+use std::{f64::consts::PI, path::Path};
 
-use pontoon::{Result, simulation::Simulation};
+use pontoon::{
+    Result,
+    scene::{PanelledScene, Scene},
+    simulation::Simulation,
+};
 
 use crate::common::{measurement, run_to, scene_simulation};
 
@@ -393,4 +397,30 @@ fn a_light_body_a_row_above_the_bed_rises() -> Result<()> {
     let rise = sim.system().solids()[1].kinematics.centre[1] - 0.08;
     assert!(rise > 0.01, "it has risen by {rise} m");
     Ok(())
+}
+
+/// Two equal boxes at rest, 0.2 m deep: in a basin 1 m deep and in one 0.5 m deep with a level 0.5 m lower.
+#[test]
+fn a_body_has_the_level_and_depth_of_its_own_basin() {
+    let basin = |name: &str, x: f64, level: f64| {
+        let end = x + 2.0;
+        format!(
+            "[[water]]\nfill = {{ box = {{ min = [{x}, 0.0, 0.0], max = [{end}, 2.0, {level}] }} }}\n\
+             [[solid]]\nname = \"tank_{name}\"\nfixed = true\nshape = {{ tank = {{ size = [2.0, 2.0, 1.5] }} }}\nat = [{x}, 0.0, 0.0]\n\
+             [[solid]]\nname = \"{name}\"\nshape = {{ box = {{ size = [0.6, 0.6, 0.4] }} }}\n\
+             at = {{ x = {}, y = 1.0, z = {level} }}\nfree = {{ density = 500.0 }}\n",
+            x + 1.0
+        )
+    };
+    let text = format!("dimension = 3\ndp = 0.1\nuntil = 1.0\n{}{}", basin("high", 0.0, 1.0), basin("low", 5.0, 0.5));
+    let scene = Scene::parse(&text, Path::new(""), &[]).unwrap();
+    for (name, level) in [("high", 1.0), ("low", 0.5)] {
+        let found = PanelledScene::new(&scene, &[name.to_string()], 200).unwrap();
+        assert_eq!((found.water.level_m, found.water.depth_m), (level, level), "{name}");
+        let body = &found.bodies[0];
+        assert!((body.displaced_volume_m3 - 0.072).abs() < 1e-9, "{name}: {} m³", body.displaced_volume_m3);
+        assert!((body.centre_of_buoyancy_m[2] + 0.1).abs() < 1e-9, "{name}: {:?}", body.centre_of_buoyancy_m);
+    }
+    let refused = PanelledScene::new(&scene, &[], 200).unwrap_err().to_string();
+    assert!(refused.contains("\"high\" and \"low\" are in water of different levels or depths"), "{refused}");
 }

@@ -46,29 +46,3 @@ fn water_inside_a_hull_rises_with_it_and_runs_to_its_lower_side() {
     let found = filled[3][3] - empty[3][3];
     assert!((found - change).abs() < 0.03 * change.abs(), "C44 changes by {found}; exact {change}");
 }
-
-/// Two equal boxes at rest, 0.2 m deep: in a basin 1 m deep and in one 0.5 m deep with a level 0.5 m lower.
-#[test]
-fn a_body_has_the_level_and_depth_of_its_own_basin() {
-    let basin = |name: &str, x: f64, level: f64| {
-        let end = x + 2.0;
-        format!(
-            "[[water]]\nfill = {{ box = {{ min = [{x}, 0.0, 0.0], max = [{end}, 2.0, {level}] }} }}\n\
-             [[solid]]\nname = \"tank {name}\"\nfixed = true\nshape = {{ tank = {{ size = [2.0, 2.0, 1.5] }} }}\nat = [{x}, 0.0, 0.0]\n\
-             [[solid]]\nname = \"{name}\"\nshape = {{ box = {{ size = [0.6, 0.6, 0.4] }} }}\n\
-             at = {{ x = {}, y = 1.0, z = {level} }}\nfree = {{ density = 500.0 }}\n",
-            x + 1.0
-        )
-    };
-    let text = format!("dimension = 3\ndp = 0.1\nuntil = 1.0\n{}{}", basin("high", 0.0, 1.0), basin("low", 5.0, 0.5));
-    let scene = Scene::parse(&text, Path::new(""), &[]).unwrap();
-    for (name, level) in [("high", 1.0), ("low", 0.5)] {
-        let found = PanelledScene::new(&scene, &[name.to_string()], 200).unwrap();
-        assert_eq!((found.water.level_m, found.water.depth_m), (level, level), "{name}");
-        let body = &found.bodies[0];
-        assert!((body.displaced_volume_m3 - 0.072).abs() < 1e-9, "{name}: {} m³", body.displaced_volume_m3);
-        assert!((body.centre_of_buoyancy_m[2] + 0.1).abs() < 1e-9, "{name}: {:?}", body.centre_of_buoyancy_m);
-    }
-    let refused = PanelledScene::new(&scene, &[], 200).unwrap_err().to_string();
-    assert!(refused.contains("\"high\" and \"low\" are in water of different levels or depths"), "{refused}");
-}
