@@ -99,7 +99,7 @@ pub fn kinematics(body: &RigidBody) -> Kinematics<D> {
 
 /// Sets the next pose of a kinematic body to the pose of a driven solid at the end of the step.
 pub fn set_kinematic(body: &mut RigidBody, solid: &Kinematics<D>) {
-    body.set_next_kinematic_position(world::to_frame(&solid.pose));
+    world::set_next_pose(body, &solid.pose);
 }
 
 fn free(body: &RigidBody) -> FreeBody<D> {

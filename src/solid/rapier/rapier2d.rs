@@ -66,6 +66,11 @@ fn to_rotation(matrix: &Matrix<D>) -> Rotation {
     Rotation { re: matrix[(0, 0)], im: matrix[(1, 0)] }
 }
 
+/// Returns `rotation`: in 2-D a rotation has a single form.
+fn nearest_form(rotation: Rotation, _before: &Rotation) -> Rotation {
+    rotation
+}
+
 fn from_rotation(rotation: &Rotation) -> Matrix<D> {
     Matrix::from_row_slice(&[rotation.re, -rotation.im, rotation.im, rotation.re])
 }

@@ -78,6 +78,12 @@ fn to_rotation(matrix: &Matrix<D>) -> Rotation {
     Rotation::from_mat3(&square(matrix)).normalize()
 }
 
+/// Returns that of both quaternions of `rotation`, q and −q, which is nearer to `before`. From the other one the engine would take
+/// a step of nearly a whole turn, and a velocity to match.
+fn nearest_form(rotation: Rotation, before: &Rotation) -> Rotation {
+    if rotation.dot(*before) < 0.0 { -rotation } else { rotation }
+}
+
 fn from_rotation(rotation: &Rotation) -> Matrix<D> {
     Matrix::from_column_slice(&Square::from_quat(*rotation).to_cols_array())
 }

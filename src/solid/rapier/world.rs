@@ -37,8 +37,8 @@ use super::rapier::{
     pipeline::PhysicsWorld,
 };
 use super::{
-    Angular, D, ENGINE, HOOKS, from_angular, from_rotation, inverse_inertia, lock, mass_properties, to_angular,
-    to_rotation, translation_locks, tune, unwind, wind,
+    Angular, D, ENGINE, HOOKS, from_angular, from_rotation, inverse_inertia, lock, mass_properties, nearest_form,
+    to_angular, to_rotation, translation_locks, tune, unwind, wind,
 };
 use crate::{
     error::{ErrorCode, Result},
@@ -228,7 +228,7 @@ impl RapierWorld {
                 let cause = "its law of motion is not finite at this time: check the formula or table";
                 return Err(self.fault(solid, "prescribed position not finite", cause));
             }
-            self.world.bodies[self.bodies[solid]].set_next_kinematic_position(to_frame(pose));
+            set_next_pose(&mut self.world.bodies[self.bodies[solid]], pose);
         }
         Ok(())
     }
@@ -473,6 +473,13 @@ pub(super) fn from_point(x: Point) -> Vector<D> {
 
 pub(super) fn to_frame(pose: &Pose<D>) -> Frame {
     Frame::from_parts(to_point(&pose.position), to_rotation(&pose.rotation))
+}
+
+/// Sets the pose of a kinematic body at the end of the step.
+pub(super) fn set_next_pose(body: &mut RigidBody, pose: &Pose<D>) {
+    let mut next = to_frame(pose);
+    next.rotation = nearest_form(next.rotation, &body.position().rotation);
+    body.set_next_kinematic_position(next);
 }
 
 pub(super) fn from_frame(frame: &Frame) -> Pose<D> {
