@@ -188,7 +188,8 @@ fn wind(world: &mut PhysicsWorld, bodies: &[RigidBodyHandle], dt: f64) -> Vec<Op
     let PhysicsWorld { bodies: all, impulse_joints, .. } = world;
     let one = |&handle: &RigidBodyHandle| {
         let body = all.get_mut(handle).filter(|body| body.is_dynamic() && body.is_enabled())?;
-        if !body.locked_axes().is_empty() || impulse_joints.attached_joints(handle).next().is_some() {
+        let is_joined = impulse_joints.attached_joints(handle).any(|(.., joint)| joint.data.is_enabled());
+        if !body.locked_axes().is_empty() || is_joined {
             let inertia = about_unlocked(&inverse_inertia(&body.mass_properties().effective_world_inv_inertia));
             let torque = gyroscopic(body, dt);
             body.add_torque(torque, false);

@@ -496,3 +496,18 @@ fn a_body_fixed_to_a_driven_arm_turns_with_it_at_every_angle() {
         }
     }
 }
+
+#[test]
+fn a_body_whose_joint_has_ended_tumbles_as_a_free_one() {
+    let spin = Bivector::from_axial(&[3.0, -2.0, 4.0]);
+    let solids = [solid("block", cube(0.1), [0.0; 3], Role::Free(FreeBody { spin, ..light::<3>() }))];
+    let mut free = engine(&solids, Vector::zeros()).unwrap();
+    let mut ended = tied(&solids, JointKind::Ball, [None, Some(0)]);
+    ended.set_joint(0, None);
+    for _ in 0..500 {
+        for engine in [&mut free, &mut ended] {
+            engine.step(1e-3, &idle(1), &[None]).unwrap();
+        }
+    }
+    assert_eq!(free.kinematics(0), ended.kinematics(0));
+}
