@@ -34,7 +34,7 @@ use rapier::{
     dynamics::{IntegrationParameters, RigidBodyBuilder, RigidBodyHandle},
     geometry::{ContactData, SharedShape, TriMesh, TypedShape},
     math::{Pose as Frame, Rotation, Vector as Point},
-    parry::{mass_properties::MassProperties, transformation::hertel_mehlhorn},
+    parry::{mass_properties::MassProperties, shape::ShapeType, transformation::hertel_mehlhorn},
     pipeline::{ActiveHooks, ContactModificationContext, PhysicsWorld},
     utils::OrthonormalBasis,
 };
@@ -96,6 +96,9 @@ fn lock(builder: RigidBodyBuilder, body: &FreeBody<D>) -> RigidBodyBuilder {
 fn friction(direction: Point, data: &ContactData) -> Point {
     direction.orthonormal_vector() * data.tangent_impulse[0]
 }
+
+/// Shapes whose faces are curved along the line on which they roll, besides balls.
+const ROUND: &[ShapeType] = &[ShapeType::Capsule];
 
 /// Contact hooks of every collider by default: 2-D needs no hooks.
 const HOOKS: ActiveHooks = ActiveHooks::empty();

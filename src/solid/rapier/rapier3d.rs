@@ -42,6 +42,7 @@ use rapier::{
     math::{AngularInertia, Matrix as Square, Pose as Frame, Rotation, Vector as Point},
     parry::{
         mass_properties::MassProperties,
+        shape::ShapeType,
         transformation::vhacd::{VHACD, VHACDParameters},
     },
     pipeline::{ActiveHooks, ContactModificationContext, PhysicsWorld},
@@ -135,6 +136,9 @@ fn friction(direction: Point, data: &ContactData) -> Point {
     let tangent = direction.orthonormal_vector();
     tangent * data.tangent_impulse[0] + direction.cross(tangent) * data.tangent_impulse[1]
 }
+
+/// Shapes whose faces are curved along the line on which they roll, besides balls.
+const ROUND: &[ShapeType] = &[ShapeType::Capsule, ShapeType::Cylinder];
 
 /// Contact hooks that every collider has by default: this module corrects the direction of friction.
 const HOOKS: ActiveHooks = ActiveHooks::MODIFY_SOLVER_CONTACTS;

@@ -30,6 +30,9 @@ mod joints;
 #[allow(clippy::duplicate_mod, reason = "one source, compiled against each engine")]
 #[path = "contact_forces.rs"]
 mod contact_forces;
+#[allow(clippy::duplicate_mod, reason = "one source, compiled against each engine")]
+#[path = "rolling.rs"]
+mod rolling;
 
 use super::rapier::{
     dynamics::{LockedAxes, RigidBody, RigidBodyHandle, SpringCoefficients},
@@ -51,6 +54,7 @@ use crate::{
 use colliders::{ConvexParts, check_overlap, collect_parts, thickness};
 use joints::{RapierJoints, SWEEPS};
 use restitution::Impact;
+use rolling::RollingContacts;
 
 /// Largest overlap at the start, in dp: it allows for round-off of the placement.
 const OVERLAP_MAX: f64 = 0.05;
@@ -412,6 +416,7 @@ impl Engine<D> for RapierWorld {
 
     fn restore(&mut self, bytes: &[u8]) -> Result<()> {
         (self.world, self.tuned_for, self.met, self.pushes) = self.read_state(bytes)?;
+        self.world.narrow_phase.set_query_dispatcher(RollingContacts);
         self.when_near = registry::iterations_in_contact(&self.world);
         Ok(())
     }
@@ -461,6 +466,7 @@ fn settle(world: &mut PhysicsWorld, reach: f64) {
     parameters.normalized_max_linear_velocity = f64::MAX;
     parameters.max_ccd_substeps = 0;
     tune(parameters);
+    world.narrow_phase.set_query_dispatcher(RollingContacts);
 }
 
 pub(super) fn to_point(x: &Vector<D>) -> Point {
