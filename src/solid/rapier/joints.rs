@@ -20,10 +20,13 @@ use super::super::rapier::{
     pipeline::{ContactModificationContext, PairFilterContext, PhysicsHooks, PhysicsWorld},
 };
 use super::{
-    super::align, D, from_angular, from_frame, from_point, kinematics_of, mobility_of, to_angular, to_frame, to_point,
+    super::align,
+    D, from_angular, from_frame, from_point, kinematics_of, mobility_of,
+    restitution::{Gain, Touch},
+    to_angular, to_frame, to_point,
 };
 use crate::{
-    math::{Pose, Vector},
+    math::{Bivector, Pose, Vector},
     solid::{
         Kinematics, Load, Mobility,
         constraint::{
@@ -268,6 +271,46 @@ impl RapierJoints {
             body.apply_torque_impulse(to_angular(&(load.torque * dt)), false);
         });
         self.record(&sizes, &forces, dt);
+    }
+
+    /// Adds to each of `touches` what an impulse there gives to `bodies` through the locks of joints, if a joint holds one of both
+    /// bodies.
+    pub(super) fn link(&mut self, world: &PhysicsWorld, bodies: &[RigidBodyHandle], touches: &mut [Touch]) {
+        if touches.is_empty() {
+            return;
+        }
+        let joints = self.joints.len();
+        let acting = (0..joints).filter(|&i| self.enabled(world, i).is_some());
+        let joined: Vec<usize> = acting.flat_map(|i| self.ends(i)).flatten().collect();
+        let is_joined = |touch: &Touch| touch.owners.iter().any(|solid| joined.contains(solid));
+        if !touches.iter().any(is_joined) {
+            return;
+        }
+        let at_rest = |&body: &RigidBodyHandle| {
+            let (velocity, spin) = (Vector::zeros(), Bivector::zero());
+            Kinematics { velocity, spin, ..kinematics_of(&world.bodies[body]) }
+        };
+        let solids: Vec<_> = bodies.iter().map(at_rest).collect();
+        let chosen: Vec<bool> = (0..joints + self.ropes.len()).map(|i| i < joints).collect();
+        let (rows, _) = self.rows(world, bodies, &solids, &chosen, 1.0);
+        let gains = |touch: &Touch, axis: usize| {
+            let (mut loads, unit) = (vec![Load::zero(); bodies.len()], Vector::ith(axis, 1.0));
+            for (solid, impulse) in touch.owners.into_iter().zip([-unit, unit]) {
+                loads[solid] = Load::from_force_at(&(from_point(touch.at) - solids[solid].centre), impulse);
+            }
+            let forces = series_forces(&rows, &solids, &loads, 1.0);
+            sum_loads(&rows, &forces, bodies.len()).into_iter().zip(&mut loads).for_each(|(held, load)| *load += held);
+            let gain = |(&body, load): (&RigidBodyHandle, &Load<D>)| {
+                let own = world.bodies.get(body).filter(|own| own.is_dynamic() && *load != Load::zero())?;
+                let ease = mobility_of(own);
+                let velocity = to_point(&ease.linear.component_mul(&load.force));
+                Some(Gain { body, velocity, spin: to_angular(&ease.spin_change(&load.torque)) })
+            };
+            bodies.iter().zip(&loads).filter_map(gain).collect()
+        };
+        for touch in touches.iter_mut().filter(|touch| is_joined(touch)) {
+            touch.linked = (0..D).map(|axis| gains(touch, axis)).collect();
+        }
     }
 
     /// Returns tie number `i`, joints before ropes, if it acts.

@@ -2,7 +2,7 @@
 //!
 //! The module applies Newton's law (Principia, 1687) with Coulomb friction, v_n⁺ = −e v_n⁻ and |J_t| ≤ μ J_n, before
 //! the step in which the bodies would touch. Where friction and restitution together would create energy, it omits
-//! friction. The engine's own contacts are springs without restitution, which support resting bodies. The module is
+//! friction. Joints transmit the impulses at the same instant. The engine's own contacts are springs without restitution, which support resting bodies. The module is
 //! compiled for each dimension as part of the world: `super` names the engine.
 
 use serde::{Deserialize, Serialize};
@@ -46,11 +46,23 @@ const SLOWEST: f64 = 4.0;
 /// Largest number of sweeps over all points; a flat face needs several tens.
 const SWEEPS: usize = 400;
 
+/// A change of the velocities of a body.
+pub(super) struct Gain {
+    pub(super) body: RigidBodyHandle,
+    pub(super) velocity: Point,
+    pub(super) spin: Angular,
+}
+
 /// A point at which two bodies are about to touch.
-struct Touch {
-    owners: [usize; 2],
+pub(super) struct Touch {
+    /// Numbers of both solids.
+    pub(super) owners: [usize; 2],
     bodies: [RigidBodyHandle; 2],
-    at: Point,
+    /// Position, m.
+    pub(super) at: Point,
+    /// For each axis, the gains by an impulse of 1 N s along it on the second body and the opposite one on the first, if a joint
+    /// holds one of both; else empty.
+    pub(super) linked: Vec<Vec<Gain>>,
     /// Normal from the first to the second body.
     normal: Point,
     /// Approach speed, negative, m/s.
@@ -64,14 +76,15 @@ struct Touch {
     across: Point,
 }
 
-/// Makes the bodies of `world` that are about to touch in a step of `dt` (s) separate again. `pair` returns the
-/// restitution and friction of two solids from their numbers and mean friction. Returns the impacts, point by point.
-pub(super) fn apply_impacts(
-    world: &mut PhysicsWorld,
-    dt: f64,
-    pair: impl Fn(usize, usize, f64) -> (f64, f64),
-) -> Vec<Impact> {
-    let mut touches = find(world, dt, pair);
+impl Touch {
+    /// Returns the bodies that an impulse moves.
+    fn moved(&self) -> impl Iterator<Item = RigidBodyHandle> {
+        self.bodies.into_iter().chain(self.linked.iter().flatten().map(|gain| gain.body))
+    }
+}
+
+/// Makes the bodies of `world` that are about to touch at `touches` separate again. Returns the impacts, point by point.
+pub(super) fn apply_impacts(world: &mut PhysicsWorld, mut touches: Vec<Touch>) -> Vec<Impact> {
     for touch in &mut touches {
         touch.response = response(world, touch, touch.normal);
     }
@@ -104,8 +117,9 @@ pub(super) fn slowest_impact(world: &PhysicsWorld, dt: f64) -> f64 {
     SLOWEST * world.gravity.length() * dt
 }
 
-/// Returns the points of all pairs with at least one point of sufficient approach speed.
-fn find(world: &PhysicsWorld, dt: f64, law: impl Fn(usize, usize, f64) -> (f64, f64)) -> Vec<Touch> {
+/// Returns the points of all pairs of `world` with at least one point of sufficient approach speed for a step of `dt` (s). `law`
+/// returns the restitution and friction of two solids from their numbers and mean friction.
+pub(super) fn find(world: &PhysicsWorld, dt: f64, law: impl Fn(usize, usize, f64) -> (f64, f64)) -> Vec<Touch> {
     let slowest = slowest_impact(world, dt);
     let mut touches = Vec::new();
     for pair in world.narrow_phase.contact_pairs() {
@@ -140,10 +154,20 @@ fn find(world: &PhysicsWorld, dt: f64, law: impl Fn(usize, usize, f64) -> (f64, 
                 struck |= meeting < -slowest && gap + AHEAD * meeting * dt < 0.0;
                 if meeting < 0.0 && gap + 2.0 * AHEAD * meeting * dt < 0.0 {
                     let (along, across) = (0.0, Point::ZERO);
-                    let response = 0.0;
-                    let touch =
-                        Touch { owners, bodies, at, normal, meeting, restitution, friction, response, along, across };
-                    close.push(touch);
+                    let (linked, response) = (Vec::new(), 0.0);
+                    close.push(Touch {
+                        owners,
+                        bodies,
+                        at,
+                        linked,
+                        normal,
+                        meeting,
+                        restitution,
+                        friction,
+                        response,
+                        along,
+                        across,
+                    });
                 }
             }
         }
@@ -170,6 +194,16 @@ fn parting(world: &PhysicsWorld, [a, b]: [RigidBodyHandle; 2], at: Point) -> Poi
 
 /// Applies the `impulse` (N s) to the second body of a contact point, and the opposite impulse to the first.
 fn give(world: &mut PhysicsWorld, touch: &Touch, impulse: Point) {
+    for (axis, gains) in touch.linked.iter().enumerate() {
+        for gain in gains {
+            let body = &mut world.bodies[gain.body];
+            body.set_linvel(body.linvel() + gain.velocity * impulse[axis], false);
+            body.set_angvel(body.angvel() + gain.spin * impulse[axis], false);
+        }
+    }
+    if !touch.linked.is_empty() {
+        return;
+    }
     let [a, b] = touch.bodies;
     world.bodies[a].apply_impulse_at_point(-impulse, touch.at, false);
     world.bodies[b].apply_impulse_at_point(impulse, touch.at, false);
@@ -177,11 +211,12 @@ fn give(world: &mut PhysicsWorld, touch: &Touch, impulse: Point) {
 
 /// Returns the change of speed along `direction` for each unit of impulse along it at a contact point, 1/kg.
 fn response(world: &mut PhysicsWorld, touch: &Touch, direction: Point) -> f64 {
-    let held = touch.bodies.map(|body| (world.bodies[body].linvel(), world.bodies[body].angvel()));
+    let motion = |body: RigidBodyHandle| (body, world.bodies[body].linvel(), world.bodies[body].angvel());
+    let held: Vec<_> = touch.moved().map(motion).collect();
     let before = parting(world, touch.bodies, touch.at);
     give(world, touch, direction);
     let gained = (parting(world, touch.bodies, touch.at) - before).dot(direction);
-    for (body, (velocity, spin)) in touch.bodies.into_iter().zip(held) {
+    for (body, velocity, spin) in held {
         set(world, body, velocity, spin);
     }
     gained
@@ -239,7 +274,7 @@ struct Motions {
 
 impl Motions {
     fn of(world: &PhysicsWorld, touches: &[Touch]) -> Self {
-        let mut handles: Vec<_> = touches.iter().flat_map(|touch| touch.bodies).collect();
+        let mut handles: Vec<_> = touches.iter().flat_map(Touch::moved).collect();
         handles.sort_by_key(|handle| handle.into_raw_parts());
         handles.dedup();
         handles.retain(|&handle| world.bodies[handle].is_dynamic());

@@ -299,9 +299,10 @@ impl Engine<D> for RapierWorld {
         let before: Vec<Point> = (0..self.bodies.len()).map(|i| self.body(i).linvel()).collect();
         let spins: Vec<Angular> = (0..self.bodies.len()).map(|i| self.body(i).angvel()).collect();
         self.ties.contact_pairs.slowest = restitution::slowest_impact(&self.world, dt);
-        self.met = restitution::apply_impacts(&mut self.world, dt, |a, b, mu| {
-            self.ties.contact_pairs.restitution_and_friction(a, b, mu)
-        });
+        let pairs = &self.ties.contact_pairs;
+        let mut touches = restitution::find(&self.world, dt, |a, b, mu| pairs.restitution_and_friction(a, b, mu));
+        self.ties.link(&self.world, &self.bodies, &mut touches);
+        self.met = restitution::apply_impacts(&mut self.world, touches);
         self.ties.update_rope_limits(&mut self.world, dt);
         self.ties.update_end_stops(&mut self.world, &self.bodies, driven, dt);
         self.ties.apply_series_loads(&mut self.world, &self.bodies, driven, dt);

@@ -313,6 +313,71 @@ fn an_impact_with_a_corner_acts_at_the_corner() {
     strikes_with_a_corner::<3>();
 }
 
+/// An engine of `solids` without friction and gravity, with the restitution `e` and this joint.
+fn joined<const D: usize>(mut solids: Vec<SolidSpec<D>>, e: f64, joint: JointSpec<D>) -> Box<dyn Engine<D>>
+where
+    Dim<D>: HasEngine<D>,
+{
+    solids.iter_mut().for_each(|solid| (solid.restitution, solid.friction) = (e, 0.0));
+    let start: Vec<_> = solids.iter().map(SolidSpec::initial_kinematics).collect();
+    let links = Constraints { joints: vec![joint], ..Constraints::default() };
+    Dim::<D>::engine(&solids, &start, &links, &Vector::zeros(), 0.01).unwrap()
+}
+
+/// A ball of 10 kg with 2 m/s along the first axis.
+fn missile<const D: usize>(x: f64, height: f64) -> SolidSpec<D> {
+    let mut at = at_height(height);
+    at[0] = x;
+    let (shape, mut velocity) = (Shape::Ball { radius: 0.1 }, Vector::zeros());
+    velocity[0] = 2.0;
+    let body = FreeBody::from_mass(&shape, 10.0).velocity(velocity);
+    solid("ball", shape, at, Role::Free(body))
+}
+
+fn rebounds_from_a_jointed_body<const D: usize>()
+where
+    Dim<D>: HasEngine<D>,
+{
+    let mut size = Vector::<D>::repeat(0.2);
+    size[D - 1] = 1.0;
+    let shape = Shape::Box { size };
+    let own = FreeBody::from_mass(&shape, 20.0);
+    let axis = Vector::from_fn(|i, _| if i == 1 { 1.0 } else { 0.0 });
+    for e in [0.5, 1.0] {
+        // A bar hangs from a hinge at the origin, and the ball strikes it a = 0.8 m below. About the hinge
+        //   m a v + I ω = m a v₀ and ω a − v = e v₀.
+        let bar = solid("bar", shape.clone(), at_height(-0.5), Role::Free(own));
+        let hinge = JointSpec::new("hinge", JointKind::Hinge, [None, Some(0)], Vector::zeros(), axis);
+        let mut engine = joined(vec![bar, missile(-0.3, -0.8)], e, hinge);
+        let inertia = own.inertia[if D == 2 { (0, 0) } else { (1, 1) }] + 20.0 * 0.25;
+        let spin = 10.0 * 0.8 * 2.0 * (1.0 + e) / (inertia + 10.0 * 0.64);
+        let mut now = engine.kinematics(1);
+        while now.velocity[0] > 1.99 {
+            engine.step(1e-3, &idle(2), &[None; 2]).unwrap();
+            now = engine.kinematics(1);
+        }
+        // The residual of the joints' equations is at most 1e-6; the hinge takes the rest in the step.
+        assert!((now.velocity[0] - (spin * 0.8 - 2.0 * e)).abs() < 4e-6, "{e}: {now:?}, spin {spin}");
+        let turned = engine.kinematics(0).spin.0.norm() / 2f64.sqrt();
+        assert!((turned - spin).abs() < 1e-5 * spin, "{e}: the bar turns with {turned} rad/s, exact {spin}");
+
+        // A plate of the mass of the ball, which a joint holds to the ground, is as a wall.
+        let plate = solid("plate", cube(0.4), [0.0; D], Role::Free(FreeBody::from_mass(&cube(0.4), 10.0)));
+        let held = JointSpec::new("held", JointKind::Fixed, [None, Some(0)], Vector::zeros(), Vector::zeros());
+        let mut engine = joined(vec![plate, missile(-0.4, 0.0)], e, held);
+        for _ in 0..100 {
+            engine.step(1e-3, &idle(2), &[None; 2]).unwrap();
+        }
+        assert!((engine.kinematics(1).velocity[0] + 2.0 * e).abs() < 4e-6, "{e}: {:?}", engine.kinematics(1));
+    }
+}
+
+#[test]
+fn a_ball_rebounds_from_a_jointed_body_with_its_restitution() {
+    rebounds_from_a_jointed_body::<2>();
+    rebounds_from_a_jointed_body::<3>();
+}
+
 /// The way (m) in 0.5 s of a body of unit mass and this moment of inertia (kg m²) about its axle, which rolls down a slope of 10°.
 fn rolled<const D: usize>(shape: Shape<D>, inertia: f64) -> f64
 where
