@@ -412,3 +412,29 @@ fn cylinders_and_capsules_roll_as_balls_do() {
         assert!((way / exact - 1.0).abs() < 3e-3, "{what}: {way} m, exact {exact} m");
     }
 }
+
+#[test]
+fn the_load_of_a_body_at_rest_does_not_depend_on_the_length_of_the_step() {
+    let solids = [floor(), solid("box", cube(0.1), at_height(0.05), Role::Free(light::<2>()))];
+    let mut engine = engine(&solids, down()).unwrap();
+    let weight = 2.0 * G;
+    let mut load = |steps: i32, dt: f64| -> [f64; 2] {
+        let mut range = [f64::INFINITY, 0.0_f64];
+        for _ in 0..steps {
+            engine.step(dt, &idle(2), &[None; 2]).unwrap();
+            let now = engine.contacts()[0].normal_force;
+            range = [range[0].min(now), range[1].max(now)];
+        }
+        range
+    };
+    load(500, 1e-3);
+    // A single short step, as the last of a run; then short steps for longer than the contact needs to follow.
+    for (steps, dt) in [(1, 4e-4), (1, 1e-3), (1, 1e-6), (5, 1e-3), (3000, 1e-4)] {
+        let [least, most] = load(steps, dt);
+        // The stiffness of the contact changes by at most 2 % in the time in which the contact follows.
+        assert!(
+            least > 0.95 * weight && most < 1.05 * weight,
+            "{steps} steps of {dt} s: {least} to {most} N of {weight}"
+        );
+    }
+}
