@@ -138,6 +138,10 @@ impl<const D: usize> Probe<D> for JointProbe {
         row
     }
 
+    fn follows_angles(&self) -> bool {
+        self.free.iter().any(|&mode| mode >= D)
+    }
+
     fn continue_from(&self, before: &[f64], now: &mut [f64], _: f64) {
         // The angle of a hinge counts its turns itself.
         let turns = (0..self.free.len()).filter(|&i| self.free[i] >= D);

@@ -102,6 +102,12 @@ pub trait Probe<const D: usize>: Send {
         let _ = (before, now, dt);
     }
 
+    /// Whether the probe has angles that go on past half a turn. A run reads such a probe at every step, so that a body may turn
+    /// farther between two rows. By default no.
+    fn follows_angles(&self) -> bool {
+        false
+    }
+
     /// Returns the part of the simulation that the probe reads. While the water is on a device, the run fetches only the parts
     /// that are read.
     fn reads(&self) -> ProbeReads {

@@ -3,7 +3,8 @@
 //! Surge, sway and heave are displacements of the solid's centre from the start along x, y (3-D) and up. In a solid with ballast
 //! the centre of mass moves; the centre is then the point of the solid at which the centre of mass is at the start. In 2-D pitch
 //! is the angle of the solid's frame, counter-clockwise. In 3-D the frame is turned by roll about x, then pitch about y, then yaw
-//! about z (right-handed, world axes): R = R_z R_y R_x.
+//! about z (right-handed, world axes): R = R_z R_y R_x. Two triples of angles belong to a rotation, of which one has its pitch beyond
+//! 90°; a reading continues the one before.
 
 use serde::{Deserialize, Serialize};
 
@@ -124,10 +125,25 @@ impl<const D: usize> Probe<D> for MotionProbe<D> {
         row
     }
 
+    fn follows_angles(&self) -> bool {
+        true
+    }
+
     fn continue_from(&self, before: &[f64], now: &mut [f64], _: f64) {
-        for i in first_angle::<D>()..first_angle::<D>() + angles::<D>() {
-            now[i] = unwrapped(before[i], now[i]);
+        let range = first_angle::<D>()..first_angle::<D>() + angles::<D>();
+        let (before, now) = (&before[range.clone()], &mut now[range]);
+        let continued = |angles: &[f64]| -> Vec<f64> {
+            before.iter().zip(angles).map(|(before, now)| unwrapped(*before, *now)).collect()
+        };
+        let mut angles = continued(now);
+        if let [roll, pitch, yaw] = *now {
+            let other = continued(&[roll + 180.0, 180.0 - pitch, yaw + 180.0]);
+            let way = |to: &[f64]| before.iter().zip(to).map(|(from, to)| (to - from).abs()).sum::<f64>();
+            if way(&other) < way(&angles) {
+                angles = other;
+            }
         }
+        now.copy_from_slice(&angles);
     }
 }
 
@@ -161,6 +177,28 @@ mod tests {
             }
         }
         assert!((euler_angles(&Pose::<2>::rotated(Vector::zeros(), &[-1.2]).rotation)[0] + 1.2).abs() < 1e-14);
+    }
+
+    #[test]
+    fn angles_about_every_axis_go_on_past_a_turn() {
+        // A pitch of 90° is among the readings: there roll and yaw are about the same axis.
+        let probe = MotionProbe::<3> { solid: 0, start: Vector::zeros(), point: None };
+        for axis in 0..3 {
+            let mut last = vec![0.0; 9];
+            for step in 1..=40 {
+                let mut turn = [0.0; 3];
+                turn[axis] = (f64::from(step) * 22.5).to_radians();
+                let mut row = vec![0.0; 6];
+                row.extend(
+                    euler_angles(&Pose::<3>::rotated(Vector::zeros(), &turn).rotation).iter().map(|x| x.to_degrees()),
+                );
+                probe.continue_from(&last, &mut row, 0.1);
+                let expected = f64::from(step) * 22.5;
+                // The rotation is known to round-off, and near a pitch of 90° the angles to its square root.
+                assert!((row[6 + axis] - expected).abs() < 1e-5, "about axis {axis}: {expected}°, got {:?}", &row[6..]);
+                last = row;
+            }
+        }
     }
 
     #[test]

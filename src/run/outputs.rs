@@ -58,22 +58,24 @@ struct ProbeOutput<const D: usize> {
     probe: Box<dyn Probe<D>>,
     table: CsvTable,
     due: OutputSchedule,
-    /// The readings of every step since the last row, if the probe takes means.
+    /// The readings of every step since the last row, if the probe takes means or follows angles.
     mean: Option<IntervalMean>,
     /// Whether the probe takes means in each column.
     are_means: Vec<bool>,
 }
 
 impl<const D: usize> ProbeOutput<D> {
+    /// Returns whether rows have means. A probe that follows angles reads solids alone, so that it needs nothing in other steps.
+    fn takes_means(&self) -> bool {
+        self.are_means.contains(&true)
+    }
+
     /// Reads the probe if necessary, and writes a row if `due`.
     fn sample(&mut self, sim: &Simulation<D>, due: bool) -> Result<()> {
         let t = sim.time();
         // A row may already be written at the end time.
         let due = due && self.table.last_row().is_none_or(|(last, _)| last < t);
-        let before = match &self.mean {
-            Some(mean) => mean.last(),
-            None => self.table.last_row(),
-        };
+        let before = self.mean.as_ref().and_then(IntervalMean::last).or_else(|| self.table.last_row());
         let fresh = before.is_none_or(|(last, _)| last < t);
         if !due && (self.mean.is_none() || !fresh) {
             return Ok(());
@@ -165,7 +167,7 @@ impl<const D: usize> Outputs<D> {
             let due = OutputSchedule { every: words.every, next: next(i, 0) };
             let kept = from.and_then(|extent| extent.means.get(i).cloned().flatten());
             let are_means = probe.columns().iter().map(|column| words.is_mean(column)).collect();
-            let mean = words.average.then(|| kept.unwrap_or_default());
+            let mean = (words.average || probe.follows_angles()).then(|| kept.unwrap_or_default());
             watched.push(ProbeOutput { probe, table, due, mean, are_means });
         }
         let count = watched.len();
@@ -197,7 +199,7 @@ impl<const D: usize> Outputs<D> {
     #[cfg(feature = "gpu")]
     pub(crate) fn next_due(&self) -> f64 {
         let at = |due: &OutputSchedule| due.next as f64 * due.every;
-        let probes = self.probes.iter().map(|own| if own.mean.is_some() { 0.0 } else { at(&own.due) });
+        let probes = self.probes.iter().map(|own| if own.takes_means() { 0.0 } else { at(&own.due) });
         let lists = self.contact_lists.iter().map(|list| at(&list.due));
         let rest = self.frames.iter().map(|(_, due)| at(due)).chain(self.checkpoint.iter().map(at));
         probes.chain(lists).chain(rest).fold(f64::INFINITY, f64::min)
@@ -217,7 +219,7 @@ impl<const D: usize> Outputs<D> {
 
     /// Returns the probes that are due at time `t` (s).
     fn due_probes(&self, t: f64) -> impl Iterator<Item = &ProbeOutput<D>> {
-        self.probes.iter().filter(move |own| own.mean.is_some() || own.due.is_due(t))
+        self.probes.iter().filter(move |own| own.takes_means() || own.due.is_due(t))
     }
 
     /// Writes the outputs that are due now, except for the checkpoint, and returns which events occurred.

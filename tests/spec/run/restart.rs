@@ -76,6 +76,10 @@ fn constraints_motors_stops_a_release_rebounds_and_budgets_survive_a_restart() -
         axle.absorbed_energy != 0.0 && sim.joint_reading(sim.find_joint("rail")?).absorbed_energy != 0.0,
         "the motors did work"
     );
+    let rows = text(&home, "series/wheel.csv");
+    let turned = rows.lines().last().and_then(|row| row.split(',').nth(5)).and_then(|x| x.parse::<f64>().ok());
+    // The wheel turns by more than half a turn between two rows; the motion of the wheel is that of the axle to round-off.
+    assert!(turned.zip(angle).is_some_and(|(turned, angle)| (turned - angle).abs() < 1e-9), "{turned:?}, {angle:?}");
     let pulled = |name: &str| {
         let rows = text(&home, &format!("series/{name}.csv"));
         let tension = |row: &str| row.rsplit(',').next().and_then(|x| x.parse::<f64>().ok());
