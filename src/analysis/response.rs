@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::{Matrix4, Vector4};
 
-use super::{AlignedMetrics, ErrorMetrics, alignment::least_by_golden_section};
+use super::{AlignedMetrics, ErrorMetrics, alignment::least_by_golden_section, harmonic::MIN_PERIODS};
 use crate::{math::time_series::TimeSeries, plan::ResponseReference};
 
 /// Range of the fitted period about the stated period, relative to this: a body that drifts with a fifth of the wave's speed
@@ -14,9 +14,6 @@ const RANGE: f64 = 0.25;
 
 /// Number of frequencies that the search tries in this range before it refines the best one.
 const TRIED: u32 = 100;
-
-/// Least number of periods in a fit: with fewer, a drift and a fundamental look alike.
-const MIN_PERIODS: f64 = 2.0;
 
 /// The fundamental of a series: x(t) ≈ mean + drift · (t − middle) + amplitude · cos(2π (t − middle)/period + phase).
 #[derive(Clone, Copy, Debug, PartialEq)]
