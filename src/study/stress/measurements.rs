@@ -23,7 +23,7 @@ pub(super) struct Measurements<'a, const D: usize> {
     case: &'a StressCase,
     energy: EnergyProbe,
     energy_balance: EnergyBalance,
-    known_motions: Vec<(MotionProbe<D>, usize, Formula)>,
+    known_motions: Vec<KnownMotion<D>>,
     before: Vec<Kinematics<D>>,
     /// The initial momentum (kg m/s), and the initial momentum scale Σ m |v|.
     momentum: (Vector<D>, f64),
@@ -31,6 +31,16 @@ pub(super) struct Measurements<'a, const D: usize> {
     level: f64,
     next: f64,
     figures: MeasuredFigures,
+}
+
+/// A motion with an exact solution.
+struct KnownMotion<const D: usize> {
+    probe: MotionProbe<D>,
+    /// The last reading, whose angles count turns.
+    row: Vec<f64>,
+    /// The column that the solution is of.
+    column: usize,
+    solution: Formula,
 }
 
 impl<'a, const D: usize> Measurements<'a, D> {
@@ -46,7 +56,8 @@ impl<'a, const D: usize> Measurements<'a, D> {
                 let what = format!("a motion has no column {:?}; it has {}", course.column, columns.join(", "));
                 return Err(crate::Error::scene(what));
             };
-            courses.push((probe, column, Formula::parse(&course.formula)?));
+            let row = probe.sample(sim);
+            courses.push(KnownMotion { probe, row, column, solution: Formula::parse(&course.formula)? });
         }
         let lowest = system.fluid().r.iter().map(|r| r[D - 1]).fold(f64::INFINITY, f64::min);
         let lift = masses(system) * system.gravity().norm() * system.model().dp;
@@ -74,6 +85,11 @@ impl<'a, const D: usize> Measurements<'a, D> {
         let by_solids = driven + constraint_work(sim, &self.before, dt);
         self.energy_balance.add_work(by_solids + film_work(sim, &self.before, dt));
         self.store_kinematics(sim);
+        for motion in &mut self.known_motions {
+            let mut row = motion.probe.sample(sim);
+            motion.probe.continue_from(&motion.row, &mut row, dt);
+            motion.row = row;
+        }
         let until = self.case.scene.until;
         if sim.time() < self.next && sim.time() < until {
             return Ok(());
@@ -103,8 +119,8 @@ impl<'a, const D: usize> Measurements<'a, D> {
             let off = (momentum(sim) - self.momentum.0 - pushed).norm();
             self.record_max("momentum", off / self.momentum.1.max(pushed.norm()).max(f64::MIN_POSITIVE));
         }
-        let courses = self.known_motions.iter().zip(&judge.motion).map(|((probe, column, formula), course)| {
-            let off = probe.sample(sim)[*column] - formula.value_and_rate(sim.time()).0;
+        let courses = self.known_motions.iter().zip(&judge.motion).map(|(motion, course)| {
+            let off = motion.row[motion.column] - motion.solution.value_and_rate(sim.time()).0;
             (motion_figure(course), off.abs())
         });
         for (name, off) in courses.collect::<Vec<_>>() {
