@@ -395,6 +395,7 @@ fn invalid_check_keys_are_refused_with_a_remedy() {
         ("formula = \"0\"\nalign = \"bset\"", ["unknown align \"bset\"; did you mean \"best\"?", "crossing"]),
         ("formula = \"0\"\nalign = { crossing = -5.0 }", ["crossing must be a positive number", "align = {"]),
         ("formula = \"0\"\nalign = { start = 0.0 }", ["start must be a positive number", "align = {"]),
+        ("formula = \"0\"\nbound = {}", ["the bound names no figure", "write  bound = { N"]),
         ("formula = \"0\"\nbound = { aligned_N = 0.1 }", ["nothing is aligned", "align = \"best\""]),
         (
             "formula = \"0\"\nbound = { of = 0.1 }",
