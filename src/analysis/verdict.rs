@@ -342,10 +342,11 @@ impl ReferenceCheck {
         })
     }
 
-    /// Returns the relative error of the first peak.
+    /// Returns the relative error of the first peak. Beyond the ends of the reference the run may have larger ones, of which the
+    /// reference tells nothing.
     fn peak(&self, sim: &TimeSeries, reference: &TimeSeries, start: f64) -> Result<f64> {
-        let (from, until) = window(&self.plan, start);
-        first_peak_error(&sim.window(from, until)?, reference)
+        let ((from, until), (first, last)) = (window(&self.plan, start), reference.span());
+        first_peak_error(&sim.window(from.max(first), until.min(last))?, reference)
     }
 
     /// Returns the metrics of `sim` over the times that it has in common with `reference`.

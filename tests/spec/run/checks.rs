@@ -246,6 +246,20 @@ fn the_delay_of_a_late_run_is_found_from_its_crossing_and_from_the_best_fit() ->
     Ok(())
 }
 
+/// The run repeats the reference, whose record ends at 1.5 s, and has a peak three times as high at 2.5 s.
+#[test]
+fn a_peak_of_the_run_after_the_end_of_the_reference_does_not_count() -> std::io::Result<()> {
+    let pulse = |t: f64, at: f64| (-((t - at) / 0.1).powi(2)).exp();
+    let run = table(|t| pulse(t, 1.0) + 3.0 * pulse(t, 2.5));
+    let record: String = table(|t| pulse(t, 1.0)).lines().take(152).map(|line| line.to_string() + "\n").collect();
+    let folder = folder("later-peak", &run, &record)?;
+    let limit = Score { peak: Some(1e-12), ..Score::default() };
+    let plan = by_table("box.heave_m", ["t_s", "heave_m"], 0.0, Some(limit));
+    let verdict = judge(&plan, &folder);
+    assert_eq!((verdict.metrics.peak, verdict.passed), (Some(0.0), Some(true)), "{verdict:?}");
+    Ok(())
+}
+
 /// A folder with a wave of 20 mm and 1.2 s over 12 s, and a body that drifts in it.
 fn folder_with_drifting_body(name: &str) -> std::io::Result<TestFolder> {
     let folder = TestFolder::new(&format!("checks-{name}"));
