@@ -199,8 +199,11 @@ impl ReferenceCheck {
                 Align::Start(_) => (None, Some(ArrivalTimes { run: Some(start), reference: Some(0.0) })),
                 how => self.aligned(meaned.as_ref().unwrap_or(&sim), &reference, how, start),
             };
-            let is_without = verdict.aligned.is_none() && verdict.note.is_none();
-            verdict.note = if is_without { why_unaligned(how, verdict.arrival) } else { verdict.note };
+            if verdict.aligned.is_none() && verdict.note.is_none() {
+                let (from, until) = window(&self.plan, start);
+                let run = meaned.unwrap_or(sim).window(from, until).ok();
+                verdict.note = why_unaligned(how, verdict.arrival, [run.as_ref(), Some(&reference)]);
+            }
         }
         verdict.judged(is_reached)
     }
@@ -287,7 +290,8 @@ impl ReferenceCheck {
     fn reference_start(&self, sim: &TimeSeries) -> Result<f64> {
         let Some(Align::Start(threshold)) = self.plan.align else { return Ok(0.0) };
         sim.first_crossing(threshold).ok_or_else(|| {
-            Error::scene(format!("the run never passes {threshold}, with which the clock of its reference starts"))
+            let why = why_no_crossing(Some(sim), threshold);
+            Error::scene(format!("the run {why}: its passage starts the clock of the reference"))
         })
     }
 
@@ -409,20 +413,32 @@ fn without_gaps(reference: &TimeSeries, gaps: &[(f64, f64)]) -> Result<TimeSerie
     TimeSeries::new(t, x).map_err(|_| Error::scene("the run has no readings at the times of its reference"))
 }
 
-/// Returns the reason why `how` gives no delay; `None` if it is not meant to.
-fn why_unaligned(how: Align, arrival: Option<ArrivalTimes>) -> Option<String> {
+/// Returns the reason why `how` gives no delay between `run` and `reference`; `None` if it is not meant to.
+fn why_unaligned(
+    how: Align,
+    arrival: Option<ArrivalTimes>,
+    [run, reference]: [Option<&TimeSeries>; 2],
+) -> Option<String> {
     match (how, arrival) {
         (Align::Start(_), _) => None,
         (Align::Crossing(threshold), Some(ArrivalTimes { run: None, .. })) => {
-            Some(format!("the run never passes {threshold}: not aligned"))
+            Some(format!("the run {}: not aligned", why_no_crossing(run, threshold)))
         }
         (Align::Crossing(threshold), Some(ArrivalTimes { reference: None, .. })) => {
-            Some(format!("the reference never passes {threshold}: not aligned"))
+            Some(format!("the reference {}: not aligned", why_no_crossing(reference, threshold)))
         }
         (Align::Crossing(_), _) => Some("moved by the delay, the reference leaves the run: not aligned".into()),
         (Align::Best, _) => Some(
             "the best delay is beyond those that can be tried, 0.3 s and a tenth of the reference: not aligned".into(),
         ),
+    }
+}
+
+/// Returns the reason why `series` has no first crossing of a threshold.
+fn why_no_crossing(series: Option<&TimeSeries>, threshold: f64) -> String {
+    match series.is_some_and(|series| series.values()[0].abs() >= threshold) {
+        true => format!("is beyond {threshold} from its first reading on"),
+        false => format!("never passes {threshold}"),
     }
 }
 

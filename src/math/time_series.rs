@@ -185,10 +185,13 @@ impl TimeSeries {
         })
     }
 
-    /// The first time (s) at which |x| reaches `threshold`, linear between samples; none if it never does.
+    /// The first time (s) at which |x| reaches `threshold`, linear between samples; none if it never does, or is beyond it at the
+    /// first sample: the time is before the samples then.
     pub(crate) fn first_crossing(&self, threshold: f64) -> Option<f64> {
         let i = self.x.iter().position(|x| x.abs() >= threshold)?;
-        let Some(before) = i.checked_sub(1) else { return Some(self.t[0]) };
+        let Some(before) = i.checked_sub(1) else {
+            return (self.x[0].abs() <= threshold * (1.0 + ROUND_OFF)).then_some(self.t[0]);
+        };
         let (x0, x1) = (self.x[before], self.x[i]);
         // |x| = threshold on the way from x0 to x1, on the side on which x1 lies.
         let s = (threshold.copysign(x1) - x0) / (x1 - x0);

@@ -246,6 +246,28 @@ fn the_delay_of_a_late_run_is_found_from_its_crossing_and_from_the_best_fit() ->
     Ok(())
 }
 
+/// The run, 0.05 s late, is beyond the threshold when the time range begins or after the instrument is set to zero: its arrival
+/// lies before, and a delay of 0 would be wrong.
+#[test]
+fn a_series_that_begins_beyond_the_threshold_has_no_arrival() -> std::io::Result<()> {
+    let rise = |t: f64| 10.0 * (t - 1.0).max(0.0).powi(2);
+    let folder = folder("beyond", &table(|t| rise(t - 0.05)), &table(rise))?;
+    let limit = Score { delay: Some(0.01), ..Score::default() };
+    let plan = by_table("box.heave_m", ["t_s", "heave_m"], 0.0, None).align(Align::Crossing(1.0)).bound(limit);
+    for (late, why) in [(plan.clone().from(2.0), "from"), (plan.clone().zero(2.0), "zero")] {
+        let verdict = judge(&late, &folder);
+        assert!(verdict.aligned.is_none() && verdict.arrival.is_some_and(|a| a.run.is_none()), "{why}: {verdict:?}");
+        assert_eq!(verdict.passed, Some(false), "{why}");
+        assert!(verdict.note.is_some_and(|note| note.contains("beyond 1 from its first reading on")), "{why}");
+    }
+    let delay = judge(&plan.clone().from(0.5), &folder).aligned.map(|aligned| aligned.delay);
+    // The curvature of the rise between two samples is 1e-4 of its slope.
+    assert!(delay.is_some_and(|delay| (delay - 0.05).abs() < 2e-4), "{delay:?}");
+    let clock = judge(&plan.align(Align::Start(1.0)).zero(2.0), &folder);
+    assert!(clock.note.is_some_and(|note| note.contains("beyond 1 from its first reading on")));
+    Ok(())
+}
+
 /// The run repeats the reference, whose record ends at 1.5 s, and has a peak three times as high at 2.5 s.
 #[test]
 fn a_peak_of_the_run_after_the_end_of_the_reference_does_not_count() -> std::io::Result<()> {
