@@ -140,10 +140,12 @@ fn remarks(exported: &PanelledScene, asked: usize) -> String {
             );
         }
         let displaced = exported.water.density_kg_m3 * body.displaced_volume_m3;
-        if let Some(mass) = body.mass_kg.filter(|mass| (displaced / mass - 1.0).abs() > MASS) {
+        let carried = body.mass_kg.map(|mass| mass + body.enclosed_water_kg.unwrap_or(0.0));
+        let inside = if body.enclosed_water_kg.is_some() { " with the water inside" } else { "" };
+        if let Some(mass) = carried.filter(|mass| (displaced / mass - 1.0).abs() > MASS) {
             text += &format!(
-                "note: \"{}\" displaces {displaced:.4} kg where it starts and has {mass:.4} kg: the panels are of its start, not of its \
-                 rest\n  at = {{ draft = \"equilibrium\" }} places it at rest\n",
+                "note: \"{}\" displaces {displaced:.4} kg where it starts and has {mass:.4} kg{inside}: the panels are of its \
+                 start, not of its rest\n  at = {{ draft = \"equilibrium\" }} places it at rest\n",
                 body.name
             );
         }

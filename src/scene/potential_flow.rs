@@ -118,7 +118,7 @@ pub struct PanelledBody {
     pub wetted_area_m2: f64,
     /// Volume below the still water within the panels, m³.
     pub panel_volume_m3: f64,
-    /// Exact volume of the displaced water, m³.
+    /// Exact volume of the displaced outside water, m³. It carries the body and the enclosed water.
     pub displaced_volume_m3: f64,
     /// Centre of buoyancy, m.
     pub centre_of_buoyancy_m: [f64; 3],
@@ -216,10 +216,10 @@ impl SceneParts<3> {
         Err(usage(what, format!("name the solids of one basin, as  --solid {first}")))
     }
 
-    /// Returns the volume (m³) of the water that solid number `i` displaces, and its centroid.
+    /// Returns the volume (m³) of the outside water that solid number `i` displaces, and its centroid.
     fn displaced(&self, i: usize) -> (f64, Vector<3>) {
         let (pose, level) = (&self.placed.specs[i].pose, self.still_water_around(i).level);
-        self.placed.hull_at(i, pose, level, &self.water).submerged_volume(pose, level)
+        self.placed.hull_at(i, pose, level, &self.water).emptied().submerged_volume(pose, level)
     }
 
     fn panelled_body(&self, i: usize, gravity: f64, panel_count: usize) -> PanelledBody {

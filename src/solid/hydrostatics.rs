@@ -69,6 +69,11 @@ impl<'a, const D: usize> Hull<'a, D> {
         if any && all != 0.0 { (all, first / all) } else { (all, centroid) }
     }
 
+    /// The same hull without enclosed water, which displaces the water around it alike.
+    pub(crate) fn emptied(self) -> Self {
+        Self { dry: self.hollows().collect(), filled: Vec::new(), ..self }
+    }
+
     /// Volume (m³; m² in 2-D) of the enclosed water at `pose`.
     pub(crate) fn enclosed_volume(&self, pose: &Pose<D>) -> f64 {
         self.filled.iter().map(|(hollow, water)| water.volume(hollow, pose)).sum()

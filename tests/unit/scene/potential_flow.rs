@@ -4,9 +4,9 @@ use std::path::Path;
 
 use super::*;
 
-/// The hydrostatic stiffness of a dry tub of 1 m × 1 m × 0.8 m with walls and a floor of 0.2 m, 0.5 m deep in water of 1 m, with
-/// `more`, and the mass (kg) of the water inside.
-fn tub(more: &str) -> ([[f64; 6]; 6], Option<f64>) {
+/// The body of a dry tub of 1 m × 1 m × 0.8 m with walls and a floor of 0.2 m, 0.5 m deep in water of 1 m, with
+/// `more`.
+fn tub(more: &str) -> PanelledBody {
     let wall =
         |size: &str, at: &str| format!("{{ shape = {{ box = {{ size = [{size}] }} }}, at = {{ {at}, z = 0.5 }} }}");
     let walls = [
@@ -24,17 +24,32 @@ fn tub(more: &str) -> ([[f64; 6]; 6], Option<f64>) {
         walls.join(", ")
     );
     let scene = Scene::parse(&text, Path::new(""), &[]).unwrap();
-    let bodies = PanelledScene::new(&scene, &[], 200).unwrap().bodies;
-    (bodies[0].hydrostatic_stiffness, bodies[0].enclosed_water_kg)
+    PanelledScene::new(&scene, &[], 200).unwrap().bodies.remove(0)
+}
+
+/// Panels, volume and centre of buoyancy are those of the outside water, 1 m × 1 m × 0.5 m, with and without water inside.
+#[test]
+fn water_inside_a_hull_does_not_change_what_it_displaces() {
+    let water = "[[water]]\ninside = \"tub\"\nfill = { box = { min = [1.2, 1.2, 0.7], max = [1.8, 1.8, 1.1] } }";
+    for body in [tub(""), tub(water)] {
+        let height = body.centre_of_buoyancy_m[2];
+        assert!((body.displaced_volume_m3 - 0.5).abs() < 1e-9 && (height + 0.25).abs() < 1e-9, "{height}");
+        // The hull is of boxes: its panels enclose it up to round-off.
+        assert!((body.panel_volume_m3 - 0.5).abs() < 1e-9, "{}", body.panel_volume_m3);
+    }
 }
 
 #[test]
 fn water_inside_a_hull_rises_with_it_and_runs_to_its_lower_side() {
     let weight = 9810.0;
-    let (empty, none) = tub("");
+    let stiffness = |more: &str| {
+        let body = tub(more);
+        (body.hydrostatic_stiffness, body.enclosed_water_kg)
+    };
+    let (empty, none) = stiffness("");
     assert!(none.is_none() && (empty[2][2] - weight).abs() < 1e-3 * weight, "C33 = {}", empty[2][2]);
     let water = "[[water]]\ninside = \"tub\"\nfill = { box = { min = [1.2, 1.2, 0.7], max = [1.8, 1.8, 1.1] } }";
-    let (filled, own) = tub(water);
+    let (filled, own) = stiffness(water);
     // 0.36 m² up to 0.4 m above the floor at 0.7 m.
     assert!((filled[2][2] - weight).abs() < 1e-3 * weight, "C33 = {}", filled[2][2]);
     assert!((own.unwrap() - 144.0).abs() < 1.5, "{own:?}");
