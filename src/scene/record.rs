@@ -20,7 +20,7 @@ const MUCH_LONGER: f64 = 20.0;
 /// Largest difference between the spacings of even samples, over their mean, –.
 const UNEVEN: f64 = 0.01;
 
-/// Largest difference between a scale and the factor from degrees to radians, over it, –: 0.0175 is this factor.
+/// Largest difference between a given factor and that of a unit, over it, –: 0.0175 is that from degrees to radians.
 const SAME_FACTOR: f64 = 0.005;
 
 /// Values by which loggers mark missing ones.
@@ -153,14 +153,10 @@ impl Record<'_> {
         note_layout(self.ctx, self.key, self.file, &self.table);
         self.note_missing(&series);
         let unit = self.table.unit_as(time.clone(), Some(("s", self.ctx.dimension)))?;
-        if self.scaling.time_factor == 1.0 {
-            self.note_unit(&time, unit.as_deref(), Some("s"), "time_factor");
-        }
+        self.note_factor(&time, unit.as_deref(), Some("s"), ("time_factor", self.scaling.time_factor));
         let unit = self.table.unit_as(self.column.clone(), self.unit.map(|unit| (unit, self.ctx.dimension)))?;
-        if self.scaling.scale == 1.0 {
-            let value = unit.as_deref().filter(|unit| !table::is_time_span(unit));
-            self.note_unit(&self.column, value, self.unit, "scale");
-        }
+        let value = unit.as_deref().filter(|unit| !table::is_time_span(unit));
+        self.note_factor(&self.column, value, self.unit, ("scale", self.scaling.scale));
         if self.table.is_one_column(&time, &self.column) {
             self.ctx.add_note(FileNote::note(
                 "record_unit",
@@ -270,6 +266,15 @@ impl Record<'_> {
         format!("column \"{}\" of {} ({})", self.column, self.file, self.ctx.shown_key(self.key))
     }
 
+    /// Adds the warning that the `factor` of a column does not fit its `unit`.
+    fn note_factor(&self, column: &ColumnName, unit: Option<&str>, meant: Option<&str>, (key, factor): (&str, f64)) {
+        if factor == 1.0 {
+            self.note_unit(column, unit, meant, key);
+        } else {
+            self.note_inverse(column, unit, meant, (key, factor));
+        }
+    }
+
     /// Adds the warning that a column is in another `unit` than the one in which its values are `meant`.
     fn note_unit(&self, column: &ColumnName, unit: Option<&str>, meant: Option<&str>, key: &str) {
         let Some(unit) = unit else { return };
@@ -303,6 +308,25 @@ impl Record<'_> {
                 self.ctx.shown_key(self.key)
             ),
             remedy,
+        ));
+    }
+
+    /// Adds the warning that the given `factor` of a column is the inverse of that from its `unit` to the one `meant`.
+    fn note_inverse(&self, column: &ColumnName, unit: Option<&str>, meant: Option<&str>, (key, factor): (&str, f64)) {
+        let Some((unit, meant)) = unit.zip(meant) else { return };
+        let Some(Conversion::Factor(right)) = table::conversion(unit, meant, self.ctx.dimension) else { return };
+        let is_same = |ratio: f64| (ratio.abs() - 1.0).abs() < SAME_FACTOR;
+        if !is_same(factor * right) || is_same(factor / right) {
+            return;
+        }
+        let (file, shown) = (self.file, self.ctx.shown_key(self.key));
+        self.ctx.add_note(FileNote::warning(
+            "record_unit",
+            format!(
+                "column \"{column}\" of {file} ({shown}) is in {unit}, and {key} = {factor} is the inverse of the factor to \
+                 {meant}"
+            ),
+            format!("write  {key} = {}  beside the column", right.copysign(factor)),
         ));
     }
 

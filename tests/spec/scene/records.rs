@@ -189,6 +189,24 @@ fn scale_time_factor_and_offset_move_the_samples_exactly() {
 }
 
 #[test]
+fn a_factor_that_is_the_inverse_of_that_of_the_unit_is_warned_of() {
+    let record = "t_ms,x_mm\n0,0\n500,0\n1000,20\n2000,20\n";
+    let units = |more: &str| {
+        let law = format!("{{ file = \"record.csv\", column = \"x_mm\"{more} }}");
+        let found = findings(&folder("inverse", &law, record)).into_iter();
+        found.filter(|(_, topic, _)| *topic == "record_unit").map(|(severity, _, text)| (severity, text)).collect()
+    };
+    let found: Vec<(Severity, String)> = units(", scale = 1000, time_factor = 0.001");
+    let [(Severity::Warning, text)] = &found[..] else { panic!("{found:?}") };
+    assert!(text.contains("scale = 1000 is the inverse") && text.contains("write  scale = 0.001"), "{text}");
+    let found = units(", scale = 0.001, time_factor = 1000");
+    let [(Severity::Warning, text)] = &found[..] else { panic!("{found:?}") };
+    assert!(text.contains("time_factor = 1000 is the inverse") && text.contains("time_factor = 0.001"), "{text}");
+    // Other factors are meant.
+    assert_eq!(units(", scale = -0.002, time_factor = 0.001"), []);
+}
+
+#[test]
 fn a_run_and_an_inspection_note_the_layout_of_a_table_and_its_units() -> pontoon::Result<()> {
     let rows: String = samples(0.0, 31).map(|(t, x)| format!("{t:.2};{x:.6}\n").replace('.', ",")).collect();
     let folder = folder("layout", "{ file = \"record.csv\", column = 2 }", rows);
