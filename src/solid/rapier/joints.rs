@@ -291,7 +291,7 @@ impl RapierJoints {
             Kinematics { velocity, spin, ..kinematics_of(&world.bodies[body]) }
         };
         let solids: Vec<_> = bodies.iter().map(at_rest).collect();
-        let chosen: Vec<bool> = (0..joints + self.ropes.len()).map(|i| i < joints).collect();
+        let chosen: Vec<_> = (0..joints + self.ropes.len()).map(|i| (i < joints).then_some(0.0)).collect();
         let (rows, _) = self.rows(world, bodies, &solids, &chosen, 1.0);
         let gains = |touch: &Touch, axis: usize| {
             let (mut loads, unit) = (vec![Load::zero(); bodies.len()], Vector::ith(axis, 1.0));
