@@ -85,7 +85,8 @@ pub(in crate::solid) struct RapierWorld {
     /// A tenth of the smallest thickness of a free body, m: the distance at which the engine begins to predict
     /// contacts.
     reach: f64,
-    /// Duration of an iteration for which the contact stiffness was last set, s; 0 if the next step sets it anew.
+    /// Duration of an iteration for which the contact stiffness was last set, s; 0 before the first step, and negative if the
+    /// number of iterations has changed since.
     tuned_for: f64,
     pushes: Vec<Push>,
     ties: RapierJoints,
@@ -188,13 +189,13 @@ impl RapierWorld {
         let ahead = if self.bounces { restitution::SEARCH } else { 2.0 };
         parameters.normalized_prediction_distance = self.reach.max(ahead * fastest * dt);
         let iterations = parameters.num_solver_iterations as f64;
-        let (step, tuned_for) = (dt / iterations, self.tuned_for);
-        let suitable = tuned_for.clamp(0.5 * step, 2.0 * step);
-        if suitable == tuned_for {
+        let (step, tuned_for) = (dt / iterations, self.tuned_for.abs());
+        if (0.5..=2.0).contains(&(step / tuned_for)) {
+            self.tuned_for = tuned_for;
             return;
         }
-        let presses = tuned_for > 0.0 && self.has_contact_points();
-        let gradual = suitable.max(tuned_for - TUNING * dt);
+        let presses = self.tuned_for > 0.0 && self.has_contact_points();
+        let gradual = tuned_for.clamp(0.5 * step, 2.0 * step).max(tuned_for - TUNING * dt);
         let (tuned_for, of_step) = if presses { (gradual, gradual * iterations) } else { (step, dt) };
         self.tuned_for = tuned_for;
         let frequency = (0.05 / of_step).min(1000.0) * iterations;
@@ -208,11 +209,10 @@ impl RapierWorld {
     fn foresee(&mut self) {
         let number = if self.has_contact_points() { self.when_near } else { 1 };
         let parameters = &mut self.world.integration_parameters;
-        let step = parameters.dt / number as f64;
-        if number != parameters.num_solver_iterations && !(0.5..=2.0).contains(&(step / self.tuned_for)) {
-            self.tuned_for = 0.0;
+        if number != parameters.num_solver_iterations {
+            parameters.num_solver_iterations = number;
+            self.tuned_for = -self.tuned_for.abs();
         }
-        parameters.num_solver_iterations = number;
     }
 
     /// Returns whether the engine has a point of contact, or of a contact that it predicts.
