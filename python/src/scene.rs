@@ -85,13 +85,23 @@ impl NativeScene {
 
     /// Returns the scene with another solid at its end, written as the keys of a `[[solid]]` section.
     pub fn with_solid(&self, solid: &str) -> Result<Scene> {
-        let text = format!("{}\n[[solid]]\n{solid}\n", self.scene.to_toml()?);
-        let folder = match &self.origin {
+        let text = self.text_with([solid])?;
+        self.origin.named(Scene::parse(&text, self.folder(), &[]))
+    }
+
+    /// Returns the text of the scene with more solids at its end, each written as the keys of a `[[solid]]` section.
+    fn text_with<'a>(&self, solids: impl IntoIterator<Item = &'a str>) -> Result<String> {
+        let more = solids.into_iter().map(|solid| format!("\n[[solid]]\n{solid}\n"));
+        Ok(self.scene.to_toml()? + &more.collect::<String>())
+    }
+
+    /// Returns the folder of the files that the scene names.
+    fn folder(&self) -> &Path {
+        match &self.origin {
             Origin::Found(found, _) if found.path().is_dir() => found.path(),
             Origin::Found(found, _) => found.path().parent().unwrap_or(Path::new("")),
             Origin::Text(_, folder) => folder,
-        };
-        self.origin.named(Scene::parse(&text, folder, &[]))
+        }
     }
 }
 
@@ -116,6 +126,12 @@ impl NativeScene {
         overrides.retain(|(known, _)| changes.iter().all(|(key, _)| key != known));
         overrides.extend(changes);
         Self::new(self.origin.clone(), overrides).or_raise(py)
+    }
+
+    /// Returns the scene with more solids at its end, each written as the keys of a `[[solid]]` section.
+    fn with_solids(&self, py: Python<'_>, solids: Vec<String>) -> PyResult<Self> {
+        let text = self.text_with(solids.iter().map(String::as_str)).or_raise(py)?;
+        Self::new(Origin::Text(text, self.folder().to_owned()), Vec::new()).or_raise(py)
     }
 
     /// Returns kind ("found" or "text"), word or text, folder, and changed keys: what `find` or `parse` takes.

@@ -4,6 +4,7 @@
 //! 2-D and three in 3-D; rotations are row-major D×D matrices.
 
 use std::{
+    cell::RefCell,
     sync::atomic::{AtomicBool, Ordering},
     time::{Duration, Instant},
 };
@@ -15,7 +16,7 @@ use pontoon::{
     plan::Plan,
     probe::{MotionProbe, Probe, ProbeKind},
     scene::Scene,
-    simulation::{AddedSolid, BodyStep, Dimension, Simulation},
+    simulation::{AddedSolid, BodyStep, Dimension, Setup, Simulation},
     solid::{Dim, Kinematics, Load, MotorCommand, Role, Solid, SolidSpec, SpringParameters},
 };
 
@@ -194,7 +195,12 @@ pub trait World: Send {
 /// A simulation with the probes of its scene.
 struct Running<const D: usize> {
     sim: Simulation<D>,
-    probes: Vec<(String, Box<dyn Probe<D>>)>,
+    /// The scene, of which another probe reads the start.
+    scene: Scene,
+    /// The probes of the scene with their names.
+    probes: Vec<(String, StartedProbe<D>)>,
+    /// Probes that were read, and whose readings count from the start of the simulation.
+    from_start: RefCell<Vec<StartedProbe<D>>>,
     /// Probes of the motion of each solid of the scene, whose displacements count from the start.
     motions: Vec<(String, MotionProbe<D>)>,
     /// Names of the joints and of the springs.
@@ -209,6 +215,9 @@ struct Running<const D: usize> {
     called: Option<f64>,
     calls: Duration,
 }
+
+/// A probe that has read the start of the simulation, and its kind.
+type StartedProbe<const D: usize> = (ProbeKind, Box<dyn Probe<D>>);
 
 /// Builds the scene for bodies of the program, or of another program if `hosted`.
 ///
@@ -303,23 +312,84 @@ where
         let ties = &built.setup.constraints;
         let joints = ties.joints.iter().map(|joint| joint.name.clone()).collect();
         let constraints = [joints, ties.springs.iter().map(|spring| spring.name.clone()).collect()];
-        let made = if hosted { Simulation::with_external_bodies(built.setup) } else { Simulation::new(built.setup) };
-        let mut sim = made.map_err(|error| scene.with_location(error))?;
+        let mut sim = simulation(scene, built.setup, hosted)?;
         let kinds = || built.plan.probes.iter().map(|probe| &probe.kind);
         kinds().for_each(|kind| kind.enable_records(&mut sim));
         let accounted = [
             kinds().any(|kind| matches!(kind, ProbeKind::Balance(_))),
             kinds().any(|kind| matches!(kind, ProbeKind::Budget(_))),
         ];
-        let probes = built.plan.probes.iter().map(|probe| Ok((probe.name.clone(), probe.kind.build(sim.system())?)));
+        let started = |kind: &ProbeKind| Ok((kind.clone(), kind.build(sim.system())?));
+        let probes = built.plan.probes.iter().map(|probe| Ok((probe.name.clone(), started(&probe.kind)?)));
         let probes = probes.collect::<Result<_>>()?;
         let names = sim.system().solids().iter().map(|solid| solid.spec.name.clone());
         let motions = names.map(|name| Ok((name.clone(), MotionProbe::new(sim.system(), &name)?)));
         let motions = motions.collect::<Result<_>>()?;
+        let (scene, from_start) = (scene.clone(), RefCell::default());
         let (pushes, data, commands) = (Vec::new(), StepData::default(), Commands::default());
         let (called, calls) = (None, Duration::ZERO);
-        Ok(Self { sim, probes, motions, constraints, accounted, pushes, data, commands, called, calls })
+        Ok(Self {
+            sim,
+            scene,
+            probes,
+            from_start,
+            motions,
+            constraints,
+            accounted,
+            pushes,
+            data,
+            commands,
+            called,
+            calls,
+        })
     }
+
+    /// Returns whether readings of this kind refer to the start of the simulation: to a level, an energy or the place of a patch.
+    /// Motions do so too; each solid of the scene has a probe of its own. A solid that was added later is not there at the start.
+    fn counts_from_start(&self, kind: &ProbeKind) -> bool {
+        let solid = match kind {
+            ProbeKind::Energy(_) => None,
+            ProbeKind::Elevation(plan) => plan.on.as_ref(),
+            ProbeKind::Runup(plan) => Some(&plan.solid),
+            ProbeKind::Patch(plan) => Some(&plan.solid),
+            _ => return false,
+        };
+        solid.is_none_or(|solid| self.motions.iter().any(|(name, _)| name == solid))
+    }
+
+    /// Returns columns and readings now of a probe of this kind, whose readings count from the start of the simulation. If no
+    /// such probe has read the start, it reads that of the scene, which is built anew.
+    fn read_from_start(&self, kind: &ProbeKind) -> Result<(Vec<String>, Vec<f64>)> {
+        if let Some((_, (_, probe))) = self.probes.iter().find(|(_, (known, _))| known == kind) {
+            return Ok((probe.columns(), probe.sample(&self.sim)));
+        }
+        let mut known = self.from_start.borrow_mut();
+        let i = match known.iter().position(|(known, _)| known == kind) {
+            Some(i) => i,
+            None => {
+                let probe = match self.sim.steps() {
+                    0 => kind.build(self.sim.system())?,
+                    _ => {
+                        let setup = self.scene.build::<D>()?.setup;
+                        kind.build(simulation(&self.scene, setup, self.sim.has_external_bodies())?.system())?
+                    }
+                };
+                known.push((kind.clone(), probe));
+                known.len() - 1
+            }
+        };
+        let probe = &known[i].1;
+        Ok((probe.columns(), probe.sample(&self.sim)))
+    }
+}
+
+/// Returns the simulation of `setup`, which is that of the scene.
+fn simulation<const D: usize>(scene: &Scene, setup: Setup<D>, hosted: bool) -> Result<Simulation<D>>
+where
+    Dim<D>: Dimension<D>,
+{
+    let made = if hosted { Simulation::with_external_bodies(setup) } else { Simulation::new(setup) };
+    made.map_err(|error| scene.with_location(error))
 }
 
 impl<const D: usize> Running<D>
@@ -470,6 +540,7 @@ where
             };
             let (columns, values) = match from_start {
                 Some((_, motion)) => (motion.columns(), motion.sample(&self.sim)),
+                None if self.counts_from_start(&probe.kind) => self.read_from_start(&probe.kind)?,
                 None => {
                     let built = probe.kind.build(self.sim.system())?;
                     (built.columns(), built.sample(&self.sim))
@@ -482,7 +553,7 @@ where
 
     fn read_own(&self) -> Vec<ProbeReading> {
         let read =
-            |(name, probe): &(String, Box<dyn Probe<D>>)| (name.clone(), probe.columns(), probe.sample(&self.sim));
+            |(name, (_, probe)): &(String, StartedProbe<D>)| (name.clone(), probe.columns(), probe.sample(&self.sim));
         self.probes.iter().map(read).collect()
     }
 

@@ -205,6 +205,37 @@ def test_probes_are_read_at_any_time(tank: pt.Scene) -> None:
         sim.read({"balance": "crate"})
 
 
+@pytest.mark.parametrize(
+    "probe",
+    [
+        pt.elevation(at=0.15),
+        pt.runup("tank"),
+        pt.energy(),
+        # The lower side of the crate at the start.
+        {"patch": {"solid": "crate", "box": {"min": [0.3, 0.54], "max": [0.7, 0.56]}}},
+    ],
+)
+def test_a_probe_that_is_read_late_counts_from_the_start_as_one_of_the_scene(
+    tank: pt.Scene, probe: dict[str, Any]
+) -> None:
+    tank["solid.crate.at"] = {"x": 0.5, "y": 0.65}
+    alone = tank.build(threads=1)
+    tank["probe"] = [probe]
+    own = tank.build(threads=1)
+    for sim in (alone, own):
+        sim.advance(0.25)
+    [known] = own.sample().values()
+    read = alone.read(probe)
+    assert read == known and own.read(probe) == known
+    changes = [read[name] for name in read if name.startswith(("eta", "runup", "total", "p_max"))]
+    assert all(abs(change) > 1e-3 for change in changes) and changes, "the crate has fallen into the water"
+    # The start is the same after a restart.
+    other = pickle.loads(pickle.dumps(alone))
+    for sim in (alone, other):
+        sim.step()
+    assert other.read(probe) == alone.read(probe)
+
+
 def test_records_of_the_scene_are_read(tank: pt.Scene) -> None:
     tank["probe"] = [{"balance": "crate"}, {"budget": True}]
     sim = tank.build()
@@ -250,6 +281,7 @@ def test_solids_are_added_and_removed(tank: pt.Scene) -> None:
     # The area of the ball over that of a particle, within what a coarse lattice gives.
     assert displaced == pytest.approx(np.pi * 0.08**2 / 0.05**2, abs=4)
     assert list(sim.solids) == ["tank", "crate", "ball"] and sim["ball"].role == "free"
+    assert sim.read(pt.motion("ball"))["surge_m"] == 0.0 and "fx_N_per_m" in sim.read(pt.force("ball"))
     sim.advance(0.05, control=lambda h: h["ball"].load)
     other = pickle.loads(pickle.dumps(sim))
     sim.advance(0.1)

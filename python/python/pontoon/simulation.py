@@ -281,8 +281,8 @@ class _Stepped:
     def read(self, probe: Probe) -> Reading:
         """Reads a probe now, as `sim.read(pt.elevation(at=1.2))["eta_m"]`.
 
-        Returns the values by column; a value is NaN where there is nothing to measure. Displacements of a solid of the scene
-        count from the start, those of a solid added later from this reading.
+        Returns the values by column; a value is NaN where there is nothing to measure. Displacements, rises of the water and
+        potential energies count from the start of the scene, displacements of a solid added later from this reading.
 
         Args:
             probe: a dictionary with the keys of a `[[probe]]` section; `pt.elevation` and others make them.
@@ -296,7 +296,9 @@ class _Stepped:
         if scene is None:
             # The probe stands alone in a scene like this one, so that the program checks it.
             alone = [("check", "[]"), ("statistic", "[]"), ("probe", f"[{text}]")]
-            scene = self._probes[text] = self._scene._native.with_overrides(alone)
+            scene = self._scene._native.with_overrides(alone[:2])
+            scene = scene.with_solids(self._added) if self._added else scene
+            scene = self._probes[text] = scene.with_overrides(alone[2:])
         return Reading(next(iter(self._native.read_probes(scene).values())))
 
     def sample(self) -> dict[str, Reading]:
