@@ -211,8 +211,8 @@ struct Running<const D: usize> {
     /// What a callback sees, and its commands. All steps use the same memory.
     data: StepData,
     commands: Commands,
-    /// When the callback was called last in this advance, s.
-    called: Option<f64>,
+    /// When the callback was called last in this advance, and when it is due again, s.
+    called: Option<[f64; 2]>,
     calls: Duration,
 }
 
@@ -427,10 +427,13 @@ where
     fn step_with(&mut self, end: f64, control: &mut Control<'_>) -> Result<bool> {
         let now = self.sim.time();
         // A rollback takes the clock back, and a call is due again.
-        let after = (1.0 - 1e-9) * control.every;
-        let mut due = self.called.is_none_or(|last| now < last || now >= last + after);
+        let begun = self.called.filter(|[last, _]| now >= *last);
+        let mut due = begun.is_none_or(|[_, next]| now >= next - 1e-9 * control.every);
         if due {
-            self.called = Some(now);
+            // Calls are due at multiples of the interval after the first one; those within this step are left out.
+            let passed = begun.map_or(0.0, |[_, next]| ((now - next) / control.every).max(0.0).floor());
+            let first = begun.map_or(now, |[_, next]| next);
+            self.called = Some([now, first + control.every * (1.0 + if passed.is_finite() { passed } else { 0.0 })]);
             self.read_start();
         }
         self.commands.clear();

@@ -236,6 +236,15 @@ def test_a_probe_that_is_read_late_counts_from_the_start_as_one_of_the_scene(
     assert other.read(probe) == alone.read(probe)
 
 
+def test_calls_come_at_multiples_of_their_interval(tank: pt.Scene) -> None:
+    times: list[float] = []
+    sim = tank.build(threads=1)
+    # Steps of about 1.4 ms: an interval that grew by a part of a step at each call would be 0.0027 s long.
+    sim.advance(0.2, control=lambda h: times.append(h.time), every=0.002)
+    assert np.array(times) == pytest.approx(0.002 * np.arange(len(times)), abs=2.0 * sim.step_limit)
+    assert len(times) == pytest.approx(100, abs=1)
+
+
 def test_records_of_the_scene_are_read(tank: pt.Scene) -> None:
     tank["probe"] = [{"balance": "crate"}, {"budget": True}]
     sim = tank.build()
