@@ -323,6 +323,11 @@ def test_a_study_gives_a_table(tank: pt.Scene, tmp_path: Path) -> None:
     study = pt.study(tank, out=tmp_path / "study", dp=[0.05, 0.04], vary={"model.viscosity": ["none"]})
     assert [row["dp_m"] for row in study.rows] == [0.05, 0.04] and not study.failed
     assert len(study.runs) == 2 and {run.status for run in study.runs} == {"finished"}
+    # Runs of other scenes are set aside under new names.
+    for _ in range(2):
+        tank["solid.crate.friction"] = 0.1 + float(tank["solid.crate.friction"])
+        study = pt.study(tank, out=tmp_path / "study", dp=[0.05, 0.04], vary={"model.viscosity": ["none"]})
+    assert len(list((tmp_path / "study" / "runs").iterdir())) == 6 and len(study.runs) == 2
 
 
 def test_a_study_finds_the_files_of_a_text_and_has_a_folder(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import itertools
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -137,7 +138,7 @@ def _name(scene: str) -> str:
 def _runs(folder: Path) -> list[Run]:
     """Returns the runs of a study, without those that were set aside."""
     manifests = sorted((folder / "runs").glob("*/manifest.json"))
-    return [Run(path.parent) for path in manifests if not path.parent.name.endswith(".old")]
+    return [Run(path.parent) for path in manifests if not re.search(r"\.old(-\d+)?$", path.parent.name)]
 
 
 def _command(name: str, arguments: list[str], folder: Path, threads: int | None, quiet: bool) -> bool:
