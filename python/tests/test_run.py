@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import pontoon as pt
+from pontoon.run import Statistics
 
 from conftest import TANK, TANK_3D, needs_signals
 
@@ -315,6 +316,19 @@ period = 2.5
     assert {row["series"] for row in regular if row["quantity"] == "rao"} == set(told)
     by_period = {row["series"]: row["value"] for row in regular if row["quantity"] == "rao"}
     assert by_period["crate.roll_deg"] == pytest.approx(40.0, rel=0.01)
+
+
+def test_a_statistic_of_several_series_or_names_is_not_chosen_by_chance() -> None:
+    def row(name: str, series: str, value: float) -> pt.Statistic:
+        return pt.Statistic(name, series, "mean", value, "m", 0.0, 1.0)
+
+    rows = [row("", "fore.heave_m", 1.0), row("", "aft.heave_m", 2.0), row("late", "aft.heave_m", 3.0)]
+    stats = Statistics([*rows, row("a", "gauge.eta_m", 4.0), row("b", "gauge.eta_m", 5.0)], [])
+    assert stats.value("aft.heave", "mean") == 2.0 and stats.value("aft.heave", "mean", "late") == 3.0
+    assert stats.value("eta", "mean", "b") == 5.0
+    for series, part in (("heave", "fore.heave_m, aft.heave_m"), ("eta", "a, b"), ("surge", "surge mean")):
+        with pytest.raises(pt.UnknownNameError, match=part):
+            stats.value(series, "mean")
 
 
 def test_a_study_gives_a_table(tank: pt.Scene, tmp_path: Path) -> None:

@@ -148,16 +148,29 @@ class Statistics(list[Statistic]):
         super().__init__(rows)
         self.remarks = remarks
 
-    def value(self, series: str, quantity: str) -> float:
+    def value(self, series: str, quantity: str, name: str | None = None) -> float:
         """Returns the value of a quantity of a series, as `stats.value("buoy.heave_m", "H_mean")`.
 
+        Args:
+            series: "probe.column", or a part of it that belongs to one series.
+            quantity: as "mean".
+            name: name of the `[[statistic]]`; by default the statistic that every series has, else the only one.
+
         Raises:
-            UnknownNameError: the series has no such quantity. It is a KeyError too.
+            UnknownNameError: no series or several have such a quantity, or several statistics. It is a KeyError too.
         """
-        for row in self:
-            if row.quantity == quantity and (row.series == series or series in _short_names(row.series)):
-                return row.value
-        raise unknown("statistic", f"{series} {quantity}", [f"{row.series} {row.quantity}" for row in self])
+        rows = [row for row in self if row.quantity == quantity and (name is None or row.name == name)]
+        known = list(dict.fromkeys(row.series for row in rows))
+        if series not in known and not any(series in _short_names(full) for full in known):
+            raise unknown("statistic", f"{series} {quantity}", [f"{row.series} {row.quantity}" for row in self])
+        full = full_name(series, known)
+        rows = [row for row in rows if row.series == full]
+        usual = [row for row in rows if row.name == ""] or rows
+        if len(usual) > 1:
+            what = f"{full} has several values of {quantity}: of {', '.join(row.name for row in usual)}"
+            help = "give the name of the statistic"
+            raise UnknownNameError(f"{what}\n  {help}", code="unknown-name", message=what, help=help)
+        return usual[0].value
 
     def to_pandas(self) -> pandas.DataFrame:
         """Returns a table with a row for each statistic."""
