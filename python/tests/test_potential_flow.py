@@ -1,6 +1,7 @@
 """Bodies for potential-flow solvers: panels, hydrostatics, measured and computed coefficients."""
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -148,6 +149,14 @@ def test_a_driven_body_is_measured_from_its_probes(tank_3d: pt.Scene, tmp_path: 
     assert measured.amplitude == pytest.approx(0.01, rel=0.05) and measured.added_mass > 0.0
     with pytest.raises(pt.UsageError, match="rotation"):
         potential_flow.measure_forced_motion(run, body, 80.0, motion="roll")
+    # Series of another solid are not those of the body, and means do not belong to the times of other readings.
+    lid = replace(body, name="crat")
+    with pytest.raises(pt.UsageError, match="0 probes of the motion of 'crat'"):
+        potential_flow.measure_forced_motion(run, lid, 80.0)
+    scene["probe.crate_force.average"] = True
+    means = pt.run(scene, out=tmp_path / "means", report=False)
+    with pytest.raises(pt.UsageError, match="same average"):
+        potential_flow.measure_forced_motion(means, body, 80.0)
 
 
 def test_capytaine_has_the_same_stiffness_and_the_coefficients_of_theory(tmp_path: Path) -> None:

@@ -318,6 +318,23 @@ period = 2.5
     assert by_period["crate.roll_deg"] == pytest.approx(40.0, rel=0.01)
 
 
+def test_a_harmonic_of_means_has_the_phase_of_what_they_are_means_of(tmp_path: Path) -> None:
+    # A driven box, read now and as means over a sixth of a period: 30 degrees late at the end of their interval.
+    text = TANK.replace("free = { density = 500.0 }", 'driven = { along = [1, 0], distance = { formula = "0.01*sin(40*t)" } }')
+    text = text.replace('draft = "equilibrium"', "y = 0.5") + """
+[[probe]]
+name = "means"
+motion = "crate"
+every = 0.02618
+average = true
+"""
+    run = pt.run(pt.Scene.from_toml(text).set(frames="off", until=0.5), out=tmp_path / "run", report=False)
+    means, whole = (run.series[f"{name}.surge_m"].harmonic(np.pi / 20.0) for name in ("means", "crate"))
+    assert abs(np.angle(means / whole)) < np.radians(1.0) and abs(whole) == pytest.approx(0.01, rel=1e-3)
+    # The amplitude is lower by sin(x)/x with half the interval, 0.5236 rad.
+    assert abs(means / whole) == pytest.approx(np.sin(0.5236) / 0.5236, rel=0.01)
+
+
 def test_a_statistic_of_several_series_or_names_is_not_chosen_by_chance() -> None:
     def row(name: str, series: str, value: float) -> pt.Statistic:
         return pt.Statistic(name, series, "mean", value, "m", 0.0, 1.0)

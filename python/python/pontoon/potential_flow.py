@@ -420,23 +420,25 @@ def measure_forced_motion(
     i = _number(motion)
     if i > 2:
         raise usage(f"{motion} is a rotation", "fit_forced_motion takes its angle and the moment about its axis")
-    moved, load = (_series(run, body.name, column) for column in (f"{motion}_m", _LOADS[i]))
+    moved, load = (_series(run, body.name, *of) for of in (("motion", f"{motion}_m"), ("force", _LOADS[i])))
     if len(moved.t) != len(load.t) or not np.array_equal(moved.t, load.t):
         raise usage("motion and force were read at different times", "give both probes the same every")
+    if moved._is_mean != load._is_mean:
+        raise usage("one of motion and force is read as means, the other is not", "give both probes the same average")
     return fit_forced_motion(
         moved.t, moved.values, load.values, omega, motion=motion, stiffness=float(body.stiffness[i, i]), start=start
     )
 
 
-def _series(run: Run, solid: str, column: str) -> Series:
-    """Returns the series with this column of a probe of the solid: the only one, or that of a probe with the solid's name."""
-    found = [name for name in run.series if name.split(".", 1)[1] == column]
-    own = [name for name in found if name.startswith((f"{solid}.", f"{solid}_"))]
-    for names in (own, found):
+def _series(run: Run, solid: str, kind: str, column: str) -> Series:
+    """Returns the series with this column of the probe of this kind of the solid, by default the one without a name."""
+    found = [str(probe["name"]) for probe in run._probes() if probe.get(kind) == solid]
+    usual = solid if kind == "motion" else f"{solid}_{kind}"
+    for names in ([name for name in found if name == usual], found):
         if len(names) == 1:
-            return run.series[names[0]]
-    help = f'write probes  motion = "{solid}"  and  force = "{solid}"  without names of their own into the scene'
-    raise usage(f"the run has {len(found)} series {column}, and which is that of {solid!r} is not known", help)
+            return run.series[f"{names[0]}.{column}"]
+    help = f'write one probe  {kind} = "{solid}"  without a name of its own into the scene'
+    raise usage(f"the run has {len(found)} probes of the {kind} of {solid!r}", help)
 
 
 def compare_forced_motions(measured: Sequence[ForcedMotion], computed: PotentialFlow) -> tuple[Comparison, Comparison]:

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from . import _pontoon
 from ._errors import FileError, RestartError, UnknownNameError, unknown, usage
-from .scene import Scene
+from .scene import Scene, parsed
 
 if TYPE_CHECKING:
     import pandas
@@ -63,6 +63,8 @@ class Series:
     t: Floats
     values: Floats
     unit: str
+    #: Whether each value but the first is the mean since the one before.
+    _is_mean: bool = False
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> NDArray[Any]:
         return np.array(self.values, dtype=dtype)
@@ -70,7 +72,8 @@ class Series:
     def harmonic(self, period: float, since: float = 0.0) -> complex:
         """Returns the harmonic of `period` (s) as the factor of exp(iωt), in the unit of the values, beside a mean and a trend.
 
-        Least squares over the whole periods at the end that begin at or after the time `since` (s).
+        Least squares over the whole periods at the end that begin at or after the time `since` (s). A mean counts in the middle
+        of its interval.
 
         Raises:
             UsageError: there is no whole period.
@@ -79,11 +82,18 @@ class Series:
         if not whole > 0.0:
             raise usage(f"{self.name} has no whole period of {period:g} s after {since:g} s", "give a period above 0 s that the series holds")
         chosen = self.t >= self.t[-1] - whole
-        t, x = self.t[chosen], self.values[chosen]
+        t, x = self._middles()[chosen], self.values[chosen]
         phase = 2.0 * np.pi * t / period
         basis = np.stack([np.cos(phase), np.sin(phase), np.ones_like(phase), t], axis=1)
         cosine, sine, *_ = np.linalg.lstsq(basis, x, rcond=None)[0]
         return complex(cosine, -sine)
+
+    def _middles(self) -> Floats:
+        """Returns the times to which the values belong: the middle of its interval for a mean."""
+        middles: Floats = self.t.copy()
+        if self._is_mean:
+            middles[1:] = 0.5 * (self.t[:-1] + self.t[1:])
+        return middles
 
     def __len__(self) -> int:
         return len(self.values)
@@ -95,7 +105,8 @@ class AllSeries(Mapping[str, Series]):
     An unknown name raises UnknownNameError, which is a KeyError too.
     """
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, probes: Collection[Mapping[str, Any]]) -> None:
+        self._kinds = {str(probe.get("name")): probe for probe in probes}
         self._tables: dict[str, tuple[Floats, dict[str, Floats]]] = {}
         self._names: dict[str, tuple[str, str]] = {}
         for path in sorted((folder / "series").glob("*.csv")):
@@ -107,7 +118,7 @@ class AllSeries(Mapping[str, Series]):
         full = full_name(name, self._names)
         table, column = self._names[full]
         times, columns = self._tables[table]
-        return Series(full, times, columns[column], _pontoon.unit(column))
+        return Series(full, times, columns[column], _pontoon.unit(column), _is_mean(self._kinds.get(table, {}), column))
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._names)
@@ -339,8 +350,18 @@ class Run:
     def series(self) -> AllSeries:
         """The series by name."""
         if self._series is None:
-            self._series = AllSeries(self.folder)
+            self._series = AllSeries(self.folder, self._probes())
         return self._series
+
+    def _probes(self) -> list[dict[str, Any]]:
+        """Returns the keys of each probe with their effective values."""
+        probes: dict[str, dict[str, Any]] = {}
+        for entry in self._manifest.get("values", []):
+            section, _, rest = entry["key"].partition(".")
+            number, _, key = rest.partition(".")
+            if section == "probe":
+                probes.setdefault(number, {})[key] = parsed(entry["value"])
+        return list(probes.values())
 
     @property
     def frames(self) -> Frames:
@@ -535,6 +556,13 @@ def full_name(name: str, known: Collection[str]) -> str:
         what, help = f"{name!r} may be each of {', '.join(found)}", "give the whole name"
         raise UnknownNameError(f"{what}\n  {help}", code="unknown-name", message=what, help=help)
     raise unknown("series", name, known)
+
+
+def _is_mean(probe: Mapping[str, Any], column: str) -> bool:
+    """Returns whether readings in a column of a probe with these keys are means; totals are none."""
+    is_total = column.startswith(("volume_", "absorbed_")) or "budget" in probe
+    is_total = is_total or ("face" in probe and not column.startswith("water_"))
+    return probe.get("average") is True and not is_total
 
 
 def _short_names(full: str) -> set[str]:

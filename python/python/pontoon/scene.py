@@ -165,11 +165,11 @@ class Scene:
         numbered = re.compile(rf"{re.escape(section)}\.(\d+)\.name")
         for known, value in values.items():
             found = numbered.fullmatch(known)
-            if found and key not in values and _parsed(value) == name:
+            if found and key not in values and parsed(value) == name:
                 key = f"{section}.{found[1]}.{rest}"
         if key not in values:
             raise unknown("effective value with the key", key, values, code="unknown-key")
-        return _parsed(values[key])
+        return parsed(values[key])
 
     def copy(self) -> Scene:
         """Returns a scene with the same origin and the same changed keys."""
@@ -177,7 +177,7 @@ class Scene:
 
     def values(self) -> dict[str, tuple[Any, str]]:
         """Returns every effective value with its source: a line of the scene, a change, or a default with its reason."""
-        return {key: (_parsed(value), source) for key, value, source in self._native.values()}
+        return {key: (parsed(value), source) for key, value, source in self._native.values()}
 
     @property
     def title(self) -> str | None:
@@ -265,7 +265,7 @@ class Scene:
         return f"<Scene {self.title!r}: {self.dimension}-D, dp {self.dp} m, until {self.until} s>"
 
 
-def _parsed(text: str) -> Any:
+def parsed(text: str) -> Any:
     """Returns the value of a TOML text."""
     if text in ("true", "false"):
         return text == "true"
