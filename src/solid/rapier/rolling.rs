@@ -15,16 +15,17 @@ use super::super::rapier::{
             PersistentQueryDispatcher, QueryDispatcher, ShapeCastHit, ShapeDistance, ShapeIntersection, Unsupported,
             details::{NormalConstraints, ShapeCastOptions},
         },
-        shape::Shape,
+        shape::{Compound, Shape},
     },
 };
 
 /// The geometric queries of the engine, without kept points of contact on capsules and cylinders.
 pub(super) struct RollingContacts;
 
-/// Returns whether a shape has a face that is curved along the line on which it rolls.
+/// Returns whether a shape, or a part of it, has a face that is curved along the line on which it rolls.
 fn is_round(shape: &dyn Shape) -> bool {
-    ROUND.contains(&shape.shape_type())
+    let has_round_part = |parts: &Compound| parts.shapes().iter().any(|(_, part)| is_round(&**part));
+    ROUND.contains(&shape.shape_type()) || shape.as_compound().is_some_and(has_round_part)
 }
 
 impl QueryDispatcher for RollingContacts {

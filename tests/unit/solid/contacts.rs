@@ -402,11 +402,14 @@ fn cylinders_and_capsules_roll_as_balls_do() {
     let inertia = 0.5 * 0.01;
     let exact = 0.5 * G * 10f64.to_radians().sin() * 0.25 / 1.5;
     let cylinder = Shape::Cylinder { length: 0.2, radius: 0.1, axis: 1 };
+    let hub = (Pose::identity(), Shape::Ball { radius: 0.05 });
+    let compound = Shape::Compound(vec![(Pose::identity(), cylinder.clone()), hub]);
     let rollers = [
         ("ball", rolled::<2>(Shape::Ball { radius: 0.1 }, inertia)),
         ("capsule in 2-D", rolled::<2>(Shape::Capsule { length: 1e-6, radius: 0.1, axis: 0 }, inertia)),
         ("capsule", rolled::<3>(Shape::Capsule { length: 0.2, radius: 0.1, axis: 1 }, inertia)),
         ("cylinder", rolled::<3>(cylinder, inertia)),
+        ("cylinder of a compound", rolled::<3>(compound, inertia)),
     ];
     for (what, way) in rollers {
         assert!((way / exact - 1.0).abs() < 3e-3, "{what}: {way} m, exact {exact} m");
