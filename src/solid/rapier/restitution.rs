@@ -2,8 +2,8 @@
 //!
 //! The module applies Newton's law (Principia, 1687) with Coulomb friction, v_n⁺ = −e v_n⁻ and |J_t| ≤ μ J_n, before
 //! the step in which the bodies would touch. Where friction and restitution together would create energy, it omits
-//! friction. Joints transmit the impulses at the same instant. The engine's own contacts are springs without restitution, which support resting bodies. The module is
-//! compiled for each dimension as part of the world: `super` names the engine.
+//! friction. Joints transmit the impulses at the same instant. The engine's own contacts are springs without restitution,
+//! which support resting bodies. The module is compiled for each dimension as part of the world: `super` names the engine.
 
 use serde::{Deserialize, Serialize};
 
