@@ -118,7 +118,7 @@ pub struct Verdict {
 }
 
 impl ReferenceCheck {
-    /// Makes the check of a run from its plan `words`; relative table paths refer to `folder`.
+    /// Makes the check of a run from its plan `words`; relative table paths refer to `folder`. A bound without a figure is none.
     ///
     /// # Errors
     /// `File` if the table cannot be read. `Scene` if the table lacks a column or has fewer than two samples in the
@@ -138,7 +138,8 @@ impl ReferenceCheck {
                 )
             }
         };
-        Ok(Self { plan: words.clone(), reference })
+        let bound = words.bound.filter(|bound| *bound != Score::default());
+        Ok(Self { plan: CheckPlan { bound, ..words.clone() }, reference })
     }
 
     /// Returns the plan of the check.

@@ -284,10 +284,6 @@ impl CheckConfig {
             ("delay", bound.delay),
             ("period", bound.period),
         ];
-        if bound == Score::default() {
-            let what = "the bound names no figure, and every run would keep it";
-            return Err(ctx.error_with_help(&format!("{key}.bound"), what, "write  bound = { N = 0.1 }, or remove it"));
-        }
         if let Some((word, figure)) = figures.iter().find(|(_, figure)| figure.is_some_and(|x| x < 0.0)) {
             let what = format!("{word} is the largest that passes, and {} is below 0", figure.unwrap_or_default());
             return Err(ctx.error_at(&format!("{key}.bound.{word}"), what));
