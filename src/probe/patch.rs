@@ -241,9 +241,6 @@ impl<const D: usize> Probe<D> for PatchProbe<D> {
         system.visit_boundary_forces(self.solid, &mut |i, origin, f| {
             force += self.force_on_part((system, &*slope), i - solid.boundary.start, origin, f);
         });
-        if !system.knows_boundary_forces() {
-            force.fill(f64::NAN);
-        }
         let (mut sum, mut most) = (0.0, f64::NEG_INFINITY);
         for place in self.places(system) {
             let p = pressure(system, &place);

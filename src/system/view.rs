@@ -381,15 +381,6 @@ impl<const D: usize> System<D> {
         (self.neighbours.boundary_near_fluid(), &self.rates.boundary)
     }
 
-    /// Whether the forces on boundary particles are known. A state that is restored has those of its next force pass only.
-    pub(crate) fn knows_boundary_forces(&self) -> bool {
-        #[cfg(feature = "gpu")]
-        if self.boundary.on_device.as_ref().is_some_and(|own| own.sums.is_some()) {
-            return true;
-        }
-        self.rates.current
-    }
-
     /// Calls `visit` with the index of each boundary particle of solid number `solid` beside water, that of the particle whose image
     /// across symmetry planes it is with the axes of these planes (itself and none), and the force (N; N/m in 2-D) of the water on it
     /// at the last force pass. They sum up to the solid's load.

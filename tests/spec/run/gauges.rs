@@ -274,22 +274,6 @@ fn a_patch_on_a_wall_of_one_row_is_read_on_its_wet_face() -> Result<()> {
     Ok(())
 }
 
-/// A checkpoint has no forces on boundary particles: a patch has them from the next step on, and its pressures at once.
-#[test]
-fn a_patch_of_a_restored_state_has_its_force_from_the_next_step_on() -> Result<()> {
-    let mut sim = walled(0.02, 0.0)?;
-    let probe = PatchProbe::new(sim.system(), "wall", &[0.495, -0.1], &[0.505, 0.7])?;
-    let before = probe.sample(&sim);
-    sim.restore(&sim.save()?)?;
-    let restored = probe.sample(&sim);
-    assert!(restored[0].is_nan() && restored[1].is_nan(), "{restored:?} instead of {before:?}");
-    assert_eq!(restored[2..], before[2..], "pressures are read of the water");
-    sim.step()?;
-    // Still water changes little in a step.
-    assert!((probe.sample(&sim)[0] / before[0] - 1.0).abs() < 0.02, "{:?} after {before:?}", probe.sample(&sim));
-    Ok(())
-}
-
 /// The default wall of a tank in 3-D is as thick as the support. Patches away from the edges have the hydrostatic force within 2 %, for
 /// the reason above; the mean pressure on a wall down to the bed is that at half the depth within 1 %.
 #[test]
