@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{Matrix4, Vector4};
 
 use crate::math::time_series::TimeSeries;
 
@@ -21,29 +21,70 @@ pub struct Harmonic {
     pub phase: f64,
 }
 
+/// A series by least squares: x(t) ≈ mean + drift · (t − middle) + cosine · cos ω(t − origin) + sine · sin ω(t − origin), with the
+/// middle of the record.
+pub(super) struct LeastSquares {
+    omega: f64,
+    origin: f64,
+    /// Middle and half of the record, s.
+    pub(super) middle: f64,
+    half: f64,
+    /// Mean, drift over half of the record, cosine and sine, in the unit of the series.
+    found: Vector4<f64>,
+}
+
+impl LeastSquares {
+    /// Returns the fit of `series` with the angular frequency `omega` (1/s) and the phase zero at `origin` (s), with a drift if
+    /// `has_drift`. Returns `None` if the samples do not determine it.
+    pub(super) fn new(series: &TimeSeries, omega: f64, origin: f64, has_drift: bool) -> Option<Self> {
+        let (first, last) = series.span();
+        let (middle, half) = (0.5 * (first + last), 0.5 * (last - first));
+        let mut fit = Self { omega, origin, middle, half, found: Vector4::zeros() };
+        let (mut normal, mut right) = (Matrix4::zeros(), Vector4::zeros());
+        for (&t, &x) in series.times().iter().zip(series.values()) {
+            let row = fit.row(t);
+            normal += row * row.transpose();
+            right += row * x;
+        }
+        if !has_drift {
+            // Its equation alone has the solution 0.
+            normal.row_mut(1).fill(0.0);
+            normal.column_mut(1).fill(0.0);
+            (normal[(1, 1)], right[1]) = (1.0, 0.0);
+        }
+        fit.found = normal.cholesky()?.solve(&right);
+        fit.found.iter().all(|x| x.is_finite()).then_some(fit)
+    }
+
+    fn row(&self, t: f64) -> Vector4<f64> {
+        let (sin, cos) = (self.omega * (t - self.origin)).sin_cos();
+        Vector4::new(1.0, (t - self.middle) / self.half, cos, sin)
+    }
+
+    /// Returns its value at the time `t` (s).
+    pub(super) fn value(&self, t: f64) -> f64 {
+        self.found.dot(&self.row(t))
+    }
+
+    /// Returns its drift, in the unit of the series over s.
+    pub(super) fn drift(&self) -> f64 {
+        self.found[1] / self.half
+    }
+
+    /// Returns its mean and its harmonic.
+    pub(super) fn harmonic(&self) -> Harmonic {
+        let [mean, _, cos, sin] = self.found.into();
+        Harmonic { mean, amplitude: cos.hypot(sin), phase: (-sin).atan2(cos) }
+    }
+}
+
 /// Returns the harmonic of angular frequency `omega` (1/s) in `series`, by least squares over the samples. The fit is
 /// exact for a series without other components than a mean and a drift, whatever the sample times; in less than two periods a
 /// drift is not fitted. Returns `None` if the samples do not determine the harmonic, for example if they are too few.
 pub fn harmonic(series: &TimeSeries, omega: f64) -> Option<Harmonic> {
     let (first, last) = series.span();
-    let (middle, half) = (0.5 * (first + last), 0.5 * (last - first));
-    let has_drift = 2.0 * half * omega >= MIN_PERIODS * TAU;
-    let row = |t: f64| {
-        let mut row = vec![1.0, (omega * t).cos(), (omega * t).sin()];
-        row.extend(has_drift.then_some((t - middle) / half));
-        DVector::from(row)
-    };
-    let size = 3 + usize::from(has_drift);
-    let (mut normal, mut right) = (DMatrix::zeros(size, size), DVector::zeros(size));
-    for (&t, &x) in series.times().iter().zip(series.values()) {
-        let row = row(t);
-        normal += &row * row.transpose();
-        right += row * x;
-    }
-    let found = normal.cholesky()?.solve(&right);
-    let (mean, cos, sin) = (found[0], found[1], found[2]);
-    let swings = found.iter().all(|x| x.is_finite());
-    swings.then(|| Harmonic { mean, amplitude: cos.hypot(sin), phase: (-sin).atan2(cos) })
+    let has_drift = (last - first) * omega >= MIN_PERIODS * TAU;
+    LeastSquares::new(series, omega, 0.0, has_drift).map(|fit| fit.harmonic())
 }
 
 #[cfg(test)]

@@ -3,9 +3,11 @@
 
 use std::f64::consts::TAU;
 
-use nalgebra::{Matrix4, Vector4};
-
-use super::{AlignedMetrics, ErrorMetrics, alignment::least_by_golden_section, harmonic::MIN_PERIODS};
+use super::{
+    AlignedMetrics, ErrorMetrics,
+    alignment::least_by_golden_section,
+    harmonic::{Harmonic, LeastSquares, MIN_PERIODS},
+};
 use crate::{math::time_series::TimeSeries, plan::ResponseReference};
 
 /// Range of the fitted period about the stated period, relative to this: a body that drifts with a fifth of the wave's speed
@@ -66,30 +68,12 @@ pub(super) fn fundamental(series: &TimeSeries, period: f64) -> Option<Fundamenta
 /// Returns the fit of `series` with this `frequency` (Hz).
 fn fit_at(series: &TimeSeries, frequency: f64) -> Option<Fundamental> {
     let (first, last) = series.span();
-    let (middle, half) = (0.5 * (first + last), 0.5 * (last - first));
-    let row = |t: f64| {
-        let angle = TAU * frequency * (t - middle);
-        Vector4::new(1.0, (t - middle) / half, angle.cos(), angle.sin())
-    };
-    let samples = || series.times().iter().zip(series.values());
-    let (mut normal, mut right) = (Matrix4::zeros(), Vector4::zeros());
-    for (&t, &x) in samples() {
-        normal += row(t) * row(t).transpose();
-        right += row(t) * x;
-    }
-    let found = normal.cholesky()?.solve(&right);
-    let remainder: f64 = samples().map(|(&t, x)| (x - found.dot(&row(t))).powi(2)).sum();
-    let [mean, drift, cos, sin] = found.into();
-    let fit = Fundamental {
-        middle,
-        mean,
-        drift: drift / half,
-        amplitude: cos.hypot(sin),
-        phase: (-sin).atan2(cos),
-        period: 1.0 / frequency,
-        remainder,
-    };
-    (remainder.is_finite() && fit.amplitude.is_finite()).then_some(fit)
+    let fit = LeastSquares::new(series, TAU * frequency, 0.5 * (first + last), true)?;
+    let samples = series.times().iter().zip(series.values());
+    let remainder: f64 = samples.map(|(&t, x)| (x - fit.value(t)).powi(2)).sum();
+    let Harmonic { mean, amplitude, phase } = fit.harmonic();
+    let (middle, drift, period) = (fit.middle, fit.drift(), 1.0 / frequency);
+    remainder.is_finite().then_some(Fundamental { middle, mean, drift, amplitude, phase, period, remainder })
 }
 
 impl Fundamental {

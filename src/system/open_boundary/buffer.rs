@@ -10,7 +10,10 @@ use super::{
 use crate::{
     math::Vector,
     particles::Particles,
-    system::{Fluid, System, symmetry::AxisSet},
+    system::{
+        Fluid, System,
+        symmetry::{AxisSet, reflected},
+    },
 };
 
 /// What has passed through a face since the start.
@@ -40,9 +43,7 @@ impl<const D: usize> FaceExchange<D> {
         } else {
             self.left += 1;
         }
-        // The momentum of the images along the normal is opposite.
-        let moves = |axis: usize| axes >> axis & 1 == 0;
-        self.momentum += Vector::from_fn(|i, _| if moves(i) { v[i] * (sense * mass) } else { 0.0 });
+        self.momentum += (v + reflected(axes, *v)) * (0.5 * sense * mass);
         self.energy += sense * energy;
     }
 }
